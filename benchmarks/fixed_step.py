@@ -1,0 +1,120 @@
+"""Fixed-step simulation of the reference drive with the return map of Maxwell-slip.
+
+The memory holds the displacement of each element and, last, the twist at which they hold. Within a step the elements
+follow the twist, clipped to their limits; they are updated once, at the start of each step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from reference_drive import (
+    ELEMENT_LIMIT,
+    ELEMENT_STIFFNESS,
+    ELEMENTS,
+    Array,
+    Maths,
+    clip,
+    deflection,
+    initial_state,
+    motion,
+    transmitted_torque,
+)
+
+Function = Callable[..., Any]
+
+
+def update(maths: Maths) -> Function:
+    """(twist, memory) -> None: lets the elements follow to this twist."""
+    limit = clip(maths)
+
+    @maths.compile
+    def update(twist: Any, memory: Any) -> None:
+        increment = twist - memory[ELEMENTS]
+        for j in range(ELEMENTS):
+            memory[j] = limit(memory[j] + increment, ELEMENT_LIMIT[j])
+        memory[ELEMENTS] = twist
+
+    return update
+
+
+def twist_and_torque(maths: Maths) -> Function:
+    """(state, memory) -> twist [rad], its slope over the input angle, transmitted torque [N.m]."""
+    limit, twist_and_slope, gear_torque = clip(maths), deflection(maths), transmitted_torque(maths)
+
+    @maths.compile
+    def twist_and_torque(state: Any, memory: Any) -> Any:
+        twist, slope = twist_and_slope(state[1], state[3])
+        increment = twist - memory[ELEMENTS]
+        displacement = 0.0
+        for j in range(ELEMENTS):
+            displacement += limit(memory[j] + increment, ELEMENT_LIMIT[j])
+        torque = gear_torque(twist, slope * state[2] - state[4], ELEMENT_STIFFNESS * displacement)
+        return twist, slope, torque
+
+    return twist_and_torque
+
+
+def stages(maths: Maths) -> tuple[Function, Function, Function]:
+    """The parts of a step: first stage (updates the memory), later stage, and state + duration x rates."""
+    evaluate, follow, move = twist_and_torque(maths), update(maths), motion(maths)
+
+    @maths.compile
+    def first(time: Any, state: Any, memory: Any) -> Any:
+        twist, slope, torque = evaluate(state, memory)
+        follow(twist, memory)
+        return move(time, state, slope, torque)
+
+    @maths.compile
+    def later(time: Any, state: Any, memory: Any) -> Any:
+        _, slope, torque = evaluate(state, memory)
+        return move(time, state, slope, torque)
+
+    @maths.compile
+    def ahead(y: Any, h: Any, k: Any) -> Any:
+        return y[0] + h * k[0], y[1] + h * k[1], y[2] + h * k[2], y[3] + h * k[3], y[4] + h * k[4], y[5] + h * k[5]
+
+    return first, later, ahead
+
+
+def runge_kutta(maths: Maths) -> Function:
+    """(time, step, state, memory) -> state one step later, by the classical Runge-Kutta method of order 4."""
+    first, later, ahead = stages(maths)
+
+    @maths.compile
+    def runge_kutta(time: Any, step: Any, state: Any, memory: Any) -> Any:
+        half = 0.5 * step
+        k1 = first(time, state, memory)
+        k2 = later(time + half, ahead(state, half, k1), memory)
+        k3 = later(time + half, ahead(state, half, k2), memory)
+        k4 = later(time + step, ahead(state, step, k3), memory)
+        return ahead(state, step / 6.0, ahead(ahead(ahead(k1, 2.0, k2), 2.0, k3), 1.0, k4))
+
+    return runge_kutta
+
+
+def simulation(maths: Maths, method: Callable[[Maths], Function]) -> Callable[[float, int, int], Array]:
+    """(sample, steps, count) -> samples of a run from rest, shape (count, 5).
+
+    sample: time between samples [s]; steps: steps per sample; count: number of samples. Columns: input angle [rad],
+    input speed [rad/s], output angle [rad], output speed [rad/s], transmitted torque [N.m].
+    """
+    advance, evaluate = method(maths), twist_and_torque(maths)
+    start = tuple(float(x) for x in initial_state()[:6])
+
+    @maths.compile
+    def simulation(sample: float, steps: int, count: int) -> Any:
+        state, memory, samples = start, np.zeros(ELEMENTS + 1), np.empty((count, 5))
+        step = sample / steps
+        for k in range(count):
+            _, _, torque = evaluate(state, memory)
+            samples[k, 0], samples[k, 1], samples[k, 2], samples[k, 3] = state[1], state[2], state[3], state[4]
+            samples[k, 4] = torque
+            if k < count - 1:
+                for i in range(steps):
+                    state = advance(k * sample + i * step, step, state, memory)
+        return samples
+
+    return simulation

@@ -1,0 +1,106 @@
+"""Exponential Runge-Kutta of order 4 in Numba: what of strainwave's lead is the algorithm, and what is the program.
+
+Cox and Matthews, Exponential time differencing for stiff systems, J. Comput. Phys. 176 (2002), eqs. (26)-(29), for
+the bristle of the input friction, whose rate is linear in it: z' = speed - decay z. The decay is held over a step; what
+it changes within is treated as the non-linear rest. The other states advance by the classical Runge-Kutta method.
+No stage leaves |z| <= breakaway / bristle stiffness, which the true bristle never does.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+from fixed_step import Function, stages
+from reference_drive import BREAKAWAY, BRISTLE_STIFFNESS, Maths, bristle_decay, clip
+
+from peers import Peer
+from peers.numba_rk4 import prepare_fixed_step
+
+BRISTLE_LIMIT = BREAKAWAY / BRISTLE_STIFFNESS  # rad
+SERIES = tuple(1.0 / math.factorial(n) for n in range(15, 2, -1))  # of phi_3, highest power first
+
+
+def phi(maths: Maths) -> Function:
+    """(x) -> phi_1, phi_2, phi_3 of x <= 0: phi_0 = exp x, phi_(n+1) = (phi_n - 1/n!) / x.
+
+    Near zero the differences cancel; there phi_3 is its series, and the others follow from it.
+    """
+
+    @maths.compile
+    def phi(x: float) -> Any:
+        if x > -0.5:
+            third = 0.0
+            for coefficient in SERIES:
+                third = third * x + coefficient
+            second = 0.5 + x * third
+            return 1.0 + x * second, second, third
+        first = (math.exp(x) - 1.0) / x
+        second = (first - 1.0) / x
+        return first, second, (second - 0.5) / x
+
+    return phi
+
+
+def weights(maths: Maths) -> Function:
+    """(x) -> exp(x/2), half-step weight, and the weights of the first, middle and last stage, for x = -decay step."""
+    phi_functions = phi(maths)
+
+    @maths.compile
+    def weights(x: float) -> Any:
+        first, second, third = phi_functions(x)
+        half, _, _ = phi_functions(0.5 * x)
+        return (
+            math.exp(0.5 * x),
+            0.5 * half,
+            first - 3.0 * second + 4.0 * third,
+            second - 2.0 * third,
+            4.0 * third - second,
+        )
+
+    return weights
+
+
+def exponential(maths: Maths) -> Function:
+    """(time, step, state, memory) -> state one step later."""
+    first, later, ahead = stages(maths)
+    decay_at, weights_at, limit = bristle_decay(maths), weights(maths), clip(maths)
+
+    @maths.compile
+    def with_bristle(state: Any, bristle: float) -> Any:
+        return state[0], state[1], state[2], state[3], state[4], limit(bristle, BRISTLE_LIMIT)
+
+    @maths.compile
+    def exponential(time: float, step: float, state: Any, memory: Any) -> Any:
+        half, bristle, decay = 0.5 * step, state[5], decay_at(state[2])
+        decayed, w_half, w_first, w_middle, w_last = weights_at(-decay * step)
+
+        k1 = first(time, state, memory)
+        rest_1 = k1[5] + decay * bristle
+        a = with_bristle(ahead(state, half, k1), decayed * bristle + step * w_half * rest_1)
+        k2 = later(time + half, a, memory)
+        rest_2 = k2[5] + decay * a[5]
+        b = with_bristle(ahead(state, half, k2), decayed * bristle + step * w_half * rest_2)
+        k3 = later(time + half, b, memory)
+        rest_3 = k3[5] + decay * b[5]
+        c = with_bristle(ahead(state, step, k3), decayed * a[5] + step * w_half * (2.0 * rest_3 - rest_1))
+        k4 = later(time + step, c, memory)
+        rest_4 = k4[5] + decay * c[5]
+
+        weighted = w_first * rest_1 + 2.0 * w_middle * (rest_2 + rest_3) + w_last * rest_4
+        moved = ahead(state, step / 6.0, ahead(ahead(ahead(k1, 2.0, k2), 2.0, k3), 1.0, k4))
+        return with_bristle(moved, decayed * decayed * bristle + step * weighted)
+
+    return exponential
+
+
+PEERS = (
+    Peer(
+        name="Numba exponential RK4",
+        distributions=("numba",),
+        setting="step [s]",
+        ladder=(5e-4, 2e-4, 1e-4),
+        prepare=partial(prepare_fixed_step, exponential),
+    ),
+)

@@ -1,0 +1,102 @@
+"""SciPy's `solve_ivp`: LSODA with a compiled right-hand side, and what a user writes first, in plain Python.
+
+LSODA is no stiff solver to lean on here: below a relative tolerance of 3e-5 it chatters at the kinks of Maxwell-slip and
+takes minutes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+from reference_drive import (
+    DURATION,
+    PYTHON,
+    Array,
+    Maths,
+    initial_state,
+    numba_maths,
+    output_and_torque,
+    right_hand_side,
+    sample_times,
+    state_scale,
+)
+
+from peers import Peer
+
+
+def compiled_rates() -> Callable[[float, Array], Any]:
+    """(time, state) -> rates, compiled by Numba."""
+    maths = numba_maths(error_model="numpy")
+    fill = right_hand_side(maths)
+
+    @maths.compile
+    def rates(time: float, state: Any) -> Any:
+        out = np.empty(state.size)
+        fill(time, state, out)
+        return out
+
+    rates(0.0, initial_state())
+    return rates
+
+
+def plain_rates() -> Callable[[float, Array], Any]:
+    """(time, state) -> rates, in plain Python: floats of a list are several times faster than those of an array."""
+    fill = right_hand_side(PYTHON)
+
+    def rates(time: float, state: Array) -> list[float]:
+        out = [0.0] * state.size
+        fill(time, state.tolist(), out)
+        return out
+
+    return rates
+
+
+def prepare(method: str, rates: Callable[[], Callable[[float, Array], Any]], tolerance: float) -> Callable[[], Array]:
+    """A run by a method of `scipy.integrate.solve_ivp` to this relative tolerance."""
+    from scipy.integrate import solve_ivp
+
+    function = rates()
+
+    def solve() -> Array:
+        solution = solve_ivp(
+            function,
+            (0.0, DURATION),
+            initial_state(),
+            method=method,
+            t_eval=sample_times(),
+            rtol=tolerance,
+            atol=tolerance * state_scale(),
+        )
+        if not solution.success:
+            raise RuntimeError(f"{method}: {solution.message}")
+        return output_and_torque(solution.y)
+
+    return solve
+
+
+PEERS = (
+    Peer(
+        name="SciPy LSODA, Numba",
+        distributions=("scipy", "numba"),
+        setting="relative tolerance",
+        ladder=(1e-3, 2e-4, 1e-4, 3e-5),
+        prepare=partial(prepare, "LSODA", compiled_rates),
+    ),
+    Peer(
+        name="SciPy LSODA, plain Python",
+        distributions=("scipy",),
+        setting="relative tolerance",
+        ladder=(1e-3, 1e-4),
+        prepare=partial(prepare, "LSODA", plain_rates),
+    ),
+    Peer(
+        name="SciPy RK45, plain Python",
+        distributions=("scipy",),
+        setting="relative tolerance",
+        ladder=(1e-3,),
+        prepare=partial(prepare, "RK45", plain_rates),
+    ),
+)

@@ -1,0 +1,175 @@
+#pragma once
+#include <strainwave/drive.hpp>
+#include <strainwave/models.hpp>
+
+#include <algorithm>
+#include <type_traits>
+#include <variant>
+
+/// Host only: a model chosen at run time that is itself a model. Physics sees one more static type, so code grows with the sum of the
+/// models, not with their product.
+namespace strainwave {
+
+/// The state of whichever model was chosen.
+template <class S, int n>
+struct Slots {
+    Array<S, (n > 0 ? n : 1)> slot{};
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, slot, "1", "State of the model chosen, in the order it lists it"));
+    }
+};
+
+namespace detail {
+
+template <class S, class Law>
+constexpr int state_size() {
+    if constexpr (requires { typename Law::State; })
+        return size_of<S, typename Law::State>;
+    else
+        return 0;
+}
+
+}  // namespace detail
+
+template <class S, class... Law>
+struct Choice {
+    std::variant<Law...> model{};
+
+    using State = Slots<S, std::max({detail::state_size<S, Law>()...})>;
+
+    /// f of the model chosen. A chain of comparisons, which inlines where a table of functions would not.
+    template <int i = 0, class F>
+    constexpr decltype(auto) visit(F&& f) const {
+        if constexpr (i + 1 == sizeof...(Law)) {
+            return f(*std::get_if<i>(&model));
+        } else {
+            if (model.index() == i) return f(*std::get_if<i>(&model));
+            return visit<i + 1>(f);
+        }
+    }
+
+    /// The same choice, of laws rearranged for speed.
+    constexpr auto compile() const {
+        using Fast = Choice<S, decltype(compiled(std::declval<Law>()))...>;
+        return visit([](const auto& law) { return Fast{compiled(law)}; });
+    }
+
+// Calls the verb of the model chosen, with its own state in place of the slots.
+#define SW_VERB(verb)                                                                                        \
+    template <class... Arguments>                                                                            \
+    constexpr auto verb(const Arguments&... arguments) const {                                               \
+        return visit([&](const auto& law) { return stored(law, law.verb(own(law, arguments)...)); });        \
+    }
+    SW_VERB(ratio)
+    SW_VERB(at)
+    SW_VERB(torque)
+    SW_VERB(twist)
+    SW_VERB(tangent)
+    SW_VERB(energy)
+    SW_VERB(advance)
+    SW_VERB(current)
+    SW_VERB(voltage)
+    SW_VERB(decay)
+    SW_VERB(rate)
+#undef SW_VERB
+
+    // What only some friction laws have.
+    constexpr State rate(const State& x, const friction::Contact<S>& contact) const {
+        return visit([&](const auto& law) {
+            if constexpr (requires { law.rate(own(law, x), contact); })
+                return stored(law, law.rate(own(law, x), contact));
+            else
+                return State{};
+        });
+    }
+    constexpr State decay(const friction::Contact<S>& contact) const {
+        return visit([&](const auto& law) {
+            if constexpr (requires { law.decay(contact); })
+                return stored(law, law.decay(contact));
+            else
+                return State{};
+        });
+    }
+    constexpr State confined(const State& x) const {
+        return visit([&](const auto& law) {
+            if constexpr (requires { law.confined(own(law, x)); })
+                return stored(law, law.confined(own(law, x)));
+            else
+                return x;
+        });
+    }
+    constexpr bool set_valued() const {
+        return visit([](const auto& law) { return friction::SetValued<std::remove_cvref_t<decltype(law)>>; });
+    }
+    constexpr S hold() const {
+        return visit([](const auto& law) {
+            if constexpr (friction::SetValued<std::remove_cvref_t<decltype(law)>>)
+                return law.hold();
+            else
+                return S(0.0);
+        });
+    }
+
+private:
+    template <class Model, class T>
+    static constexpr auto own(const Model&, const T& argument) {
+        if constexpr (std::is_same_v<T, State>) {
+            typename Model::State x{};
+            if constexpr (size_of<S, typename Model::State> > 0) {
+                S* to[size_of<S, typename Model::State>]{};
+                detail::Collect<S, S*> collect{to};
+                Model::State::fields(x, collect);
+                for (int i = 0; i < collect.count; ++i) *to[i] = argument.slot[i];
+            }
+            return x;
+        } else {
+            return argument;
+        }
+    }
+    template <class Model, class Result>
+    static constexpr auto stored(const Model&, const Result& result) {
+        if constexpr (detail::state_size<S, Model>() == 0 && !Described<Result>) {
+            return result;
+        } else if constexpr (requires { requires std::is_same_v<Result, typename Model::State>; }) {
+            State x{};
+            if constexpr (size_of<S, Result> > 0) {
+                const auto scalars = flattened<S>(result);
+                for (int i = 0; i < scalars.size(); ++i) x.slot[i] = scalars[i];
+            }
+            return x;
+        } else {
+            return result;
+        }
+    }
+};
+
+namespace detail {
+
+template <class S, class L>
+struct ChoiceOf;
+template <class S, template <class> class... Law>
+struct ChoiceOf<S, List<Law...>> {
+    using type = Choice<S, Law<S>...>;
+};
+
+}  // namespace detail
+
+template <class S, class L>
+using AnyOf = typename detail::ChoiceOf<S, L>::type;
+
+template <class S, class... Body>
+constexpr S inertia_of(const Choice<S, Body...>& body) {
+    return body.visit([](const auto& chosen) { return chosen.inertia; });
+}
+
+template <class S>
+using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, stiffness::Models>,
+                     AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>, AnyOf<S, friction::Models>>;
+
+template <class S>
+using AnyPositionDrive =
+    PositionDrive<S, AnyGear<S>, AnyOf<S, motor::Models>, AnyOf<S, control::Models>, AnyOf<S, load::Models>>;
+
+}  // namespace strainwave

@@ -1,0 +1,149 @@
+#pragma once
+#include <strainwave/array.hpp>
+
+/// Parameters are written once: a model lists its members here, and Python, files, fits, reports and docs read the list.
+namespace strainwave {
+
+/// A bound that is none. FMI writes "no limit" this way, and NVRTC has no infinity to offer.
+inline constexpr double unbounded = 1.7976931348623157e308;
+/// A bound that excludes zero: the smallest normal number of every scalar, float included.
+inline constexpr double smallest = 1.1754943508222875e-38;
+
+/// What is known of a member besides its value. The default value stands in the struct.
+struct Field {
+    const char* name;
+    const char* unit;  ///< FMI/Modelica spelling: "N.m", "rad/s", "1"; empty for a part
+    const char* doc;
+    double min = -unbounded;
+    double max = unbounded;
+};
+
+/// Describes a number, or a sequence of numbers: SW_FIELD(m, member, unit, doc, min, max).
+#define SW_FIELD(self, member, ...) \
+    (self).member, ::strainwave::Field { #member, __VA_ARGS__ }
+/// Describes a member that is itself described: SW_PART(m, member, doc).
+#define SW_PART(self, member, doc) \
+    (self).member, ::strainwave::Field { #member, "", doc }
+
+namespace detail {
+
+struct Ignore {
+    template <class T>
+    constexpr void operator()(T&, const Field&) const {}
+};
+
+struct Anything {
+    template <class T>
+    constexpr operator T() const noexcept;
+};
+
+template <class T, class... Members>
+consteval int members() {
+    if constexpr (requires { T{Members{}..., Anything{}}; })
+        return members<T, Members..., Anything>();
+    else
+        return sizeof...(Members);
+}
+
+/// Counts the members visited; one visited twice does not count again.
+struct Count {
+    static constexpr int capacity = 64;
+    const void* seen[capacity]{};
+    int count = 0;
+
+    template <class T>
+    constexpr void operator()(T& member, const Field&) {
+        for (int i = 0; i < count; ++i)
+            if (seen[i] == &member) return;
+        seen[count++] = &member;
+    }
+};
+
+template <class T>
+consteval int visited() {
+    T model{};
+    Count counter;
+    T::fields(model, counter);
+    return counter.count;
+}
+
+}  // namespace detail
+
+/// A struct that lists its members.
+template <class T>
+concept Described = requires(T& model) { T::fields(model, detail::Ignore{}); };
+
+/// Every member of `T` is described. Checked where a model is bound or listed, so a forgotten member does not compile.
+template <Described T>
+inline constexpr bool fully_described = detail::visited<T>() == detail::members<T>();
+
+namespace detail {
+
+/// Counts scalars, elements of arrays included.
+template <class S>
+struct Counter {
+    int count = 0;
+    constexpr void operator()(const S&, const Field&) { ++count; }
+    template <int n>
+    constexpr void operator()(const Array<S, n>&, const Field&) { count += n; }
+    template <Described T>
+    constexpr void operator()(const T& part, const Field&) { T::fields(part, *this); }
+};
+
+/// Collects the addresses of scalars.
+template <class S, class Pointer>
+struct Collect {
+    Pointer* target;
+    int count = 0;
+    template <class T>
+    constexpr void operator()(T& member, const Field&) {
+        if constexpr (Described<T>)
+            T::fields(member, *this);
+        else if constexpr (requires { member.item; })
+            for (auto& x : member.item) target[count++] = &x;
+        else
+            target[count++] = &member;
+    }
+};
+
+}  // namespace detail
+
+/// How many scalars a described state holds.
+template <class S, Described X>
+inline constexpr int size_of = [] {
+    X state{};
+    detail::Counter<S> counter;
+    X::fields(state, counter);
+    return counter.count;
+}();
+
+/// The scalars of a described state, in the order it lists them.
+template <class S, Described X>
+constexpr Array<S, size_of<S, X>> flattened(const X& state) {
+    Array<S, size_of<S, X>> scalars{};
+    const S* from[size_of<S, X> + 1]{};
+    detail::Collect<S, const S*> collect{from};
+    X::fields(state, collect);
+    for (int i = 0; i < scalars.size(); ++i) scalars[i] = *from[i];
+    return scalars;
+}
+
+/// The state that has these scalars.
+template <Described X, class S>
+constexpr X shaped(const Array<S, size_of<S, X>>& scalars) {
+    X state{};
+    S* to[size_of<S, X> + 1]{};
+    detail::Collect<S, S*> collect{to};
+    X::fields(state, collect);
+    for (int i = 0; i < scalars.size(); ++i) *to[i] = scalars[i];
+    return state;
+}
+
+/// A state without members.
+template <class S>
+struct Stateless {
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+};
+
+}  // namespace strainwave

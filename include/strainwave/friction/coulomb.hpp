@@ -1,0 +1,45 @@
+#pragma once
+#include <strainwave/friction/contact.hpp>
+
+namespace strainwave::friction {
+
+template <class S>
+struct Coulomb {
+    S coulomb{0.0};
+    S breakaway{0.0};
+    S viscous{0.0};
+
+    static constexpr auto name = "coulomb";
+    static constexpr auto source = "document P, simplified friction model (static + Coulomb + viscous); Coulomb1785";
+    static constexpr auto doc = R"(
+        Static, Coulomb and viscous friction, set-valued at rest: it sticks exactly.
+
+        .. math:: F = F_c \operatorname{sgn} v + b v \quad (v \ne 0), \qquad |F| \le F_s \quad (v = 0)
+
+        with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, b = viscous. At rest F balances whatever
+        drives the side, up to F_s; there is no smoothed sign and no dead band of speed, both of which leave an error that no
+        step size removes. A breakaway below coulomb counts as coulomb.
+
+        >>> from strainwave.friction import Coulomb
+        >>> Coulomb(coulomb=0.07, breakaway=0.075, viscous=4e-4).steady(-100.0)
+        -0.11)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
+        visit(SW_FIELD(m, breakaway, "N.m", "Static friction torque F_s", 0));
+        visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
+    }
+
+    using State = Stateless<S>;
+
+    /// Torque that opposes sliding, in N.m.
+    constexpr S torque(const State&, const Contact<S>& contact) const {
+        return contact.sliding * coulomb + viscous * contact.speed;
+    }
+
+    /// The largest torque it balances at rest, in N.m.
+    constexpr S hold() const { return max(breakaway, coulomb); }
+};
+
+}  // namespace strainwave::friction

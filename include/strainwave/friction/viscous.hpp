@@ -1,0 +1,34 @@
+#pragma once
+#include <strainwave/friction/contact.hpp>
+
+namespace strainwave::friction {
+
+template <class S>
+struct Viscous {
+    S viscous{0.0};
+
+    static constexpr auto name = "viscous";
+    static constexpr auto source = "Newton's law of viscosity; document P, b_m and b_l of Table 3";
+    static constexpr auto doc = R"(
+        Friction proportional to speed.
+
+        .. math:: F = b v
+
+        with v the speed of the side it acts on, b = viscous. Leaves out everything that friction does near rest.
+
+        >>> from strainwave.friction import Viscous
+        >>> Viscous(viscous=0.5).steady(2.0)
+        1.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
+    }
+
+    using State = Stateless<S>;
+
+    /// Torque that opposes the motion, in N.m.
+    constexpr S torque(const State&, const Contact<S>& contact) const { return viscous * contact.speed; }
+};
+
+}  // namespace strainwave::friction

@@ -1,0 +1,83 @@
+#pragma once
+#include <strainwave/field.hpp>
+#include <strainwave/kinematic_error/fourier.hpp>
+#include <strainwave/math.hpp>
+
+namespace strainwave {
+
+/// The law as the integrator wants it: rearranged for speed where the law knows how.
+template <class Law>
+constexpr auto compiled(const Law& law) {
+    if constexpr (requires { law.compile(); })
+        return law.compile();
+    else
+        return law;
+}
+
+template <class S, class Kinematics, class KinematicError, class Stiffness, class Hysteresis, class FrictionInput, class FrictionOutput>
+struct Gear {
+    Kinematics kinematics{};
+    KinematicError kinematic_error{};
+    Stiffness stiffness{};
+    Hysteresis hysteresis{};
+    S damping{0.0};
+    FrictionInput friction_input{};
+    FrictionOutput friction_output{};
+    S input_inertia{0.0};
+
+    static constexpr auto name = "gear";
+    static constexpr auto source = "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)";
+    static constexpr auto doc = R"(
+        One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at both shafts.
+
+        .. math:: \delta = \theta_{in}/i - \theta_{out} - e(\theta_{in}), \qquad
+                  T = T_{stiffness}(\delta) + T_{hysteresis}(\delta, \text{history}) + c\,\dot\delta
+
+        T acts on the output and, as T (1/i - e'(\theta_{in})), on the input. The e' term is the reaction of the error on the
+        input: the review derives none (E-R3) and the actuator paper omits it (E-A5), but without it energy is not conserved.
+        Every part is a law of its own; change one with ``gear.replace(hysteresis=...)``.
+
+        >>> import strainwave as sw
+        >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), damping=10.0)
+        >>> gear.stiffness.a1
+        12000.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, kinematics, "Rigid motion: teeth and fixed member"));
+        visit(SW_PART(m, kinematic_error, "Pure kinematic error at the output, over the input angle"));
+        visit(SW_PART(m, stiffness, "Elastic torque over the twist"));
+        visit(SW_PART(m, hysteresis, "Torque that depends on the history of the twist"));
+        visit(SW_FIELD(m, damping, "N.m.s/rad", "Torque per rate of twist", 0));
+        visit(SW_PART(m, friction_input, "Friction at the wave generator, over the input speed"));
+        visit(SW_PART(m, friction_output, "Friction at the output, over the output speed"));
+        visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
+    }
+
+    constexpr auto compile() const {
+        using Fast = decltype(compiled(kinematic_error));
+        return Gear<S, Kinematics, Fast, Stiffness, Hysteresis, FrictionInput, FrictionOutput>{
+            kinematics, compiled(kinematic_error), stiffness, hysteresis, damping, friction_input, friction_output, input_inertia};
+    }
+
+    /// How the two shafts stand to each other.
+    struct Mesh {
+        S error;          ///< Kinematic error e, rad
+        S per_input;      ///< Twist per input angle: 1/i - e', rad/rad
+        S twist;          ///< rad
+        S torque;         ///< Transmitted torque T at the output, N.m
+    };
+
+    /// `transmission_error` is theta_in / i - theta_out; the hysteresis was last brought up to date at `held_twist`.
+    constexpr Mesh mesh(const kinematic_error::Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
+                        const S& output_speed, const typename Hysteresis::State& held, const S& held_twist) const {
+        const kinematic_error::Error<S> error = kinematic_error.at(input_angle);
+        const S per_input = S(1.0) / kinematics.ratio() - error.slope;
+        const S twist = transmission_error - error.value;
+        const S twist_rate = per_input * input_speed - output_speed;
+        const S torque = stiffness.torque(twist) + hysteresis.torque(held, twist - held_twist) + damping * twist_rate;
+        return {error.value, per_input, twist, torque};
+    }
+};
+
+}  // namespace strainwave

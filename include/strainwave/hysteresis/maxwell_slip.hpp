@@ -1,0 +1,91 @@
+#pragma once
+#include <strainwave/field.hpp>
+#include <strainwave/math.hpp>
+
+namespace strainwave::hysteresis {
+
+template <class S>
+struct MaxwellSlip {
+    static constexpr int capacity = 16;
+
+    Sequence<S, capacity> stiffness{};
+    Sequence<S, capacity> breakaway{};
+
+    static constexpr auto name = "maxwell_slip";
+    static constexpr auto source = "Iwan1966; LampaertAlBenderSwevers2003, eq. (9); document R, section 4b; erratum E-R11";
+    static constexpr auto doc = R"(
+        Parallel springs that each slip at their own torque: hysteresis with non-local memory.
+
+        .. math:: T = \sum_i T_i, \quad T_i \leftarrow \operatorname{clip}(T_i + k_i \Delta\delta, \pm F_i)
+
+        with delta the twist, k_i = stiffness, F_i = breakaway, up to 16 elements; none at all is no hysteresis. The clip is
+        exact for any step over which the twist is monotone, whatever its size. Rate-independent; obeys Masing's rules,
+        wiping-out and congruency; symmetric.
+
+        The rule printed in review articles, a capture position frozen where the element last stuck, lets the torque jump at a
+        reversal (E-R11).
+
+        >>> from strainwave.hysteresis import MaxwellSlip
+        >>> gear = MaxwellSlip(stiffness=[1000, 600, 300, 100], breakaway=[0.5, 0.9, 0.9, 0.6])
+        >>> [round(torque, 12) for torque in gear.trace([0.0, 0.004, -0.002])]
+        [0.0, 2.7, -2.5])";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, stiffness, "N.m/rad", "Stiffness k_i of each element while it sticks", smallest));
+        visit(SW_FIELD(m, breakaway, "N.m", "Torque F_i at which each element slips", 0));
+    }
+
+    constexpr const char* problem() const {
+        return stiffness.count == breakaway.count ? nullptr : "stiffness and breakaway must have equally many elements";
+    }
+
+    struct State {
+        Array<S, capacity> torque{};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, torque, "N.m", "Torque T_i held by each element"));
+        }
+    };
+
+    /// The elements after the twist has moved by `increment` [rad], monotonically.
+    constexpr State advance(const State& x, const S& increment) const {
+        State next{};
+        for (int i = 0; i < stiffness.count; ++i) next.torque[i] = held(x, i, increment);
+        return next;
+    }
+
+    /// Torque [N.m] once the twist has moved by `increment` [rad]; the state stays as it is.
+    constexpr S torque(const State& x, const S& increment) const {
+        S sum{0.0};
+        for (int i = 0; i < stiffness.count; ++i) sum = sum + held(x, i, increment);
+        return sum;
+    }
+
+    /// Work [J] put in while the twist moves by `increment` [rad], monotonically: spring work up to slip, then friction.
+    constexpr S work(const State& x, const S& increment) const {
+        const S sense = sign(increment), path = abs(increment);
+        S sum{0.0};
+        for (int i = 0; i < stiffness.count; ++i) {
+            const S start = sense * x.torque[i], end = sense * held(x, i, increment);
+            const S sticking = (end - start) / stiffness[i];
+            sum = sum + S(0.5) * (start + end) * sticking + breakaway[i] * (path - sticking);
+        }
+        return sum;
+    }
+
+    /// Elastic energy [J] held by the elements.
+    constexpr S stored(const State& x) const {
+        S energy{0.0};
+        for (int i = 0; i < stiffness.count; ++i) energy = energy + x.torque[i] * x.torque[i] / (S(2.0) * stiffness[i]);
+        return energy;
+    }
+
+private:
+    constexpr S held(const State& x, int i, const S& increment) const {
+        return clip(x.torque[i] + stiffness[i] * increment, -breakaway[i], breakaway[i]);
+    }
+};
+
+}  // namespace strainwave::hysteresis

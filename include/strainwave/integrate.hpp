@@ -1,0 +1,174 @@
+#pragma once
+#include <strainwave/drive.hpp>
+
+/// Steps in time. A smooth stretch is a fourth-order exponential Runge-Kutta step: the bristles relax exactly, the hysteresis is a
+/// return map, the rest is the classical scheme. Set-valued friction adds events, located and stepped to exactly.
+namespace strainwave {
+
+/// The inputs over one step: at its start, middle and end.
+template <class S>
+struct Interval {
+    Input<S> start{}, middle{}, end{};
+
+    /// The stretch between two fractions of the step. Between the three instants, the command is Hermite's cubic.
+    constexpr Interval part(const S& from, const S& to, const S& dt) const {
+        return {at(from, dt), at(S(0.5) * (from + to), dt), at(to, dt)};
+    }
+
+private:
+    constexpr Input<S> at(const S& fraction, const S& dt) const {
+        const auto late = fraction > S(0.5);
+        const S x = S(2.0) * fraction - select(late, S(1.0), S(0.0)), half = S(0.5) * dt;
+        const S a = select(late, middle.command, start.command), b = select(late, end.command, middle.command);
+        const S da = half * select(late, middle.command_rate, start.command_rate);
+        const S db = half * select(late, end.command_rate, middle.command_rate);
+        const S bend = S(3.0) * (b - a) - S(2.0) * da - db, turn = S(2.0) * (a - b) + da + db;
+        const S torque_a = select(late, middle.load_torque, start.load_torque);
+        const S torque_b = select(late, end.load_torque, middle.load_torque);
+        return {a + x * (da + x * (bend + x * turn)), (da + x * (S(2.0) * bend + S(3.0) * x * turn)) / max(half, S(smallest)),
+                torque_a + x * (torque_b - torque_a)};
+    }
+};
+
+namespace detail {
+
+/// Coefficients of Cox and Matthews (2002), eqs. (26)-(29), for one state that decays by e^-x over the step.
+template <class S>
+struct Exponential {
+    S half{1.0}, full{1.0}, stage{0.5}, first{1.0 / 6.0}, middle{1.0 / 3.0}, last{1.0 / 6.0};
+
+    static constexpr Exponential of(const S& x) {
+        const S half = exp(S(-0.5) * x), full = half * half;
+        const S c = select(x > S(series_below), x, S(1.0));
+        // phi_1, phi_2, phi_3 of -x: directly where that loses no digits, by their series where it would
+        const S direct = (S(0.5) - (S(1.0) - (S(1.0) - full) / c) / c) / c;
+        const S phi3 = select(x > S(series_below), direct, series(-min(x, S(series_below))));
+        const S phi2 = S(0.5) - x * phi3, phi1 = S(1.0) - x * phi2;
+        return {half, full, phi1 / (half + S(1.0)), phi1 - S(3.0) * phi2 + S(4.0) * phi3, S(2.0) * phi2 - S(4.0) * phi3,
+                S(4.0) * phi3 - phi2};
+    }
+
+private:
+    static constexpr double series_below = 0.5;
+    static constexpr S series(const S& z) {  // sum z^k / (k + 3)!
+        S sum{0.0};
+        double factorial = 1307674368000.0;  // 15!
+        for (int k = 12; k >= 0; factorial /= k + 3, --k) sum = sum * z + S(1.0 / factorial);
+        return sum;
+    }
+};
+
+/// One step of the exponential scheme: every member of X obeys y' = n(y) - decay y with its decay frozen at the step's start.
+/// Where the decay is zero this is the classical Runge-Kutta scheme.
+template <class S, class X>
+class Relaxation {
+    static constexpr int n = size_of<S, X>;
+    using Scalars = Array<S, n>;
+    Scalars decay;
+    Array<Exponential<S>, n> c{};
+    S dt;
+
+public:
+    constexpr Relaxation(const X& rates_of_decay, const S& step) : decay(flattened<S>(rates_of_decay)), dt(step) {
+        for (int i = 0; i < n; ++i)
+            if (any(decay[i] > S(0.0))) c[i] = Exponential<S>::of(decay[i] * dt);
+    }
+    constexpr Scalars forcing(const X& rate, const X& at) const {
+        Scalars force = flattened<S>(rate);
+        const Scalars y = flattened<S>(at);
+        for (int i = 0; i < n; ++i) force[i] = force[i] + decay[i] * y[i];
+        return force;
+    }
+    constexpr X halfway(const X& from, const Scalars& force) const {
+        Scalars y = flattened<S>(from);
+        for (int i = 0; i < n; ++i) y[i] = c[i].half * y[i] + dt * c[i].stage * force[i];
+        return shaped<X>(y);
+    }
+    constexpr X onward(const X& middle, const Scalars& force, const Scalars& first) const {
+        Scalars y = flattened<S>(middle);
+        for (int i = 0; i < n; ++i) y[i] = c[i].half * y[i] + dt * c[i].stage * (S(2.0) * force[i] - first[i]);
+        return shaped<X>(y);
+    }
+    constexpr X complete(const X& from, const Scalars& n1, const Scalars& n2, const Scalars& n3, const Scalars& n4) const {
+        Scalars y = flattened<S>(from);
+        for (int i = 0; i < n; ++i)
+            y[i] = c[i].full * y[i] + dt * (c[i].first * n1[i] + c[i].middle * (n2[i] + n3[i]) + c[i].last * n4[i]);
+        return shaped<X>(y);
+    }
+};
+
+/// One step without events.
+template <class S, class Drive>
+constexpr typename Drive::State smooth_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u, const S& dt) {
+    auto x = drive.remembered(before);
+    const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
+    const auto y1 = x.motion;
+    const Relaxation<S, typename Drive::Motion> scheme(drive.decay(x), dt);
+    const auto n1 = scheme.forcing(rate(y1, u.start), y1);
+    const auto y2 = drive.confined(scheme.halfway(y1, n1));
+    const auto n2 = scheme.forcing(rate(y2, u.middle), y2);
+    const auto y3 = drive.confined(scheme.halfway(y1, n2));
+    const auto n3 = scheme.forcing(rate(y3, u.middle), y3);
+    const auto y4 = drive.confined(scheme.onward(y2, n3, n1));
+    const auto n4 = scheme.forcing(rate(y4, u.end), y4);
+    x.motion = drive.confined(scheme.complete(y1, n1, n2, n3, n4));
+    return drive.wrapped(x);
+}
+
+/// The moment within (from, 1] at which the margin first falls below zero, in lanes where it does by the end; 1 in the others.
+/// Illinois' variant of regula falsi, which keeps the bracket.
+template <class S, class Margin>
+constexpr S crossing(const Margin& margin, const S& from, const S& at_start, const S& at_end) {
+    const auto crosses = at_end < S(0.0);
+    S a = from, b{1.0}, fa = detached(max(at_start, S(0.0))), fb = detached(at_end), x{1.0};
+    for (int i = 0; i < 80; ++i) {
+        S guess = b - fb * (b - a) / select(crosses, fb - fa, S(-1.0));
+        guess = select((guess > a) & (guess < b), guess, S(0.5) * (a + b));
+        const S f = detached(margin(select(crosses, guess, S(1.0))));
+        const auto moved = crosses & (abs(guess - x) > S(1e-15)) & (b - a > S(1e-15));
+        x = select(crosses, guess, S(1.0));
+        if (!any(moved)) break;
+        const auto before = f > S(0.0);
+        fa = select(before, f, S(0.5) * fa);
+        fb = select(before, S(0.5) * fb, f);
+        a = select(before, x, a);
+        b = select(before, b, x);
+    }
+    if constexpr (differentiates<S>) {  // the moment moves with the parameters: implicit function theorem
+        const S h(1e-4);
+        const S slope = detached((margin(x + h) - margin(x - h)) / (S(2.0) * h));
+        x = select(crosses & (abs(slope) > S(smallest)), x - (margin(x) - detached(margin(x))) / slope, x);
+    }
+    return x;
+}
+
+}  // namespace detail
+
+/// The drive after one step of `dt` [s].
+///
+/// With set-valued friction the step ends each stretch where a side stops or breaks away, puts that side exactly at rest or sets
+/// it sliding, and goes on. A drive that changes its mind more than 64 times in one step has no usable answer at this step size:
+/// its speed is returned as not-a-number, which the caller reports.
+template <class S, class Drive>
+constexpr typename Drive::State step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u, const S& dt) {
+    if (!drive.set_valued()) return detail::smooth_step(drive, before, u, dt);
+    auto x = drive.released(before, u.start);
+    S done{0.0};
+    for (int events = 0; events < 64; ++events) {
+        const auto reach = [&](const S& fraction) {
+            return detail::smooth_step(drive, x, u.part(done, fraction, dt), (fraction - done) * dt);
+        };
+        const auto end = reach(S(1.0));
+        const S margin = drive.margin(end, u.end);
+        if (!any(margin < S(0.0))) return end;
+        const auto at = [&](const S& fraction) { return drive.margin(reach(fraction), u.part(S(0.0), fraction, dt).end); };
+        const S moment = detail::crossing(at, done, drive.margin(x, u.part(S(0.0), done, dt).end), margin);
+        x = drive.settled(reach(moment), u.part(S(0.0), moment, dt).end, margin < S(0.0));
+        done = moment;
+    }
+    auto failed = x;
+    failed.motion.input_speed = (failed.motion.input_speed - failed.motion.input_speed) / S(0.0);
+    return failed;
+}
+
+}  // namespace strainwave

@@ -1,0 +1,121 @@
+#pragma once
+#include <strainwave/field.hpp>
+#include <strainwave/math.hpp>
+
+/// Pure kinematic error e(theta_in), at the output: what two encoders see of a gear that transmits no torque.
+namespace strainwave::kinematic_error {
+
+/// Input angle as the drive carries it: exact after any number of turns.
+template <class S>
+struct Angle {
+    S within{0.0};  ///< rad, in [-pi, pi]
+    S turns{0.0};   ///< whole revolutions
+};
+
+template <class S>
+struct Error {
+    S value{0.0};  ///< rad
+    S slope{0.0};  ///< rad/rad
+};
+
+template <class S>
+struct Fourier {
+    static constexpr int capacity = 16;
+
+    Sequence<S, capacity> order{};
+    Sequence<S, capacity> amplitude{};
+    Sequence<S, capacity> phase{};
+
+    static constexpr auto name = "fourier";
+    static constexpr auto source = "document R, eq. (1a); sign convention: theta_error = theta_in / i - theta_out";
+    static constexpr auto doc = R"(
+        Kinematic error as a sum of harmonics of the wave generator's rotation.
+
+        .. math:: e(\theta) = \sum_h A_h \sin(B_h \theta + \varphi_h)
+
+        with theta the input angle, A_h = amplitude at the output, B_h = order, phi_h = phase; up to 16 harmonics, none at all is
+        a perfect gear. Orders need not be whole: 2 z_c / z_f occurs. Independent of load and speed.
+
+        >>> from strainwave.kinematic_error import Fourier
+        >>> Fourier(order=[2], amplitude=[3e-4], phase=[0.0]).slope(0.0)
+        0.0006)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, order, "1", "Order B_h: periods per input revolution", 0));
+        visit(SW_FIELD(m, amplitude, "rad", "Amplitude A_h at the output", 0));
+        visit(SW_FIELD(m, phase, "rad", "Phase phi_h"));
+    }
+
+    constexpr const char* problem() const {
+        return order.count == amplitude.count && order.count == phase.count
+                   ? nullptr
+                   : "order, amplitude and phase must have equally many elements";
+    }
+
+    constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
+
+    /// The same sum, arranged for speed: one sine and cosine, then the whole orders by angle addition.
+    struct Compiled {
+        static constexpr int highest = 32;
+        Array<S, highest> sine{}, cosine{}, sine_slope{}, cosine_slope{};
+        int top = 0;
+        Sequence<S, capacity> order{}, amplitude{}, phase{};
+
+        constexpr Error<S> at(const Angle<S>& angle) const {
+            Error<S> error{};
+            if (top > 0) error = whole_orders(sincos(angle.within));
+            for (int h = 0; h < order.count; ++h) {
+                const S turned = order[h] * angle.turns;
+                const SinCos<S> p = sincos(order[h] * angle.within + phase[h] + S(2.0 * pi) * (turned - rint(turned)));
+                error.value = error.value + amplitude[h] * p.sin;
+                error.slope = error.slope + amplitude[h] * order[h] * p.cos;
+            }
+            return error;
+        }
+
+    private:
+        /// sin(n x) and cos(n x) by the Chebyshev recurrence, whose two sums are independent of each other.
+        constexpr Error<S> whole_orders(const SinCos<S>& base) const {
+            const S twice = base.cos + base.cos;
+            S s_before{0.0}, c_before{1.0}, s = base.sin, c = base.cos;
+            Error<S> even{}, odd{};
+            for (int n = 0; n < top; ++n) {
+                even.value = even.value + sine[n] * s;
+                odd.value = odd.value + cosine[n] * c;
+                even.slope = even.slope + sine_slope[n] * c;
+                odd.slope = odd.slope + cosine_slope[n] * s;
+                const S s_next = twice * s - s_before, c_next = twice * c - c_before;
+                s_before = s;
+                c_before = c;
+                s = s_next;
+                c = c_next;
+            }
+            return {even.value + odd.value, even.slope - odd.slope};
+        }
+    };
+
+    constexpr Compiled compile() const {
+        Compiled sum{};
+        for (int h = 0; h < order.count; ++h) {
+            const int n = whole(order[h], Compiled::highest);
+            if (n > 0) {
+                const SinCos<S> p = sincos(phase[h]);
+                sum.sine[n - 1] = sum.sine[n - 1] + amplitude[h] * p.cos;
+                sum.cosine[n - 1] = sum.cosine[n - 1] + amplitude[h] * p.sin;
+                sum.sine_slope[n - 1] = order[h] * sum.sine[n - 1];
+                sum.cosine_slope[n - 1] = order[h] * sum.cosine[n - 1];
+                sum.top = sum.top > n ? sum.top : n;
+            } else {
+                const int i = sum.order.count++;
+                sum.amplitude.count = sum.phase.count = sum.order.count;
+                sum.order[i] = order[h];
+                sum.amplitude[i] = amplitude[h];
+                sum.phase[i] = phase[h];
+            }
+        }
+        return sum;
+    }
+};
+
+}  // namespace strainwave::kinematic_error

@@ -1,0 +1,82 @@
+#pragma once
+/// The one place that knows where a scalar's mathematics comes from. Physics calls these names unqualified; packs and
+/// dual numbers bring their own through argument-dependent lookup. No `if` on a scalar: `select` serves every lane.
+#if !defined(__CUDACC_RTC__)
+#include <cmath>
+#endif
+
+namespace strainwave {
+
+#if defined(__CUDACC_RTC__)
+using ::cos;
+using ::exp;
+using ::fabs;
+using ::rint;
+using ::sin;
+using ::sqrt;
+#else
+using std::cos;
+using std::exp;
+using std::fabs;
+using std::rint;
+using std::sin;
+using std::sqrt;
+#endif
+
+inline constexpr double pi = 3.14159265358979323846;
+
+constexpr double select(bool mask, double a, double b) { return mask ? a : b; }
+constexpr float select(bool mask, float a, float b) { return mask ? a : b; }
+constexpr bool any(bool mask) { return mask; }
+constexpr bool all(bool mask) { return mask; }
+
+inline double abs(double x) { return fabs(x); }
+inline float abs(float x) { return fabs(x); }
+
+/// Whether a scalar carries derivatives; `detached` drops them.
+template <class S>
+inline constexpr bool differentiates = false;
+template <class S>
+constexpr S detached(const S& x) {
+    return x;
+}
+
+/// The whole number that `x` is, if it lies in [1, highest]; else 0.
+constexpr int whole(double x, int highest) {
+    for (int n = 1; n <= highest; ++n)
+        if (x == n) return n;
+    return 0;
+}
+
+template <class S>
+struct SinCos {
+    S sin, cos;
+};
+
+inline SinCos<double> sincos(double x) { return {sin(x), cos(x)}; }
+inline SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
+
+template <class S>
+constexpr S min(const S& a, const S& b) {
+    return select(b < a, b, a);
+}
+template <class S>
+constexpr S max(const S& a, const S& b) {
+    return select(a < b, b, a);
+}
+template <class S>
+constexpr S clip(const S& x, const S& low, const S& high) {
+    return min(max(x, low), high);
+}
+/// -1, 0 or 1.
+template <class S>
+constexpr S sign(const S& x) {
+    return select(x > S(0.0), S(1.0), select(x < S(0.0), S(-1.0), S(0.0)));
+}
+/// `magnitude` with the sign of `x`, odd in x.
+template <class S>
+constexpr S along(const S& x, const S& magnitude) {
+    return select(x < S(0.0), -magnitude, magnitude);
+}
+
+}  // namespace strainwave

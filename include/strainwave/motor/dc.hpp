@@ -1,0 +1,63 @@
+#pragma once
+#include <strainwave/field.hpp>
+#include <strainwave/math.hpp>
+
+namespace strainwave::motor {
+
+template <class S>
+struct DC {
+    S resistance{1.0};
+    S inductance{0.0};
+    S torque_constant{0.05};
+    S back_emf{0.05};
+    S inertia{1e-5};
+
+    static constexpr auto name = "dc";
+    static constexpr auto source = "document P, armature equation u = R i + L di/dt + K_b omega";
+    static constexpr auto doc = R"(
+        Armature-controlled DC motor.
+
+        .. math:: L \dot i = u - R i - K_b \omega, \qquad \tau = K_m i
+
+        with u the voltage, omega the input speed, R = resistance, L = inductance, K_m = torque_constant, K_b = back_emf. With
+        inductance = 0 the current follows at once, i = (u - K_b omega) / R, as document P assumes. Leaves out cogging, iron
+        losses, saturation and the warming of the winding. A torque source, as a current-controlled amplifier makes one, is
+        resistance = 1, back_emf = 0: the voltage then is the current.
+
+        >>> from strainwave.motor import DC
+        >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
+        0.05)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, resistance, "Ohm", "Armature resistance R", smallest));
+        visit(SW_FIELD(m, inductance, "H", "Armature inductance L; 0 lets the current follow at once", 0));
+        visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per current K_m", 0));
+        visit(SW_FIELD(m, back_emf, "V.s/rad", "Back-electromotive force per speed K_b", 0));
+        visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
+    }
+
+    struct State {
+        S current{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, current, "A", "Armature current, where the inductance gives it a life of its own"));
+        }
+    };
+
+    constexpr S current(const State& x, const S& voltage, const S& speed) const {
+        return select(inductance > S(0.0), x.current, (voltage - back_emf * speed) / resistance);
+    }
+    constexpr State rate(const State& x, const S& voltage, const S& speed) const {
+        const S drop = voltage - resistance * x.current - back_emf * speed;
+        return {select(inductance > S(0.0), drop / max(inductance, S(smallest)), S(0.0))};
+    }
+    /// How fast the current forgets itself [1/s].
+    constexpr State decay() const {
+        return {select(inductance > S(0.0), resistance / max(inductance, S(smallest)), S(0.0))};
+    }
+    constexpr S torque(const S& current) const { return torque_constant * current; }
+};
+
+}  // namespace strainwave::motor

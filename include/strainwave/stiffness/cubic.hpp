@@ -1,0 +1,54 @@
+#pragma once
+#include <strainwave/field.hpp>
+#include <strainwave/math.hpp>
+
+namespace strainwave::stiffness {
+
+template <class S>
+struct Cubic {
+    S a1{1e4};
+    S a3{0.0};
+
+    static constexpr auto name = "cubic";
+    static constexpr auto source = "document R, section 3, cubic polynomial; Tuttle1992";
+    static constexpr auto doc = R"(
+        A spring that stiffens smoothly under load.
+
+        .. math:: T = a_1 \delta + a_3 \delta^3
+
+        with delta the twist, a_1 = a1 > 0, a_3 = a3 >= 0. Odd and strictly increasing, so every torque has one twist. Valid
+        over the range it was fitted on; beyond, the cubic stiffens faster than any gear.
+
+        >>> from strainwave.stiffness import Cubic
+        >>> spring = Cubic(a1=1.2e4, a3=1e9)
+        >>> round(spring.twist(spring.torque(1e-3)), 12)
+        0.001)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, a1, "N.m/rad", "Stiffness at zero twist", smallest));
+        visit(SW_FIELD(m, a3, "N.m/rad3", "Hardening", 0));
+    }
+
+    constexpr S torque(const S& twist) const { return (a1 + a3 * twist * twist) * twist; }
+
+    /// The one real root of the depressed cubic, by Newton's method from above, where the convex branch converges from any start.
+    constexpr S twist(const S& torque) const {
+        const S level = abs(torque);
+        S x = level / a1;
+        for (int i = 0; i < newton_steps; ++i) x = x - (this->torque(x) - level) / tangent(x);
+        return along(torque, x);
+    }
+
+    constexpr S tangent(const S& twist) const { return a1 + S(3.0) * a3 * twist * twist; }
+    constexpr S energy(const S& twist) const {
+        const S square = twist * twist;
+        return (S(0.5) * a1 + S(0.25) * a3 * square) * square;
+    }
+
+private:
+    // Far from the root each step shrinks x by 2/3, near it digits double: enough for a start 1e10 times too far.
+    static constexpr int newton_steps = 64;
+};
+
+}  // namespace strainwave::stiffness

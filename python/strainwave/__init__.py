@@ -1,0 +1,87 @@
+"""strainwave: from measurements of a strain wave gear to a validated model of that gear, and this one model everywhere.
+
+>>> import strainwave as sw
+>>> gear = sw.load("hfuc-25-100")
+>>> gear.kinematics.ratio
+-100.0
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from strainwave._core import (
+    Gear,
+    PassivityWarning,
+    control,
+    drives,
+    friction,
+    hysteresis,
+    kinematic_error,
+    kinematics,
+    loads,
+    motor,
+    stiffness,
+)
+
+if TYPE_CHECKING:
+    from strainwave import scenario
+    from strainwave.gear_set import GearSet, catalogue, load, save
+    from strainwave.identify.fit import Fit, fit
+    from strainwave.identify.twin import Twin, twin
+    from strainwave.recording import Recording
+    from strainwave.simulation import simulate, simulate_many
+
+# Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
+_LAZY = {
+    "Fit": "identify.fit",
+    "GearSet": "gear_set",
+    "Recording": "recording",
+    "Twin": "identify.twin",
+    "catalogue": "gear_set",
+    "fit": "identify.fit",
+    "load": "gear_set",
+    "save": "gear_set",
+    "scenario": "scenario",
+    "simulate": "simulation",
+    "simulate_many": "simulation",
+    "twin": "identify.twin",
+}
+
+__all__ = [
+    "Fit",
+    "Gear",
+    "GearSet",
+    "PassivityWarning",
+    "Recording",
+    "Twin",
+    "catalogue",
+    "control",
+    "drives",
+    "fit",
+    "friction",
+    "hysteresis",
+    "kinematic_error",
+    "kinematics",
+    "load",
+    "loads",
+    "motor",
+    "save",
+    "scenario",
+    "simulate",
+    "simulate_many",
+    "stiffness",
+    "twin",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LAZY:
+        raise AttributeError(f"module 'strainwave' has no attribute {name!r}")
+    module = import_module(f"strainwave.{_LAZY[name]}")
+    return module if _LAZY[name] == name else getattr(module, name)
+
+
+def __dir__() -> list[str]:
+    return __all__

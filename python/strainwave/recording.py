@@ -1,0 +1,630 @@
+"""Recordings: measured or simulated series with units, read from and written to CSV and Parquet.
+
+Whatever comes in is checked once, here: equal lengths, finite numbers, known units, time that runs forward. Nothing is
+repaired; what is wrong is refused in one line that names the place.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+import os
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+from uuid import uuid4
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave.units import check as check_unit
+from strainwave.units import convert
+
+if TYPE_CHECKING:
+    import pyarrow
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Recording:
+    """Named series of equal length, each with its unit.
+
+    Args:
+        columns: the values of each series, in order, shape (n,), n >= 1; copied unless they are read-only already
+        units: the unit of each series, as `strainwave.units.check` knows it
+        title: what was recorded, one line
+
+    A column called `time` must strictly increase. Rows are counted from 0.
+
+    Raises:
+        ValueError: lengths differ, a value is not finite, a unit is missing or not known, or time does not increase.
+
+    >>> recording = Recording({"time": [0.0, 0.1], "speed": [0.0, 30.0]}, {"time": "s", "speed": "rpm"})
+    >>> recording
+    <Recording: 2 samples from 0 s to 0.1 s; time [s], speed [rpm]>
+    >>> recording.values("speed", "rad/s")
+    array([0.        , 3.14159265])
+    """
+
+    columns: Mapping[str, Array]
+    units: Mapping[str, str]
+    title: str
+
+    def __init__(self, columns: Mapping[str, ArrayLike], units: Mapping[str, str], title: str = "") -> None:
+        _check_names(columns, units)
+        if title and not title.isprintable():
+            raise ValueError(f"title {title!r} must be one line of text")
+        frozen = {name: _frozen(name, values) for name, values in columns.items()}
+        _check_lengths(frozen)
+        known = {name: _known(name, units[name]) for name in columns}
+        if fault := _first_fault(frozen, known):
+            raise ValueError(f'column "{fault.column}" row {fault.row}: {fault.reason}')
+        object.__setattr__(self, "columns", MappingProxyType(frozen))
+        object.__setattr__(self, "units", MappingProxyType(known))
+        object.__setattr__(self, "title", title)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns, in order."""
+        return tuple(self.columns)
+
+    @property
+    def time(self) -> Array:
+        """The column `time` [s], shape (n,)."""
+        return self.values("time", "s")
+
+    def __getitem__(self, name: str) -> Array:
+        """Values of a column in its own unit, shape (n,), read-only."""
+        if name not in self.columns:
+            raise ValueError(f'no column "{name}"; there are {", ".join(self.names)}')
+        return self.columns[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.columns
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __eq__(self, other: object) -> bool:
+        """Same title, columns in the same order, same units, and every value the same."""
+        if not isinstance(other, Recording):
+            return NotImplemented
+        if (self.title, self.names, self.units) != (other.title, other.names, other.units):
+            return False
+        return all(np.array_equal(self[name], other[name]) for name in self.names)
+
+    def __reduce__(self) -> tuple[type[Recording], tuple[dict[str, Array], dict[str, str], str]]:
+        return Recording, (dict(self.columns), dict(self.units), self.title)
+
+    def __repr__(self) -> str:
+        span = f" from {self.time[0]:g} s to {self.time[-1]:g} s" if "time" in self else ""
+        series = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        title = f' "{self.title}"' if self.title else ""
+        return f"<Recording{title}: {len(self)} samples{span}; {series}>"
+
+    def unit(self, name: str) -> str:
+        """Unit of a column."""
+        self[name]  # refuses a name that is not there
+        return self.units[name]
+
+    def values(self, name: str, unit: str) -> Array:
+        """Values of a column in another unit, shape (n,); `ValueError` where the units do not agree."""
+        return convert(self[name], self.unit(name), unit)
+
+    def select(self, names: Sequence[str]) -> Recording:
+        """The named columns only, in the order given."""
+        return Recording({name: self[name] for name in names}, {name: self.unit(name) for name in names}, self.title)
+
+    def between(self, start: float, stop: float) -> Recording:
+        """The samples with start <= time <= stop [s]; `ValueError` where there is none."""
+        time = self.time
+        first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
+        if not first < last:
+            ends = f"time runs from {time[0]:g} s to {time[-1]:g} s"
+            raise ValueError(f"no sample between {start:g} s and {stop:g} s; {ends}")
+        return Recording({name: self[name][first:last] for name in self.names}, self.units, self.title)
+
+    def with_column(self, name: str, values: ArrayLike, unit: str) -> Recording:
+        """This recording with a column added, or replaced where one of that name is there."""
+        return Recording({**self.columns, name: values}, {**self.units, name: unit}, self.title)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write a CSV file, header `name [unit]`, that `from_csv` reads back bit for bit.
+
+        >>> import tempfile
+        >>> recording = Recording({"torque": [0.1, 0.2]}, {"torque": "N.m"})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     recording.to_csv(f"{folder}/run.csv")
+        ...     Recording.from_csv(f"{folder}/run.csv") == recording
+        True
+        """
+        import pyarrow
+        from pyarrow.csv import write_csv
+
+        table = pyarrow.table({f"{name} [{unit}]": self[name] for name, unit in self.units.items()})
+        with _replacing(path) as temporary, temporary.open("wb") as file:
+            if self.title:
+                file.write(f"{_TITLE}{self.title}\n".encode())
+            write_csv(table, file)
+
+    def to_parquet(self, path: str | Path) -> None:
+        """Write a Parquet file: zstd, byte-stream-split, checksums, the unit in the metadata of each field."""
+        import pyarrow
+        from pyarrow.parquet import write_table
+
+        fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": self.units[name]}) for name in self.names]
+        schema = pyarrow.schema(fields, metadata={"title": self.title})
+        table = pyarrow.table(dict(self.columns), schema=schema)
+        with _replacing(path) as temporary:
+            write_table(
+                table,
+                temporary,
+                compression="zstd",
+                use_dictionary=False,
+                use_byte_stream_split=True,
+                write_page_checksum=True,
+            )
+
+    @staticmethod
+    def read(
+        path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+    ) -> Recording:
+        """Read a file by its suffix: .csv, .txt, .tsv (see `from_csv`) or .parquet (see `from_parquet`)."""
+        suffix = Path(path).suffix.lower()
+        if suffix in (".csv", ".txt", ".tsv"):
+            return Recording.from_csv(path, columns, units)
+        if suffix == ".parquet":
+            return Recording.from_parquet(path, columns, units)
+        raise ValueError(f'{path}: suffix "{suffix}" is not known; use .csv, .txt, .tsv or .parquet')
+
+    @staticmethod
+    def from_csv(
+        path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+    ) -> Recording:
+        """Read a text table in UTF-8 whose header names each column and its unit: `speed [rad/s]` or `speed (rpm)`.
+
+        Cells are separated by tab, semicolon or comma, whichever of them the header contains first in this order; with
+        the former two the decimal mark may be a comma. Blank lines and lines that start with `#` are skipped.
+
+        Args:
+            path: the file
+            columns: for each name wanted, the name in the file's header. Only these columns are read and checked;
+                without it all are, and must be numbers.
+            units: unit of each column, by the name wanted, where the header has none
+
+        Raises:
+            ValueError: the file cannot be read, or a row, a number, a unit or the time in it is wrong, with its line.
+
+        >>> import pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = pathlib.Path(folder, "table.csv")
+        ...     _ = path.write_text("Time (ms); Motor Speed\\n0,0; 1,5\\n0,5; 2,5\\n")
+        ...     Recording.from_csv(path, columns={"time": "Time", "speed": "Motor Speed"}, units={"speed": "rpm"})
+        <Recording: 2 samples from 0 s to 0.0005 s; time [ms], speed [rpm]>
+        """
+        table = _open_csv(path)
+        sources = _sources(path, table.labels, columns, units)
+        return _checked(path, sources, table.numbers(sources), table.title, table.place)
+
+    @staticmethod
+    def from_parquet(
+        path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+    ) -> Recording:
+        """Read a Parquet file; units come from its field metadata, its column names (as in `from_csv`) or `units`.
+
+        Args, Raises: as `from_csv`.
+        """
+        import pyarrow
+        from pyarrow.parquet import ParquetFile
+
+        try:
+            with ParquetFile(path, page_checksum_verification=True) as file:
+                schema = file.schema_arrow
+                sources = _sources(path, [_parquet_label(field) for field in schema], columns, units)
+                table = file.read(columns=[schema.field(source.position).name for source in sources])
+                title = (schema.metadata or {}).get(b"title", b"").decode()
+        except (OSError, pyarrow.ArrowException, UnicodeDecodeError) as error:
+            raise ValueError(_unreadable(path, error)) from None
+        arrays = {source.name: _parquet_numbers(path, table, schema.field(source.position)) for source in sources}
+        return _checked(path, sources, arrays, title, "row {}".format)
+
+    def plot(self, names: Sequence[str] | None = None, against: str = "time") -> Figure:
+        """Draw columns over another one: one subplot per unit, below each other on one x axis.
+
+        Args:
+            names: the columns to draw; without it all but `against`
+            against: the column on the x axis
+
+        Returns:
+            A matplotlib figure, to be saved with `.savefig`. Of more than 20 000 samples, the extremes of short
+            stretches are drawn, so that every peak stays visible.
+        """
+        from matplotlib.figure import Figure
+
+        groups: dict[str, list[str]] = {}
+        for name in [name for name in self.names if name != against] if names is None else names:
+            groups.setdefault(self.unit(name), []).append(name)
+        if not groups:
+            raise ValueError(f'nothing to draw against "{against}"; there are {", ".join(self.names)}')
+        figure = Figure(figsize=(8.0, 1.0 + 2.0 * len(groups)), layout="constrained")
+        figure.suptitle(self.title)
+        axes = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
+        for axis, (unit, group) in zip(axes, groups.items(), strict=True):
+            for name in group:
+                axis.plot(*_envelope(self[against], self[name]), linewidth=1.0, label=name)
+            axis.set_ylabel(f"{group[0]} [{unit}]" if len(group) == 1 else f"[{unit}]")
+            axis.legend(loc="upper right")
+        axes[-1].set_xlabel(f"{against} [{self.unit(against)}]")
+        return figure
+
+
+class _Fault(NamedTuple):
+    """What is wrong with a value, and where."""
+
+    column: str
+    row: int
+    reason: str
+
+
+def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> None:
+    if not columns:
+        raise ValueError("a recording needs at least one column")
+    for name in columns:
+        if not isinstance(name, str):
+            raise TypeError(f"a column is named by a text, not {name!r}")
+        if not name or name != name.strip() or not name.isprintable():
+            raise ValueError(f"column name {name!r} must be printable text without spaces around it")
+        if name not in units:
+            raise ValueError(f'column "{name}" has no unit; pass units={{"{name}": "N.m"}}, or "1" for a plain number')
+    if extra := units.keys() - columns.keys():
+        raise ValueError(f'units names "{min(extra)}", which is not a column; there are {", ".join(columns)}')
+
+
+def _frozen(name: str, values: ArrayLike) -> Array:
+    """The values as read-only float64, copied only where someone else could still change them."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise ValueError(f'column "{name}" must be one series of numbers') from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f'column "{name}" must hold numbers, not {array.dtype}')
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f'column "{name}" must be one series of at least one sample; its shape is {array.shape}')
+    if np.ma.is_masked(values):
+        raise ValueError(f'column "{name}" has masked values; every sample must be a number')
+    if array.dtype == np.float64 and array.flags.c_contiguous and _is_frozen(array):
+        return array
+    copy = np.array(array, dtype=np.float64)
+    copy.setflags(write=False)
+    return copy
+
+
+def _is_frozen(array: NDArray[np.generic]) -> bool:
+    owner = array.base
+    return not array.flags.writeable and (owner is None or (isinstance(owner, np.ndarray) and _is_frozen(owner)))
+
+
+def _known(name: str, unit: str) -> str:
+    """Standard spelling of a column's unit."""
+    try:
+        if name == "time":
+            convert(1.0, unit, "s")
+        return check_unit(unit)
+    except ValueError as error:
+        raise ValueError(f'column "{name}": {error}') from None
+
+
+def _check_lengths(columns: Mapping[str, Array]) -> None:
+    (first, wanted), *others = ((name, len(values)) for name, values in columns.items())
+    for name, length in others:
+        if length != wanted:
+            raise ValueError(f'column "{name}" has {length} samples, column "{first}" has {wanted}')
+
+
+def _first_fault(columns: Mapping[str, Array], units: Mapping[str, str]) -> _Fault | None:
+    """The first value that is not finite, else the first time that does not increase."""
+    for name, values in columns.items():
+        finite = np.isfinite(values)
+        if not finite.all():
+            row = int(np.argmin(finite))
+            return _Fault(name, row, f"{values[row]} is not finite")
+    time = columns.get("time", np.zeros(1))
+    forward = time[1:] > time[:-1]
+    if not forward.all():
+        row = int(np.argmin(forward)) + 1
+        now, before = (f"{time[i]} {units['time']}" for i in (row, row - 1))
+        return _Fault("time", row, f"{now} does not lie after {before}; time must increase")
+    return None
+
+
+def _envelope(x: Array, y: Array, stretches: int = 5_000) -> tuple[Array, Array]:
+    """The curve itself, or the extremes of x and y in each of many stretches of it, in order."""
+    if len(x) <= 4 * stretches:
+        return x, y
+    length = -(-len(x) // stretches)
+    whole = len(x) // length * length
+    starts = np.arange(0, whole, length)
+    blocks = [values[:whole].reshape(-1, length) for values in (x, y)]
+    extremes = [starts + pick(block, axis=1) for block in blocks for pick in (np.argmin, np.argmax)]
+    kept = np.unique(np.concatenate([*extremes, np.arange(whole, len(x))]))
+    return x[kept], y[kept]
+
+
+@contextmanager
+def _replacing(path: str | Path) -> Iterator[Path]:
+    """A temporary file beside `path` that takes its place once it is complete."""
+    target = Path(path)
+    temporary = target.with_name(f".{target.name}.{uuid4().hex}")
+    try:
+        yield temporary
+        os.replace(temporary, target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+class _Label(NamedTuple):
+    """What a file calls a column: its text, and what this says of name and unit."""
+
+    text: str
+    name: str
+    unit: str | None
+
+
+class _Source(NamedTuple):
+    """A column to read: where it stands, its name in the file and in the recording, and its unit."""
+
+    position: int
+    label: str
+    name: str
+    unit: str
+
+
+def _label(text: str) -> _Label:
+    """Split `speed [rad/s]` or `speed (rad/s)`. Round brackets around no unit are a part of the name."""
+    if square := re.fullmatch(r"(.*\S)\s*\[([^\[\]]*)\]", text):
+        return _Label(text, square[1], square[2])
+    brackets = re.fullmatch(r"(.*\S)\s*\(((?:[^()]|\([^()]*\))*)\)", text)
+    if brackets and _is_unit(brackets[2]):
+        return _Label(text, brackets[1], brackets[2])
+    return _Label(text, text, None)
+
+
+def _is_unit(text: str) -> bool:
+    try:
+        check_unit(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _sources(
+    path: str | Path, labels: Sequence[_Label], columns: Mapping[str, str] | None, units: Mapping[str, str] | None
+) -> list[_Source]:
+    """The columns to read, each found in the file and with its unit."""
+    if columns is None:
+        _check_labels(path, labels)
+        chosen = {label.name: index for index, label in enumerate(labels)}
+    else:
+        chosen = {name: _find(path, labels, wanted) for name, wanted in columns.items()}
+    if not chosen:
+        raise ValueError(f"{path}: no column to read")
+    if extra := (units or {}).keys() - chosen.keys():
+        raise ValueError(f'{path}: units names "{min(extra)}", which is not read; there are {", ".join(chosen)}')
+    return [
+        _Source(index, labels[index].name, name, _unit(path, labels[index], name, (units or {}).get(name)))
+        for name, index in chosen.items()
+    ]
+
+
+def _check_labels(path: str | Path, labels: Sequence[_Label]) -> None:
+    for number, (name, count) in enumerate(Counter(label.name for label in labels).items(), start=1):
+        if not name:
+            raise ValueError(f"{path} column {number} has no name; name it, or pick columns with columns={{...}}")
+        if count > 1:
+            raise ValueError(f'{path} has {count} columns named "{name}"; names must differ')
+
+
+def _find(path: str | Path, labels: Sequence[_Label], wanted: str) -> int:
+    found = [i for i, label in enumerate(labels) if label.text == wanted]
+    found = found or [i for i, label in enumerate(labels) if label.name == wanted]
+    if len(found) > 1:
+        raise ValueError(f'{path} has {len(found)} columns named "{wanted}"; names must differ')
+    if not found:
+        raise ValueError(f'{path} has no column "{wanted}"; it has {", ".join(label.name for label in labels)}')
+    return found[0]
+
+
+def _unit(path: str | Path, label: _Label, name: str, given: str | None) -> str:
+    """The unit the file states, or the one given where the file states none that is known."""
+    if given is not None:
+        if label.unit is not None and _is_unit(label.unit) and check_unit(label.unit) != check_unit(given):
+            raise ValueError(f'{path} column "{label.name}" is in "{label.unit}", but units says "{given}"')
+        return given
+    if label.unit is None:
+        hint = f'write the header as {label.name} [N.m] or pass units={{"{name}": "N.m"}}'
+        raise ValueError(f'{path} column "{label.name}" has no unit; {hint}')
+    try:
+        return check_unit(label.unit)
+    except ValueError as error:
+        raise ValueError(f'{path} column "{label.name}": {error}') from None
+
+
+def _checked(
+    path: str | Path, sources: Sequence[_Source], arrays: Mapping[str, Array], title: str, place: Callable[[int], str]
+) -> Recording:
+    """The recording, or what is wrong with it in terms of the file; `place` tells where a row stands there."""
+    units = {source.name: source.unit for source in sources}
+    if fault := _first_fault(arrays, units):
+        label = next(source.label for source in sources if source.name == fault.column)
+        raise ValueError(f'{path} {place(fault.row)}, column "{label}": {fault.reason}')
+    try:
+        return Recording(arrays, units, title)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _unreadable(path: str | Path, error: Exception) -> str:
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error).partition("\n")[0]
+    return f"{path} cannot be read: {reason}"
+
+
+def _parquet_label(field: pyarrow.Field) -> _Label:
+    unit = (field.metadata or {}).get(b"unit")
+    return _label(field.name) if unit is None else _Label(field.name, field.name, unit.decode())
+
+
+def _parquet_numbers(path: str | Path, table: pyarrow.Table, field: pyarrow.Field) -> Array:
+    import pyarrow
+
+    if not (pyarrow.types.is_floating(field.type) or pyarrow.types.is_integer(field.type)):
+        raise ValueError(f'{path} column "{field.name}" holds {field.type}, not numbers')
+    try:
+        values: Array = table.column(field.name).cast(pyarrow.float64()).to_numpy()
+    except pyarrow.ArrowInvalid as error:
+        raise ValueError(f'{path} column "{field.name}": {error}') from None
+    return values
+
+
+_TITLE = "# title: "
+
+# Sign, digits, one decimal mark (group 1), exponent.
+_NUMBER = re.compile(r"[+-]?(?=[.,]?\d)\d*([.,]?)\d*(?:[eE][+-]?\d+)?", re.ASCII)
+
+
+def _open_csv(path: str | Path) -> _CsvTable:
+    """The header of a text table, and its rows as they stand."""
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise ValueError(_unreadable(path, error)) from None
+    data = _checked_text(path, data).removeprefix(codecs.BOM_UTF8)
+    title = re.match(_TITLE.encode() + rb"([^\r\n]*)", data)
+    data = _blank_comments(data)
+    header = re.match(rb"[\r\n]*([^\r\n]+)", data)
+    if not header:
+        raise ValueError(f"{path} is empty")
+    line = 1 + data.count(b"\n", 0, header.start(1))
+    delimiter, labels = _header(header[1].decode())
+    if all(_NUMBER.fullmatch(label.text) for label in labels):
+        raise ValueError(f"{path} line {line} holds numbers; it must name each column and its unit, as in torque [N.m]")
+    body = memoryview(data)[header.end() :]
+    if not re.search(rb"[^\r\n]", body):
+        raise ValueError(f"{path} has a header but no rows")
+    return _CsvTable(path, title[1].decode() if title else "", delimiter, labels, body, line)
+
+
+def _checked_text(path: str | Path, data: bytes) -> bytes:
+    try:
+        if not data.isascii():
+            data.decode()
+    except UnicodeDecodeError as error:
+        line = 1 + data.count(b"\n", 0, error.start)
+        raise ValueError(f"{path} line {line} is not UTF-8: byte {error.start} is 0x{data[error.start]:02x}") from None
+    return data
+
+
+def _blank_comments(data: bytes) -> bytes:
+    """Empty the lines that hold a comment or spaces; line numbers stay."""
+    if data[:1] in (b"#", b" ") or b"\n#" in data or b"\n " in data:
+        return re.sub(rb"(?m)^(?:#.*|[ \r]+)$", b"", data)
+    return data
+
+
+def _header(text: str) -> tuple[str, list[_Label]]:
+    """Delimiter and labels: a tab outside quotes delimits before a semicolon, a semicolon before a comma."""
+    bare = re.sub(r'"[^"]*"', "", text.strip())
+    delimiter = next((mark for mark in "\t;" if mark in bare), ",")
+    cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=True))
+    return delimiter, [_label(cell.strip()) for cell in cells]
+
+
+@dataclass(frozen=True)
+class _CsvTable:
+    """A text table whose rows are still text; `line` is the line its header stands in."""
+
+    path: str | Path
+    title: str
+    delimiter: str
+    labels: Sequence[_Label]
+    body: memoryview
+    line: int
+
+    def numbers(self, sources: Sequence[_Source]) -> dict[str, Array]:
+        """The columns wanted; a cell that is no number is refused with its place."""
+        import pyarrow
+
+        for mark in "." if self.delimiter == "," else ".,":
+            try:
+                return self._parse(sources, mark)
+            except pyarrow.ArrowInvalid as error:
+                reason = f": {error}"
+        raise ValueError(f"{self.path}{self._fault(sources) or reason}")
+
+    def place(self, row: int) -> str:
+        """Where a row of numbers stands in the file."""
+        line, _ = next(islice(self._rows(), row, None))
+        return f"line {line}"
+
+    def _parse(self, sources: Sequence[_Source], decimal_mark: str) -> dict[str, Array]:
+        import pyarrow
+        from pyarrow import csv as arrow_csv
+
+        keys = {source.name: str(source.position) for source in sources}  # labels may occur twice, positions cannot
+        table = arrow_csv.read_csv(
+            pyarrow.BufferReader(pyarrow.py_buffer(self.body)),
+            read_options=arrow_csv.ReadOptions(column_names=[str(i) for i in range(len(self.labels))]),
+            parse_options=arrow_csv.ParseOptions(delimiter=self.delimiter),
+            convert_options=arrow_csv.ConvertOptions(
+                include_columns=sorted(set(keys.values())),
+                column_types=dict.fromkeys(keys.values(), pyarrow.float64()),
+                null_values=[],
+                decimal_point=decimal_mark,
+            ),
+        )
+        return {name: table.column(key).to_numpy() for name, key in keys.items()}
+
+    def _fault(self, sources: Sequence[_Source]) -> str | None:
+        """The first row or cell that cannot be read."""
+        marks = "." if self.delimiter == "," else ".,"
+        for line, cells in self._rows():
+            if len(cells) != len(self.labels):
+                return f" line {line}: the number of cells is {len(cells)}; the header has {len(self.labels)}"
+            for source in sources:
+                text = cells[source.position].strip()
+                number = _NUMBER.fullmatch(text)
+                if not number or number[1] not in marks:
+                    return f' line {line}, column "{source.label}": {_not_a_number(text, marks)}'
+                marks = number[1] or marks
+        return None
+
+    def _rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Line and cells of each row, one at a time: slow, but it knows where it is."""
+        lines = io.TextIOWrapper(io.BytesIO(self.body), encoding="utf-8")
+        for line, text in enumerate(lines, start=self.line):
+            if text != "\n":
+                yield line, self._cells(line, text.removesuffix("\n"))
+
+    def _cells(self, line: int, text: str) -> list[str]:
+        if '"' not in text:
+            return text.split(self.delimiter)
+        try:
+            return next(csv.reader([text], delimiter=self.delimiter, strict=True))
+        except csv.Error as error:
+            raise ValueError(f"{self.path} line {line}: {error}") from None
+
+
+def _not_a_number(text: str, marks: str) -> str:
+    if not text:
+        return "the cell is empty; every cell must hold a number"
+    if _NUMBER.fullmatch(text) and len(marks) == 1:
+        return f'"{text}" is not a number with the decimal mark "{marks}"'
+    return f'"{text}" is not a number'

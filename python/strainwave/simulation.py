@@ -1,0 +1,236 @@
+"""Command in, recording out: a drive run through time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import _core
+from strainwave.drives import PositionDrive
+from strainwave.recording import Recording
+from strainwave.scenario import Scenario
+
+Array = NDArray[np.float64]
+CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
+
+
+@dataclass(frozen=True)
+class Course:
+    """A stretch of time cut into steps: where they end, and which ends are samples of the recording."""
+
+    instants: Array
+    samples: NDArray[np.uint8]
+
+    @classmethod
+    def through(cls, duration: float, dt: float, sample: float, breaks: Array) -> Course:
+        """Steps of at most `dt` that end at every sample and at every break of the inputs.
+
+        Where neither asks for more, steps are exactly `dt`; the last may be shorter.
+        """
+        _positive("dt", dt)
+        _positive("sample", sample)
+        tolerance = 1e-9 * min(dt, sample)
+        sampled = _grid(sample, duration, tolerance)
+        instants = np.concatenate((_grid(dt, duration, tolerance), sampled, breaks))
+        order = np.argsort(instants, kind="stable")
+        instants = instants[order]
+        is_sample = np.isin(order, np.arange(len(order) - len(breaks) - len(sampled), len(order) - len(breaks)))
+        first = np.concatenate(([True], np.diff(instants) > tolerance))
+        merged = np.logical_or.reduceat(is_sample, np.flatnonzero(first))
+        return cls(instants[first], merged.astype(np.uint8))
+
+    def chunks(self) -> Iterator[Course]:
+        """The same course in pieces that follow each other."""
+        for start in range(0, len(self.instants) - 1, CHUNK):
+            yield Course(self.instants[start : start + CHUNK + 1], self.samples[start : start + CHUNK + 1])
+
+    def inputs(self, command: Scenario, load_torque: Scenario | None) -> Array:
+        """Command, its rate and the load torque at the start, middle and end of each step, shape (n, 3, 3)."""
+        inputs = np.zeros((len(self.instants) - 1, 3, 3))
+        start, end = self.instants[:-1], self.instants[1:]
+        middle = 0.5 * (start + end)
+        for signal, column in ((command, 0), (load_torque, 2)):
+            if signal is not None:
+                inputs[:, 0, column] = signal.value(start)
+                inputs[:, 1, column] = signal.value(middle)
+                inputs[:, 2, column] = signal.value_before(end)
+        inputs[:, 0, 1] = command.rate(start)
+        inputs[:, 1, 1] = command.rate(middle)
+        inputs[:, 2, 1] = command.rate_before(end)
+        return inputs
+
+
+def simulate(
+    drive: PositionDrive,
+    command: Scenario,
+    dt: float = 2e-4,
+    *,
+    sample: float | None = None,
+    load_torque: Scenario | None = None,
+    start: _core.State | None = None,
+    progress: bool = False,
+) -> Recording:
+    """Runs a drive through a command and records what happens.
+
+    A step is a fourth-order exponential Runge-Kutta step; steps end at every jump of the inputs, and set-valued friction is
+    stepped to its events, so that sticking is exact.
+
+    Args:
+        drive: what is commanded
+        command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
+        dt: largest step [s]
+        sample: distance of samples in the recording [s]; `dt` if not given
+        load_torque: torque that holds the output back [N.m], besides the load's own
+        start: where the drive starts; at rest, untwisted, if not given
+        progress: show a progress bar
+
+    Returns:
+        Recording with columns time [s], command, input_angle [rad], input_speed [rad/s], output_angle [rad], output_speed
+        [rad/s], twist [rad], kinematic_error [rad], transmission_error [rad], torque [N.m], current [A], voltage [V],
+        friction_input [N.m], friction_output [N.m], load_torque [N.m], each of shape (n,); the first sample is at t = 0.
+
+    Raises:
+        ValueError: `dt` or `sample` is not positive, or `load_torque` lasts another time than `command`
+        FloatingPointError: the trajectory left the finite numbers; says when
+
+    >>> import strainwave as sw
+    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
+    >>> run.unit("output_angle"), len(run)
+    ('rad', 501)
+    """
+    course = _course(command, dt, sample, load_torque)
+    state = drive.rest() if start is None else start
+    pieces = [_core.now(drive, state, _first_inputs(command, load_torque))]
+    with _progress(progress, len(course.instants) - 1) as shown:
+        for number, chunk in enumerate(course.chunks()):
+            report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
+            outputs, state = _core.simulate(
+                drive, state, chunk.instants, chunk.inputs(command, load_torque), chunk.samples[1:], report
+            )
+            pieces.append(outputs)
+    return _recording(drive, course, np.concatenate(pieces, axis=1), dt)
+
+
+def simulate_many(
+    drives: Sequence[PositionDrive],
+    command: Scenario,
+    dt: float = 2e-4,
+    *,
+    sample: float | None = None,
+    load_torque: Scenario | None = None,
+    progress: bool = False,
+) -> list[Recording]:
+    """Runs drives that differ in numbers alone through one command, several to a vector register.
+
+    The same trajectories as `simulate` from rest, to rounding.
+
+    Args:
+        drives: drives that choose the same models with equally many elements
+        command, dt, sample, load_torque, progress: as for `simulate`
+
+    Returns:
+        one Recording a drive, in their order
+
+    Raises:
+        ValueError: as `simulate`, or drives that choose different models
+        FloatingPointError: as `simulate`; says which drive
+
+    >>> import strainwave as sw
+    >>> drives = [sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=j)) for j in (0.01, 0.02)]
+    >>> [len(run) for run in sw.simulate_many(drives, sw.scenario.step(amplitude=5.0, duration=0.1))]
+    [501, 501]
+    """
+    if not drives:
+        return []
+    course = _course(command, dt, sample, load_torque)
+    first = np.stack([_core.now(drive, drive.rest(), _first_inputs(command, load_torque)) for drive in drives])
+    with _progress(progress, len(drives) * (len(course.instants) - 1)) as shown:
+        outputs = _core.simulate_packed(
+            list(drives), course.instants, course.inputs(command, load_torque), course.samples[1:], shown
+        )
+    whole = np.concatenate((first, outputs), axis=2)
+    return [_recording(drive, course, member, dt) for drive, member in zip(drives, whole, strict=True)]
+
+
+def derivatives(
+    drive: PositionDrive,
+    command: Scenario,
+    numbers: Sequence[int],
+    dt: float,
+    sample: float,
+    load_torque: Scenario | None = None,
+) -> tuple[Recording, Array]:
+    """A run from rest and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
+
+    Args:
+        numbers: places in `_core.parameters(drive)`
+
+    Returns:
+        the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
+    """
+    course = _course(command, dt, sample, load_torque)
+    outputs, slopes = _core.differentiate(
+        drive, course.instants, course.inputs(command, load_torque), course.samples[1:], list(numbers)
+    )
+    first, first_slopes = _core.now_derivatives(drive, _first_inputs(command, load_torque), list(numbers))
+    run = _recording(drive, course, np.concatenate((first, outputs), axis=1), dt)
+    return run, np.concatenate((first_slopes, slopes), axis=2)
+
+
+def _course(command: Scenario, dt: float, sample: float | None, load_torque: Scenario | None) -> Course:
+    breaks = command.breaks
+    if load_torque is not None:
+        if load_torque.duration != command.duration:
+            raise ValueError(
+                f"load_torque lasts {load_torque.duration} s, command {command.duration} s; both must last equally long"
+            )
+        breaks = np.concatenate((breaks, load_torque.breaks))
+    return Course.through(command.duration, dt, dt if sample is None else sample, breaks)
+
+
+def _positive(name: str, value: float) -> None:
+    if not 0.0 < value < np.inf:
+        raise ValueError(f"{name} = {value} s must lie in (0, inf)")
+
+
+def _grid(step: float, duration: float, tolerance: float) -> Array:
+    """0, step, 2 step … up to duration, which is always the last."""
+    grid = step * np.arange(int(duration / step) + 2)
+    return np.append(grid[grid < duration - tolerance], duration)
+
+
+def _first_inputs(command: Scenario, load_torque: Scenario | None) -> Array:
+    load = 0.0 if load_torque is None else float(load_torque.value(0.0))
+    return np.array([float(command.value(0.0)), float(command.rate(0.0)), load])
+
+
+def _recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -> Recording:
+    time = course.instants[course.samples.astype(bool)]
+    finite = np.isfinite(outputs).all(axis=0)
+    if not finite.all():
+        where = int(np.argmin(finite))
+        names = [name for (name, _, _), ok in zip(_core.outputs, np.isfinite(outputs[:, where]), strict=True) if not ok]
+        raise FloatingPointError(
+            f"the simulation left the finite numbers at t = {time[where]:.6g} s ({', '.join(names)}); "
+            f"take a smaller dt (now {dt:g} s) or check the parameters"
+        )
+    units = {name: unit for name, unit, _ in _core.outputs} | {"time": "s", "command": drive.control.command_unit}
+    columns = {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
+    return Recording(columns, units, title="simulation")
+
+
+@contextmanager
+def _progress(wanted: bool, total: int) -> Iterator[Callable[[int], None] | None]:
+    if not wanted:
+        yield None
+        return
+    from rich.progress import Progress
+
+    with Progress(transient=True) as bar:
+        task = bar.add_task("simulating", total=total)
+        yield lambda done: bar.update(task, completed=done)

@@ -1,0 +1,50 @@
+#include "verbs.hpp"
+
+namespace nb = nanobind;
+using namespace strainwave;
+
+namespace strainwave::host {
+
+void bind_drives(nb::module_& core);
+
+namespace {
+
+/// The law's name in C++ is its name in Python: LuGre of `strainwave::friction::LuGre<double>`.
+template <class M>
+const char* python_name() {
+    const std::string text = __PRETTY_FUNCTION__;
+    const std::size_t end = text.find("<double>"), start = text.rfind("::", end) + 2;
+    return kept(text.substr(start, end - start));
+}
+
+/// A family of models as a module of the package, and its list by file name.
+template <template <class> class... Law>
+void bind_family(nb::module_& core, const char* name, const char* doc, List<Law...>) {
+    nb::module_ family = nb::borrow<nb::module_>(PyImport_AddModule((std::string("strainwave.") + name).c_str()));
+    family.attr("__doc__") = doc;
+    nb::dict models;
+    (bind_model<Law<double>>(family, python_name<Law<double>>()), ...);
+    ((models[Law<double>::name] = nb::type<Law<double>>()), ...);
+    core.attr(name) = family;
+    core.attr("families")[name] = models;
+}
+
+}  // namespace
+}  // namespace strainwave::host
+
+NB_MODULE(_core, core) {
+    core.attr("__doc__") = "The physics, compiled.";
+    core.attr("families") = nb::dict();
+    core.attr("PassivityWarning") = nb::steal(PyErr_NewExceptionWithDoc(
+        "strainwave.PassivityWarning", "A set of parameters lets its model create energy.", PyExc_UserWarning, nullptr));
+    using namespace strainwave::host;
+    bind_family(core, "kinematics", "Rigid motion: the signed ratio from the teeth and the fixed member.", kinematics::Models{});
+    bind_family(core, "kinematic_error", "Pure kinematic error at the output, over the input angle.", kinematic_error::Models{});
+    bind_family(core, "friction", "Friction torque of one side, over its speed.", friction::Models{});
+    bind_family(core, "stiffness", "Elastic torque over the twist.", stiffness::Models{});
+    bind_family(core, "hysteresis", "Torque that depends on the history of the twist.", hysteresis::Models{});
+    bind_family(core, "motor", "Motors on the input shaft.", motor::Models{});
+    bind_family(core, "control", "What turns the command into the motor's voltage.", control::Models{});
+    bind_family(core, "loads", "What the output shaft carries.", load::Models{});
+    bind_drives(core);
+}

@@ -1,0 +1,307 @@
+#pragma once
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "describe.hpp"
+
+/// One function binds every described struct: keyword constructor, properties, checks, repr, equality, help; and the verbs it has.
+namespace strainwave::host {
+
+namespace nb = nanobind;
+/// How Python's type checkers see an array.
+#define SW_ARRAY "numpy.typing.NDArray[numpy.float64]"
+using Values = nb::ndarray<nb::numpy, double, nb::c_contig>;
+
+inline std::string shortest(double x) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, x).ptr};
+}
+
+inline std::string with_unit(double x, const char* unit) {
+    return shortest(x) + (std::strcmp(unit, "1") == 0 ? "" : std::string(" ") + unit);
+}
+
+/// "[0, inf)": what a field may be.
+inline std::string limits(const Field& field) {
+    const bool open_low = field.min <= -unbounded, open_high = field.max >= unbounded, positive = field.min == smallest;
+    return (open_low ? "(-inf" : positive ? "(0" : "[" + shortest(field.min)) + ", " +
+           (open_high ? "inf)" : shortest(field.max) + "]");
+}
+
+inline std::string text_of(nb::handle value) { return nb::cast<std::string>(nb::repr(value)); }
+
+/// Reads a member from Python, or says what is wrong with it.
+struct Reader {
+    std::string owner;
+
+    [[noreturn]] void refuse_type(const Field& field, const std::string& wanted, nb::handle value) const {
+        throw nb::type_error((owner + "." + field.name + " must be " + wanted + ", not " + text_of(value)).c_str());
+    }
+    double number(nb::handle value, const Field& field, const std::string& name) const {
+        double x = 0.0;
+        if (nb::isinstance<nb::bool_>(value) || nb::isinstance<nb::str>(value) || !nb::try_cast<double>(value, x))
+            refuse_type(field, "a number", value);
+        if (!(x >= field.min && x <= field.max) || std::isinf(x))
+            throw nb::value_error((owner + "." + name + " = " + with_unit(x, field.unit) + " must lie in " + limits(field)).c_str());
+        return x;
+    }
+
+    template <class T>
+    T read(nb::handle value, const Field& field) const {
+        if constexpr (is_choice<T>) {
+            return choose<T>(value, field);
+        } else if constexpr (is_slots<T>) {
+            return {sequence<decltype(T{}.slot)>(value, field)};
+        } else if constexpr (Described<T>) {
+            T part{};
+            if (!nb::try_cast<T>(value, part)) refuse_type(field, "a " + nb::cast<std::string>(nb::type<T>().attr("__name__")), value);
+            return part;
+        } else if constexpr (is_sequence<T> || is_array<T>) {
+            return sequence<T>(value, field);
+        } else if constexpr (std::is_enum_v<T>) {
+            std::string names;
+            for (int i = 0; const char* name : choices(T{}).item) {
+                if (nb::isinstance<nb::str>(value) && nb::cast<std::string>(value) == name) return T(i);
+                names += std::string(i++ ? " or " : "") + "'" + name + "'";
+            }
+            refuse_type(field, names, value);
+        } else if constexpr (std::is_same_v<T, int>) {
+            const double x = number(value, field, field.name);
+            if (x != std::floor(x)) refuse_type(field, "a whole number", value);
+            return int(x);
+        } else {
+            return number(value, field, field.name);
+        }
+    }
+
+private:
+    template <class T>
+    T choose(nb::handle value, const Field& field) const {
+        T choice{};
+        std::string names;
+        bool found = false;
+        const auto attempt = [&]<class Law>(const Law*) {
+            names += (names.empty() ? "" : ", ") + std::string(nb::cast<std::string>(nb::type<Law>().attr("__name__")));
+            if (!found && nb::isinstance<Law>(value)) {
+                choice.model = nb::cast<Law>(value);
+                found = true;
+            }
+        };
+        [&]<class S, class... Law>(const Choice<S, Law...>*) { (attempt(static_cast<const Law*>(nullptr)), ...); }(&choice);
+        if (!found) refuse_type(field, "one of " + names, value);
+        return choice;
+    }
+    template <class T>
+    T sequence(nb::handle value, const Field& field) const {
+        if (nb::isinstance<nb::str>(value) || !nb::hasattr(value, "__iter__")) refuse_type(field, "a sequence of numbers", value);
+        T list{};
+        constexpr int most = sizeof(list.item) / sizeof(list.item[0]);
+        int count = 0;
+        for (nb::handle item : nb::iter(value)) {
+            if (count == most)
+                throw nb::value_error((owner + "." + field.name + " holds at most " + std::to_string(most) + " elements").c_str());
+            list[count] = number(item, field, field.name + ("[" + std::to_string(count) + "]"));
+            ++count;
+        }
+        if constexpr (is_sequence<T>) list.count = count;
+        return list;
+    }
+};
+
+template <class T>
+nb::object to_python(const T& member) {
+    if constexpr (is_choice<T>) {
+        return member.visit([](const auto& law) { return nb::cast(law); });
+    } else if constexpr (is_slots<T>) {
+        return to_python(member.slot);
+    } else if constexpr (Described<T>) {
+        return nb::cast(member);
+    } else if constexpr (is_sequence<T> || is_array<T>) {
+        nb::list list;
+        for (int i = 0; i < member.size(); ++i) list.append(member[i]);
+        return nb::tuple(list);
+    } else if constexpr (std::is_enum_v<T>) {
+        return nb::cast(choices(member)[int(member)]);
+    } else {
+        return nb::cast(member);
+    }
+}
+
+/// How Python's type checkers see a member.
+template <class T>
+std::string python_type(bool argument) {
+    if constexpr (is_choice<T>) {
+        std::string names;
+        [&]<class S, class... Law>(const Choice<S, Law...>*) {
+            const auto add = [&](nb::handle type) {
+                names += (names.empty() ? "" : " | ") + nb::cast<std::string>(type.attr("__module__")) + "." +
+                         nb::cast<std::string>(type.attr("__qualname__"));
+            };
+            (add(nb::type<Law>()), ...);
+        }(static_cast<const T*>(nullptr));
+        return names;
+    } else if constexpr (is_slots<T>) {
+        return python_type<decltype(T{}.slot)>(argument);
+    } else if constexpr (Described<T>) {
+        const auto type = nb::type<T>();
+        return nb::cast<std::string>(type.attr("__module__")) + "." + nb::cast<std::string>(type.attr("__qualname__"));
+    } else if constexpr (is_sequence<T> || is_array<T>) {
+        return argument ? "collections.abc.Sequence[float]" : "tuple[float, ...]";
+    } else if constexpr (std::is_enum_v<T>) {
+        return "str";
+    } else if constexpr (std::is_same_v<T, int>) {
+        return "int";
+    } else {
+        return "float";
+    }
+}
+
+/// A text written in a raw string, with the indent of its source taken off.
+inline std::string dedented(const char* text) {
+    nb::object clean = nb::module_::import_("inspect").attr("cleandoc")(text);
+    return nb::cast<std::string>(clean);
+}
+
+/// Keeps what nanobind only points at.
+inline const char* kept(std::string text) {
+    static std::vector<std::unique_ptr<std::string>> texts;
+    texts.push_back(std::make_unique<std::string>(std::move(text)));
+    return texts.back()->c_str();
+}
+
+template <class M>
+std::string documentation() {
+    std::string text;
+    if constexpr (requires { M::doc; }) text = dedented(M::doc) + "\n\n";
+    text += "Parameters\n----------\n";
+    const M model{};
+    const auto describe = [&]<class T>(const T& member, const Field& field) {
+        text += std::string(field.name) + ": " + field.doc;
+        if constexpr (!Described<T> && !is_choice<T>) {
+            if constexpr (!std::is_enum_v<T>) {
+                if (std::strcmp(field.unit, "1") != 0) text += std::string(" [") + field.unit + "]";
+                if (field.min > -unbounded || field.max < unbounded) text += ", in " + limits(field);
+            }
+            if constexpr (std::is_enum_v<T>) text += ", one of " + text_of(nb::make_tuple(choices(T{})[0], choices(T{})[1]));
+        }
+        text += "; default " + text_of(to_python(member)) + "\n";
+    };
+    M::fields(model, describe);
+    text += "\nRaises\n------\nTypeError: an unknown parameter, or one of the wrong kind\nValueError: a number that is not finite or out of its range\n";
+    if constexpr (requires { M::source; }) text += std::string("\nSource\n------\n") + M::source + "\n";
+    return text;
+}
+
+template <class M>
+void check_relations(const M& model) {
+    if constexpr (requires { model.problem(); })
+        if (const char* problem = model.problem()) throw nb::value_error((std::string(M::name) + ": " + problem).c_str());
+}
+
+/// `model` with the members that `values` names; an unknown name is refused.
+template <class M>
+M replaced(M model, const nb::kwargs& values, const std::string& name) {
+    const Reader reader{name};
+    nb::dict unknown(values);
+    std::string known;
+    M::fields(model, [&]<class T>(T& member, const Field& field) {
+        known += (known.empty() ? "" : ", ") + std::string(field.name);
+        if (!values.contains(field.name)) return;
+        member = reader.template read<T>(values[field.name], field);
+        nb::del(unknown[field.name]);
+    });
+    for (auto [key, value] : unknown)
+        throw nb::type_error((name + " has no parameter " + text_of(key) + "; it has " + known).c_str());
+    check_relations(model);
+    return model;
+}
+
+/// The members as Python sees them, by name.
+template <class M>
+nb::dict members(const M& model) {
+    nb::dict dict;
+    M::fields(model, [&](const auto& member, const Field& field) { dict[field.name] = to_python(member); });
+    return dict;
+}
+
+template <class M>
+std::string represented(const M& model, const std::string& name) {
+    std::string text;
+    M::fields(model, [&](const auto& member, const Field& field) {
+        text += (text.empty() ? "" : ", ") + std::string(field.name) + "=" + text_of(to_python(member));
+    });
+    return name + "(" + text + ")";
+}
+
+template <class M>
+std::string signature(const std::string& head, const std::string& result) {
+    std::string text = "def " + head + "(self, *";
+    const M defaults{};
+    M::fields(defaults, [&]<class T>(const T&, const Field& field) {
+        text += std::string(", ") + field.name + ": " + python_type<T>(true) + " = ...";
+    });
+    return text + ") -> " + result;
+}
+
+/// What is known of each member besides its value: name, unit, doc, min, max (None: no limit), and whether it is a part.
+template <class M>
+nb::tuple schema() {
+    nb::list list;
+    const M model{};
+    M::fields(model, [&]<class T>(const T&, const Field& field) {
+        nb::dict entry;
+        entry["name"] = field.name;
+        entry["unit"] = field.unit;
+        entry["doc"] = field.doc;
+        entry["min"] = field.min <= -unbounded ? nb::none() : nb::object(nb::float_(field.min == smallest ? 0.0 : field.min));
+        entry["max"] = field.max >= unbounded ? nb::none() : nb::object(nb::float_(field.max));
+        entry["kind"] = is_sequence<T> || is_array<T> || is_slots<T> ? "sequence"
+                        : is_choice<T> || Described<T>              ? "part"
+                        : std::is_enum_v<T>                         ? "choice"
+                        : std::is_same_v<T, int>                    ? "count"
+                                                                    : "number";
+        list.append(entry);
+    });
+    return nb::tuple(list);
+}
+
+/// Binds a described struct as a frozen value.
+template <class M>
+nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string& name) {
+    static_assert(fully_described<M>, "every member needs a Field");
+    auto c = nb::class_<M>(scope, python_name, kept(documentation<M>()));
+    c.def("__init__", [name](M* self, const nb::kwargs& values) { new (self) M(replaced(M{}, values, name)); },
+          nb::sig(kept(signature<M>("__init__", "None"))));
+    c.def("replace", [name](const M& self, const nb::kwargs& values) { return replaced(self, values, name); },
+          nb::sig(kept(signature<M>("replace", python_name))), "The same with the named parameters changed.");
+    const M defaults{};
+    M::fields(defaults, [&]<class T>(const T& member, const Field& field) {
+        const auto offset = reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&defaults);
+        const std::string unit = *field.unit && std::strcmp(field.unit, "1") != 0 ? std::string(" [") + field.unit + "]" : "";
+        c.def_prop_ro(
+            field.name,
+            [offset](const M& self) { return to_python(*reinterpret_cast<const T*>(reinterpret_cast<const char*>(&self) + offset)); },
+            nb::sig(kept(std::string("def ") + field.name + "(self) -> " + python_type<T>(false))), kept(field.doc + unit));
+    });
+    c.def("__repr__", [python_name](const M& self) { return represented(self, python_name); });
+    c.def("__eq__", [](const M& self, nb::handle other) {
+        M right{};
+        return nb::isinstance<M>(other) && nb::try_cast<M>(other, right) && parts_of(self) == parts_of(right);
+    }, nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"));
+    c.def("__hash__", [](const M& self) { return nb::hash(nb::tuple(members(self).values())); });
+    c.def("__getstate__", [](const M& self) { return members(self); });
+    c.def("__setstate__", [name](M* self, const nb::dict& state) { new (self) M(replaced(M{}, nb::borrow<nb::kwargs>(state), name)); });
+    c.attr("name") = name;
+    if constexpr (requires { M::source; }) c.attr("source") = M::source;
+    c.attr("fields") = schema<M>();
+    return c;
+}
+
+}  // namespace strainwave::host

@@ -1,0 +1,177 @@
+#include <nanobind/stl/function.h>
+
+#include "bind.hpp"
+#include "simulate.hpp"
+
+namespace strainwave::host {
+
+namespace {
+
+using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+Values array(std::vector<std::size_t> shape) {
+    std::size_t size = 1;
+    for (std::size_t n : shape) size *= n;
+    auto* data = new double[size + 1];
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+    return Values(data, shape.size(), shape.data(), owner);
+}
+
+struct Request {
+    Course course;
+    std::size_t kept = 0;
+
+    Request(const Numbers& instants, const Numbers& inputs, const Flags& keep)
+        : course{instants.data(), inputs.data(), keep.data(), keep.size()} {
+        if (instants.size() != course.steps + 1 || inputs.size() != 9 * course.steps)
+            throw nb::value_error("a course of n steps has n + 1 instants, inputs of shape (n, 3, 3) and n flags");
+        for (std::size_t i = 0; i < course.steps; ++i) kept += keep.data()[i] != 0;
+    }
+};
+
+/// Lets Ctrl-C through and tells how many steps are done, now and then.
+Pause pausing(const nb::object& progress) {
+    return [progress](std::size_t done) {
+        nb::gil_scoped_acquire python;
+        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+        if (!progress.is_none()) progress(done);
+    };
+}
+
+nb::tuple run_one(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs, const Flags& keep,
+                  const nb::object& progress) {
+    const Request request(instants, inputs, keep);
+    Values out = array({std::size_t(channels), request.kept});
+    const Pause pause = pausing(progress);
+    Drive::State end;
+    {
+        nb::gil_scoped_release free;
+        end = simulate(drive, start, request.course, out.data(), request.kept, pause);
+    }
+    return nb::make_tuple(out, end);
+}
+
+Values run_many(const std::vector<Drive>& drives, const Numbers& instants, const Numbers& inputs, const Flags& keep,
+                const nb::object& progress) {
+    const Request request(instants, inputs, keep);
+    for (const Drive& drive : drives)
+        if (parts_of(drive).shape != parts_of(drives[0]).shape)
+            throw nb::value_error("drives run side by side must choose the same models with equally many elements");
+    Values out = array({drives.size(), std::size_t(channels), request.kept});
+    const Pause pause = pausing(progress);
+    nb::gil_scoped_release free;
+    simulate_packed(drives, request.course, out.data(), request.kept, pause);
+    return out;
+}
+
+nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Numbers& inputs, const Flags& keep,
+                          const std::vector<int>& parameters, const nb::object& progress) {
+    const Request request(instants, inputs, keep);
+    Values out = array({std::size_t(channels), request.kept}), slopes = array({parameters.size(), std::size_t(channels), request.kept});
+    const Pause pause = pausing(progress);
+    {
+        nb::gil_scoped_release free;
+        differentiate(drive, request.course, parameters, out.data(), slopes.data(), request.kept, pause);
+    }
+    return nb::make_tuple(out, slopes);
+}
+
+Input<double> input_of(const Numbers& u) {
+    if (u.size() != 3) throw nb::value_error("inputs at an instant are command, its rate and the load torque");
+    return {u.data()[0], u.data()[1], u.data()[2]};
+}
+
+Values now(const Drive& drive, const Drive::State& x, const Numbers& u) {
+    Values out = array({std::size_t(channels), 1});
+    observe(drive, x, input_of(u), out.data());
+    return out;
+}
+
+nb::tuple now_derivatives(const Drive& drive, const Numbers& u, const std::vector<int>& parameters) {
+    Values out = array({std::size_t(channels), 1}), slopes = array({parameters.size(), std::size_t(channels), 1});
+    observe_derivatives(drive, input_of(u), parameters, out.data(), slopes.data());
+    return nb::make_tuple(out, slopes);
+}
+
+/// What is known of every number of a set: path, value, unit, doc, min, max.
+template <class M>
+void bind_numbers(nb::module_& core) {
+    core.def("parameters", [](const M& model) {
+        nb::list list;
+        for (const Parameter& p : parameters_of(model))
+            list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc, p.field.min, p.field.max));
+        return list;
+    }, nb::arg("model"), nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
+    "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
+    core.def("with_numbers", [](const M& model, const std::vector<double>& numbers) {
+        const Parts parts = parts_of(model);
+        if (numbers.size() != parts.numbers.size()) throw nb::value_error("as many numbers as the model has parameters are needed");
+        return assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
+    }, nb::arg("model"), nb::arg("numbers"), nb::sig("def with_numbers(model: T, numbers: collections.abc.Sequence[float]) -> T"),
+    "The same models with other numbers, in the order of `parameters`.");
+}
+
+template <template <class> class... Law>
+void bind_numbers_of(nb::module_& core, List<Law...>) {
+    (bind_numbers<Law<double>>(core), ...);
+}
+
+}  // namespace
+
+void bind_drives(nb::module_& core) {
+    using Gear = AnyGear<double>;
+    nb::module_ drives = nb::borrow<nb::module_>(PyImport_AddModule("strainwave.drives"));
+    drives.attr("__doc__") = "Drives: motor, control, gear and load.";
+    core.attr("drives") = drives;
+
+    auto gear = bind<Gear>(core, "Gear", "gear");
+    gear.attr("__module__") = "strainwave";
+    auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
+    bind<Drive::Motion>(core, "Motion", "motion");
+    bind<Drive::State>(core, "State", "state");
+    drive.def("rest", [](const Drive& self) { return self.rest(); },
+              "The state at rest, untwisted and without history, input angle 0.");
+    drive.def("step",
+              [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque, double dt) {
+                  const Input<double> u{command, command_rate, load_torque}, middle{command + 0.5 * dt * command_rate, command_rate, load_torque},
+                      end{command + dt * command_rate, command_rate, load_torque};
+                  return step<double>(self, state, Interval<double>{u, middle, end}, dt);
+              },
+              nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0, nb::arg("dt"),
+              "The state `dt` [s] later, the command moving at `command_rate`.");
+
+    nb::list outputs;
+    const Output<double> output{};
+    Output<double>::fields(output, [&](const double&, const Field& field) { outputs.append(nb::make_tuple(field.name, field.unit, field.doc)); });
+    core.attr("outputs") = nb::tuple(outputs);
+
+#define SW_COURSE "instants: " SW_ARRAY ", inputs: " SW_ARRAY ", keep: numpy.typing.NDArray[numpy.uint8]"
+#define SW_PROGRESS ", progress: collections.abc.Callable[[int], None] | None = None"
+    core.def("simulate", &run_one, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
+             nb::arg("progress").none() = nb::none(),
+             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE SW_PROGRESS ") -> tuple[" SW_ARRAY ", State]"),
+             "Outputs, shape (channels, kept), and the state at the end.");
+    core.def("simulate_packed", &run_many, nb::arg("drives"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
+             nb::arg("progress").none() = nb::none(),
+             nb::sig("def simulate_packed(drives: collections.abc.Sequence[strainwave.drives.PositionDrive], " SW_COURSE SW_PROGRESS ") -> " SW_ARRAY),
+             "Outputs from rest, shape (drives, channels, kept).");
+    core.def("differentiate", &run_derivatives, nb::arg("drive"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
+             nb::arg("parameters"), nb::arg("progress").none() = nb::none(),
+             nb::sig("def differentiate(drive: strainwave.drives.PositionDrive, " SW_COURSE ", parameters: collections.abc.Sequence[int]" SW_PROGRESS ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             "Outputs from rest, shape (channels, kept), and derivatives, shape (parameters, channels, kept).");
+    core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
+             nb::sig("def now(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> " SW_ARRAY),
+             "Outputs in `state`, shape (channels, 1).");
+    core.def("now_derivatives", &now_derivatives, nb::arg("drive"), nb::arg("inputs"), nb::arg("parameters"),
+             nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             "Outputs at rest and their derivatives, as `differentiate` gives them for one sample.");
+    bind_numbers<Gear>(core);
+    bind_numbers<Drive>(core);
+    bind_numbers_of(core, friction::Models{});
+    bind_numbers_of(core, stiffness::Models{});
+    bind_numbers_of(core, hysteresis::Models{});
+    bind_numbers_of(core, kinematic_error::Models{});
+}
+
+}  // namespace strainwave::host
