@@ -101,8 +101,8 @@ def numba_maths(**options: Any) -> Maths:
     """Floats compiled by Numba; `options` are those of `numba.njit`."""
     import numba
 
-    compile = numba.njit(**options)
-    return Maths(math.sin, math.cos, math.exp, abs, min, max, compile(_where), compile)
+    jit = numba.njit(**options)
+    return Maths(math.sin, math.cos, math.exp, abs, min, max, jit(_where), jit)
 
 
 def clip(maths: Maths) -> Callable[..., Any]:
@@ -242,4 +242,5 @@ def output_and_torque(states: Array) -> Array:
     limit = np.array(ELEMENT_LIMIT)[:, None]
     hysteresis = ELEMENT_STIFFNESS * np.clip(states[6:], -limit, limit).sum(axis=0)
     torque = transmitted_torque(NUMPY)(twist, slope * states[2] - states[4], hysteresis)
-    return np.column_stack([states[3], torque])
+    compared: Array = np.array([states[3], torque]).T
+    return compared

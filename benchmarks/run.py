@@ -40,7 +40,7 @@ WANTED_TORQUE = 5e-2  # N.m
 
 @dataclass(frozen=True)
 class Effort:
-    """How long a solver may take [s], and how its time is measured: until `runs`, or until `enough` seconds are spent."""
+    """How long a run may take [s], and how often it is repeated: `runs` times, or until `enough` seconds are spent."""
 
     limit: float
     runs: int
@@ -60,8 +60,8 @@ class Result:
     value: float
     output_angle_error: float = math.inf  # rad
     torque_error: float = math.inf  # N.m
-    wall: float = math.inf  # s
-    compile: float = math.inf  # s
+    wall_time: float = math.inf  # s
+    compile_time: float = math.inf  # s
     remark: str = ""
 
     @property
@@ -149,31 +149,33 @@ def chosen(results: Sequence[Result]) -> list[Result]:
     solved = [result for result in results if not result.remark]
     if not solved:
         return list(results[-1:])
-    cheapest = min((result for result in solved if result.accurate), key=lambda result: result.wall, default=solved[-1])
+    accurate = [result for result in solved if result.accurate]
+    cheapest = min(accurate, key=lambda result: result.wall_time, default=solved[-1])
     return [cheapest] if cheapest is solved[-1] else [cheapest, solved[-1]]
 
 
 def table(results: dict[str, list[Result]]) -> Table:
     """The table of all solvers; times also as multiples of the baseline's, each at its cheapest accurate setting."""
-    baseline = next((r.wall for r in chosen(results.get(BASELINE, [])) if r.accurate), math.nan)
-    view = Table(title="Reference drive, 5 s", caption="* misses the wanted accuracy")
-    view.add_column("solver")
-    for heading in ("setting", "error output angle [rad]", "error torque [N.m]", "wall [ms]", "x strainwave", "compile [s]"):
-        view.add_column(heading, justify="right")
+    baseline = next((r.wall_time for r in chosen(results.get(BASELINE, [])) if r.accurate), math.nan)
+    title = "Reference drive, 5 s: largest error of output angle and torque, time, and time over strainwave's"
+    view = Table(title=title, caption="* misses the wanted accuracy")
+    view.add_column("solver", no_wrap=True)
+    for heading in ("setting", "angle [rad]", "torque [N.m]", "wall [ms]", "ratio", "compile [s]"):
+        view.add_column(heading, justify="right", no_wrap=heading == "setting")
     for result in (result for ladder in results.values() for result in chosen(ladder)):
-        setting = f"{result.setting.replace('relative tolerance', 'rtol')} {result.value:.3g}"
+        setting = f"{result.setting} {result.value:.3g}"
         if result.remark:
             view.add_row(result.solver, setting, result.remark)
             continue
-        ratio = result.wall / baseline
+        ratio = result.wall_time / baseline
         view.add_row(
             result.solver + ("" if result.accurate else " *"),
             setting,
             f"{result.output_angle_error:.1e}",
             f"{result.torque_error:.1e}",
-            f"{1e3 * result.wall:.1f}",
+            f"{1e3 * result.wall_time:.1f}",
             "-" if math.isnan(ratio) else f"{ratio:.3g}",
-            f"{result.compile:.1f}",
+            f"{result.compile_time:.1f}",
         )
     return view
 

@@ -94,13 +94,21 @@ nb::tuple now_derivatives(const Drive& drive, const Numbers& u, const std::vecto
     return nb::make_tuple(out, slopes);
 }
 
+template <auto differentiate_curve>
+nb::tuple curve(const AnyGear<double>& gear, const Numbers& path, const std::vector<int>& parameters) {
+    Values out = array({path.size()}), slopes = array({parameters.size(), path.size()});
+    differentiate_curve(gear, path.data(), path.size(), parameters, out.data(), slopes.data());
+    return nb::make_tuple(out, slopes);
+}
+
 /// What is known of every number of a set: path, value, unit, doc, min, max.
 template <class M>
 void bind_numbers(nb::module_& core) {
     core.def("parameters", [](const M& model) {
         nb::list list;
         for (const Parameter& p : parameters_of(model))
-            list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc, p.field.min, p.field.max));
+            list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc, p.field.min <= -unbounded ? -HUGE_VAL : p.field.min,
+                                       p.field.max >= unbounded ? HUGE_VAL : p.field.max));
         return list;
     }, nb::arg("model"), nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
     "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
@@ -166,6 +174,12 @@ void bind_drives(nb::module_& core) {
     core.def("now_derivatives", &now_derivatives, nb::arg("drive"), nb::arg("inputs"), nb::arg("parameters"),
              nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Outputs at rest and their derivatives, as `differentiate` gives them for one sample.");
+    core.def("differentiate_loop", &curve<differentiate_loop>, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
+             nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             "Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape (parameters, n).");
+    core.def("differentiate_steady", &curve<differentiate_steady>, nb::arg("gear"), nb::arg("speed"), nb::arg("parameters"),
+             nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             "Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).");
     bind_numbers<Gear>(core);
     bind_numbers<Drive>(core);
     bind_numbers_of(core, friction::Models{});

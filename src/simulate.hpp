@@ -34,4 +34,12 @@ void observe_derivatives(const Drive& drive, const Input<double>& u, const std::
 void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
                    std::size_t kept, const Pause& pause);
 
+/// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i].
+void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters, double* out,
+                        double* slopes);
+
+/// Steady friction torque at the input; derivatives in slopes[p * n + i].
+void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters, double* out,
+                          double* slopes);
+
 }  // namespace strainwave::host

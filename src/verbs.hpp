@@ -133,20 +133,12 @@ void hysteresis_verbs(nb::class_<M>& c) {
 }
 
 template <class M>
-typename M::State settled(const M& m, double speed) {
-    if constexpr (requires { m.settled(speed); })
-        return m.settled(speed);
-    else
-        return {};
-}
-
-template <class M>
 void friction_verbs(nb::class_<M>& c) {
     using Contact = friction::Contact<double>;
     if constexpr (requires(const M& m, const typename M::State& x) { m.torque(x, Contact{}); }) {
         using State = typename M::State;
         function(c, "steady", "speed", "Torque [N.m] that opposes steady sliding at `speed` [rad/s].", [](const auto& m, double speed) {
-            return m.torque(settled(m, speed), Contact::at(speed));
+            return friction::steady(m, speed);
         });
         if constexpr (friction::SetValued<M>) c.def("hold", [](const M& m) { return m.hold(); }, "The largest torque [N.m] it balances at rest.");
         if constexpr (friction::Bristle<M>) {

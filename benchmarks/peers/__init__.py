@@ -12,9 +12,10 @@ from reference_drive import Array
 class Peer:
     """A solver of the reference drive.
 
-    name: as in the table; distributions: what must be installed, as pip names it; setting: what the ladder lists, with
-    unit; ladder: settings to try, cheapest first; prepare: setting -> run, everything compiled. The run
-    solves the drive and returns output angle [rad] and transmitted torque [N.m] at the sample times, shape (5001, 2).
+    name: as in the table; distributions: what must be installed, as pip names it; setting: what the ladder lists,
+    "step" [s] or "rtol", the relative tolerance; ladder: settings to try, cheapest first; prepare: setting -> run,
+    everything compiled. The run solves the drive and returns output angle [rad] and transmitted torque [N.m] at the
+    sample times, shape (5001, 2).
     """
 
     name: str

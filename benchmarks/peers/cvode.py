@@ -41,9 +41,9 @@ def prepare(tolerance: float) -> Callable[[], Array]:
 
 PEERS = (
     Peer(
-        name="CVODE BDF (scikit-sundae), Numba",
+        name="CVODE, Numba",
         distributions=("scikit-sundae", "numba"),
-        setting="relative tolerance",
+        setting="rtol",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
         prepare=prepare,
     ),

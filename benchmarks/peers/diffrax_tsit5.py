@@ -52,7 +52,7 @@ def prepare(tolerance: float) -> Callable[[], Array]:
     import jax
     import jax.numpy as jnp
 
-    jax.config.update("jax_enable_x64", True)
+    jax.config.update("jax_enable_x64", True)  # type: ignore[no-untyped-call]
     term, times = diffrax.ODETerm(vector_field()), jnp.asarray(sample_times())
     controller = diffrax.PIDController(rtol=tolerance, atol=tolerance * jnp.asarray(state_scale()))
 
@@ -78,7 +78,7 @@ PEERS = (
     Peer(
         name="diffrax Tsit5",
         distributions=("diffrax",),
-        setting="relative tolerance",
+        setting="rtol",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
         prepare=prepare,
     ),

@@ -12,7 +12,7 @@ import math
 from functools import partial
 from typing import Any
 
-from fixed_step import Function, stages
+from fixed_step import Function, advance, ahead, stage, trial
 from reference_drive import BREAKAWAY, BRISTLE_STIFFNESS, Maths, bristle_decay, clip
 
 from peers import Peer
@@ -23,20 +23,20 @@ SERIES = tuple(1.0 / math.factorial(n) for n in range(15, 2, -1))  # of phi_3, h
 
 
 def phi(maths: Maths) -> Function:
-    """(x) -> phi_1, phi_2, phi_3 of x <= 0: phi_0 = exp x, phi_(n+1) = (phi_n - 1/n!) / x.
+    """(x, exp x) -> phi_1, phi_2, phi_3 of x <= 0: phi_0 = exp x, phi_(n+1) = (phi_n - 1/n!) / x.
 
     Near zero the differences cancel; there phi_3 is its series, and the others follow from it.
     """
 
     @maths.compile
-    def phi(x: float) -> Any:
+    def phi(x: float, zeroth: float) -> Any:
         if x > -0.5:
             third = 0.0
             for coefficient in SERIES:
                 third = third * x + coefficient
             second = 0.5 + x * third
             return 1.0 + x * second, second, third
-        first = (math.exp(x) - 1.0) / x
+        first = (zeroth - 1.0) / x
         second = (first - 1.0) / x
         return first, second, (second - 0.5) / x
 
@@ -49,10 +49,11 @@ def weights(maths: Maths) -> Function:
 
     @maths.compile
     def weights(x: float) -> Any:
-        first, second, third = phi_functions(x)
-        half, _, _ = phi_functions(0.5 * x)
+        decayed = math.exp(0.5 * x)
+        half, _, _ = phi_functions(0.5 * x, decayed)
+        first, second, third = phi_functions(x, decayed * decayed)
         return (
-            math.exp(0.5 * x),
+            decayed,
             0.5 * half,
             first - 3.0 * second + 4.0 * third,
             second - 2.0 * third,
@@ -64,7 +65,7 @@ def weights(maths: Maths) -> Function:
 
 def exponential(maths: Maths) -> Function:
     """(time, step, state, memory) -> state one step later."""
-    first, later, ahead = stages(maths)
+    first, later, plus = stage(maths, advance(maths)), stage(maths, trial(maths)), ahead(maths)
     decay_at, weights_at, limit = bristle_decay(maths), weights(maths), clip(maths)
 
     @maths.compile
@@ -78,18 +79,18 @@ def exponential(maths: Maths) -> Function:
 
         k1 = first(time, state, memory)
         rest_1 = k1[5] + decay * bristle
-        a = with_bristle(ahead(state, half, k1), decayed * bristle + step * w_half * rest_1)
+        a = with_bristle(plus(state, half, k1), decayed * bristle + step * w_half * rest_1)
         k2 = later(time + half, a, memory)
         rest_2 = k2[5] + decay * a[5]
-        b = with_bristle(ahead(state, half, k2), decayed * bristle + step * w_half * rest_2)
+        b = with_bristle(plus(state, half, k2), decayed * bristle + step * w_half * rest_2)
         k3 = later(time + half, b, memory)
         rest_3 = k3[5] + decay * b[5]
-        c = with_bristle(ahead(state, step, k3), decayed * a[5] + step * w_half * (2.0 * rest_3 - rest_1))
+        c = with_bristle(plus(state, step, k3), decayed * a[5] + step * w_half * (2.0 * rest_3 - rest_1))
         k4 = later(time + step, c, memory)
         rest_4 = k4[5] + decay * c[5]
 
         weighted = w_first * rest_1 + 2.0 * w_middle * (rest_2 + rest_3) + w_last * rest_4
-        moved = ahead(state, step / 6.0, ahead(ahead(ahead(k1, 2.0, k2), 2.0, k3), 1.0, k4))
+        moved = plus(state, step / 6.0, plus(plus(plus(k1, 2.0, k2), 2.0, k3), 1.0, k4))
         return with_bristle(moved, decayed * decayed * bristle + step * weighted)
 
     return exponential
@@ -99,7 +100,7 @@ PEERS = (
     Peer(
         name="Numba exponential RK4",
         distributions=("numba",),
-        setting="step [s]",
+        setting="step",
         ladder=(5e-4, 2e-4, 1e-4),
         prepare=partial(prepare_fixed_step, exponential),
     ),

@@ -26,7 +26,7 @@ PEERS = (
     Peer(
         name="Numba RK4",
         distributions=("numba",),
-        setting="step [s]",
+        setting="step",
         ladder=(6.25e-6, 5e-6),
         prepare=partial(prepare_fixed_step, runge_kutta),
     ),

@@ -70,7 +70,7 @@ PEERS = (
     Peer(
         name="strainwave",
         distributions=("strainwave",),
-        setting="step [s]",
+        setting="step",
         ladder=(5e-4, 2e-4, 1e-4),
         prepare=prepare,
     ),

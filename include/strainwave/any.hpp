@@ -3,6 +3,7 @@
 #include <strainwave/models.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <type_traits>
 #include <variant>
 
@@ -50,10 +51,13 @@ struct Choice {
         }
     }
 
-    /// The same choice, of laws rearranged for speed.
+    /// The same choice, of laws rearranged for speed; no choice any more where all of them come out alike.
     constexpr auto compile() const {
-        using Fast = Choice<S, decltype(compiled(std::declval<Law>()))...>;
-        return visit([](const auto& law) { return Fast{compiled(law)}; });
+        using First = decltype(compiled(std::get<0>(model)));
+        if constexpr (!requires { typename First::State; } && (std::is_same_v<First, decltype(compiled(std::declval<Law>()))> && ...))
+            return visit([](const auto& law) { return compiled(law); });
+        else
+            return visit([](const auto& law) { return Choice<S, decltype(compiled(std::declval<Law>()))...>{compiled(law)}; });
     }
 
 // Calls the verb of the model chosen, with its own state in place of the slots.
@@ -63,6 +67,7 @@ struct Choice {
         return visit([&](const auto& law) { return stored(law, law.verb(own(law, arguments)...)); });        \
     }
     SW_VERB(ratio)
+    SW_VERB(inverse_ratio)
     SW_VERB(at)
     SW_VERB(torque)
     SW_VERB(twist)
@@ -113,31 +118,23 @@ struct Choice {
     }
 
 private:
+    // A state is nothing but scalars, so it fits the slots as it lies in memory.
     template <class Model, class T>
-    static constexpr auto own(const Model&, const T& argument) {
+    static auto own(const Model&, const T& argument) {
         if constexpr (std::is_same_v<T, State>) {
             typename Model::State x{};
-            if constexpr (size_of<S, typename Model::State> > 0) {
-                S* to[size_of<S, typename Model::State>]{};
-                detail::Collect<S, S*> collect{to};
-                Model::State::fields(x, collect);
-                for (int i = 0; i < collect.count; ++i) *to[i] = argument.slot[i];
-            }
+            static_assert(sizeof x == detail::state_size<S, Model>() * sizeof(S) || std::is_empty_v<typename Model::State>);
+            if constexpr (!std::is_empty_v<typename Model::State>) std::memcpy(static_cast<void*>(&x), &argument, sizeof x);
             return x;
         } else {
             return argument;
         }
     }
     template <class Model, class Result>
-    static constexpr auto stored(const Model&, const Result& result) {
-        if constexpr (detail::state_size<S, Model>() == 0 && !Described<Result>) {
-            return result;
-        } else if constexpr (requires { requires std::is_same_v<Result, typename Model::State>; }) {
+    static auto stored(const Model&, const Result& result) {
+        if constexpr (requires { requires std::is_same_v<Result, typename Model::State>; }) {
             State x{};
-            if constexpr (size_of<S, Result> > 0) {
-                const auto scalars = flattened<S>(result);
-                for (int i = 0; i < scalars.size(); ++i) x.slot[i] = scalars[i];
-            }
+            if constexpr (!std::is_empty_v<Result>) std::memcpy(static_cast<void*>(&x), &result, sizeof result);
             return x;
         } else {
             return result;

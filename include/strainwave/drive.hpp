@@ -21,16 +21,16 @@ struct Input {
 };
 
 /// What flows continuously. The transmission error theta_in / i - theta_out replaces the output angle.
-template <class S, class Motor, class Control, class FrictionInput, class FrictionOutput>
+template <class S, class MotorState, class ControlState, class FrictionInputState, class FrictionOutputState>
 struct Motion {
-    typename Motor::State motor{};
-    typename Control::State control{};
+    MotorState motor{};
+    ControlState control{};
     S input_angle{0.0};
     S input_speed{0.0};
     S transmission_error{0.0};
     S output_speed{0.0};
-    typename FrictionInput::State friction_input{};
-    typename FrictionOutput::State friction_output{};
+    FrictionInputState friction_input{};
+    FrictionOutputState friction_output{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -46,10 +46,10 @@ struct Motion {
 };
 
 /// A drive at one instant: the motion, and what it remembers of the past.
-template <class S, class Motion, class Hysteresis>
+template <class S, class Motion, class HysteresisState>
 struct State {
     Motion motion{};
-    typename Hysteresis::State hysteresis{};
+    HysteresisState hysteresis{};
     S held_twist{0.0};
     S turns{0.0};
     S sliding_input{1.0};
@@ -131,21 +131,22 @@ struct PositionDrive {
     }
 
     constexpr auto compile() const {
-        const auto fast = gear.compile();
-        return PositionDrive<S, decltype(gear.compile()), Motor, Control, Load>{fast, motor, control, load};
+        return PositionDrive<S, decltype(gear.compile()), decltype(compiled(motor)), Control, Load>{gear.compile(), compiled(motor), control, load};
     }
 
     using FrictionInput = decltype(Gear{}.friction_input);
     using FrictionOutput = decltype(Gear{}.friction_output);
     using Hysteresis = decltype(Gear{}.hysteresis);
 
-    using Motion = strainwave::Motion<S, Motor, Control, FrictionInput, FrictionOutput>;
-    using State = strainwave::State<S, Motion, Hysteresis>;
+    using Motion = strainwave::Motion<S, typename Motor::State, typename Control::State, typename FrictionInput::State,
+                                      typename FrictionOutput::State>;
+    using State = strainwave::State<S, Motion, typename Hysteresis::State>;
     using Output = strainwave::Output<S>;
 
     /// Rate of the motion, and the torque that drives each side with its friction left out.
     struct Flow {
         Motion rate;
+        S twist;
         S input_balance;
         S output_balance;
     };
@@ -167,6 +168,7 @@ struct PositionDrive {
         const S torque = motor.torque(motor.current(y.motor, voltage, y.input_speed));
 
         Flow flow{};
+        flow.twist = mesh.twist;
         flow.input_balance = torque - mesh.torque * mesh.per_input;
         flow.output_balance = mesh.torque - load.torque(output_angle(x, y)) - u.load_torque;
         Motion& rate = flow.rate;
@@ -175,7 +177,7 @@ struct PositionDrive {
         rate.input_angle = y.input_speed;
         rate.input_speed = moving(input, flow.input_balance - gear.friction_input.torque(y.friction_input, input)) /
                            (inertia_of(motor) + gear.input_inertia);
-        rate.transmission_error = y.input_speed / gear.kinematics.ratio() - y.output_speed;
+        rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
         rate.output_speed =
             moving(output, flow.output_balance - gear.friction_output.torque(y.friction_output, output)) / inertia_of(load);
         if constexpr (friction::Bristle<FrictionInput>) rate.friction_input = gear.friction_input.rate(y.friction_input, input);
@@ -199,9 +201,8 @@ struct PositionDrive {
         return y;
     }
 
-    /// The hysteresis brought up to date.
-    constexpr State remembered(State x) const {
-        const S twist = mesh(x, x.motion).twist;
+    /// The hysteresis brought up to date at `twist`.
+    constexpr State remembered(State x, const S& twist) const {
         x.hysteresis = gear.hysteresis.advance(x.hysteresis, twist - x.held_twist);
         x.held_twist = twist;
         return x;
@@ -318,7 +319,7 @@ private:
 
     constexpr S input_angle(const State& x, const Motion& y) const { return y.input_angle + S(2.0 * pi) * x.turns; }
     constexpr S output_angle(const State& x, const Motion& y) const {
-        return input_angle(x, y) / gear.kinematics.ratio() - y.transmission_error;
+        return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;
     }
 
     constexpr control::Reference<S> reference(const State& x, const Motion& y, const Input<S>& u) const {

@@ -55,9 +55,8 @@ struct Gear {
     }
 
     constexpr auto compile() const {
-        using Fast = decltype(compiled(kinematic_error));
-        return Gear<S, Kinematics, Fast, Stiffness, Hysteresis, FrictionInput, FrictionOutput>{
-            kinematics, compiled(kinematic_error), stiffness, hysteresis, damping, friction_input, friction_output, input_inertia};
+        return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), Stiffness, Hysteresis, FrictionInput, FrictionOutput>{
+            compiled(kinematics), compiled(kinematic_error), stiffness, hysteresis, damping, friction_input, friction_output, input_inertia};
     }
 
     /// How the two shafts stand to each other.
@@ -72,7 +71,7 @@ struct Gear {
     constexpr Mesh mesh(const kinematic_error::Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
                         const S& output_speed, const typename Hysteresis::State& held, const S& held_twist) const {
         const kinematic_error::Error<S> error = kinematic_error.at(input_angle);
-        const S per_input = S(1.0) / kinematics.ratio() - error.slope;
+        const S per_input = kinematics.inverse_ratio() - error.slope;
         const S twist = transmission_error - error.value;
         const S twist_rate = per_input * input_speed - output_speed;
         const S torque = stiffness.torque(twist) + hysteresis.torque(held, twist - held_twist) + damping * twist_rate;

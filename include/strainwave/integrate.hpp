@@ -100,11 +100,12 @@ public:
 /// One step without events.
 template <class S, class Drive>
 constexpr typename Drive::State smooth_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u, const S& dt) {
-    auto x = drive.remembered(before);
+    const auto y1 = before.motion;
+    const auto now = drive.flow(before, y1, u.start);
+    auto x = drive.remembered(before, now.twist);
     const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
-    const auto y1 = x.motion;
     const Relaxation<S, typename Drive::Motion> scheme(drive.decay(x), dt);
-    const auto n1 = scheme.forcing(rate(y1, u.start), y1);
+    const auto n1 = scheme.forcing(now.rate, y1);
     const auto y2 = drive.confined(scheme.halfway(y1, n1));
     const auto n2 = scheme.forcing(rate(y2, u.middle), y2);
     const auto y3 = drive.confined(scheme.halfway(y1, n2));

@@ -8,6 +8,16 @@ namespace strainwave::kinematics {
 enum class Fixed { circular_spline, flexspline };
 constexpr Array<const char*, 2> choices(Fixed) { return {{"circular_spline", "flexspline"}}; }
 
+/// The ratio worked out, with its inverse at hand.
+template <class S>
+struct Reduction {
+    S reduction{1.0};
+    S inverse{1.0};
+
+    constexpr S ratio() const { return reduction; }
+    constexpr S inverse_ratio() const { return inverse; }
+};
+
 template <class S>
 struct StrainWave {
     int flexspline_teeth{200};
@@ -47,6 +57,8 @@ struct StrainWave {
         const int teeth = fixed == Fixed::circular_spline ? -flexspline_teeth : circular_spline_teeth;
         return S(double(teeth)) / S(double(circular_spline_teeth - flexspline_teeth));
     }
+    constexpr S inverse_ratio() const { return S(1.0) / ratio(); }
+    constexpr Reduction<S> compile() const { return {ratio(), inverse_ratio()}; }
 };
 
 template <class S>
@@ -73,6 +85,8 @@ struct PlainRatio {
 
     /// Input angle per output angle.
     constexpr S ratio() const { return reduction; }
+    constexpr S inverse_ratio() const { return S(1.0) / reduction; }
+    constexpr Reduction<S> compile() const { return {ratio(), inverse_ratio()}; }
 };
 
 }  // namespace strainwave::kinematics

@@ -158,7 +158,7 @@ class Scenario:
             return NotImplemented
         if self.duration != other.duration:
             raise ValueError(f"durations differ, {self.duration} s and {other.duration} s; a sum needs one duration")
-        start = np.union1d(self.start, other.start)
+        start = np.append(0.0, np.union1d(self.breaks, other.breaks))
         level = self._line(start, "right") + other._line(start, "right")
         slope = self._slope(start, "right") + other._slope(start, "right")
         return Scenario(self.duration, start, level, slope, self.waves + other.waves)

@@ -26,15 +26,17 @@ class Course:
     samples: NDArray[np.uint8]
 
     @classmethod
-    def through(cls, duration: float, dt: float, sample: float, breaks: Array) -> Course:
-        """Steps of at most `dt` that end at every sample and at every break of the inputs.
+    def through(cls, duration: float, dt: float, samples: float | Array, breaks: Array) -> Course:
+        """Steps of at most `dt` that end at every sample, given by their interval or one by one, and at every break.
 
         Where neither asks for more, steps are exactly `dt`; the last may be shorter.
         """
         _positive("dt", dt)
-        _positive("sample", sample)
-        tolerance = 1e-9 * min(dt, sample)
-        sampled = _grid(sample, duration, tolerance)
+        if isinstance(samples, float | int):
+            _positive("sample", samples)
+            samples = _grid(samples, duration, 1e-9 * min(dt, samples))
+        tolerance = 1e-9 * min(dt, float(np.min(np.diff(samples))))
+        sampled = samples
         instants = np.concatenate((_grid(dt, duration, tolerance), sampled, breaks))
         order = np.argsort(instants, kind="stable")
         instants = instants[order]
@@ -162,18 +164,19 @@ def derivatives(
     command: Scenario,
     numbers: Sequence[int],
     dt: float,
-    sample: float,
+    samples: float | Array,
     load_torque: Scenario | None = None,
 ) -> tuple[Recording, Array]:
     """A run from rest and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
 
     Args:
         numbers: places in `_core.parameters(drive)`
+        samples: interval of the samples, or the samples [s], beginning with 0
 
     Returns:
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
-    course = _course(command, dt, sample, load_torque)
+    course = _course(command, dt, samples, load_torque)
     outputs, slopes = _core.differentiate(
         drive, course.instants, course.inputs(command, load_torque), course.samples[1:], list(numbers)
     )
@@ -182,7 +185,7 @@ def derivatives(
     return run, np.concatenate((first_slopes, slopes), axis=2)
 
 
-def _course(command: Scenario, dt: float, sample: float | None, load_torque: Scenario | None) -> Course:
+def _course(command: Scenario, dt: float, samples: float | Array | None, load_torque: Scenario | None) -> Course:
     breaks = command.breaks
     if load_torque is not None:
         if load_torque.duration != command.duration:
@@ -190,7 +193,7 @@ def _course(command: Scenario, dt: float, sample: float | None, load_torque: Sce
                 f"load_torque lasts {load_torque.duration} s, command {command.duration} s; both must last equally long"
             )
         breaks = np.concatenate((breaks, load_torque.breaks))
-    return Course.through(command.duration, dt, dt if sample is None else sample, breaks)
+    return Course.through(command.duration, dt, dt if samples is None else samples, breaks)
 
 
 def _positive(name: str, value: float) -> None:

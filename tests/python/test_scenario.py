@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import scipy.signal
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from strainwave.scenario import (
     Scenario,
@@ -65,7 +65,7 @@ def test_rate_is_the_derivative_of_the_value(scenario: Scenario, time: float) ->
     assert scenario.rate(time) == pytest.approx(difference, rel=1e-8, abs=1e-6)
 
 
-@given(scenarios)
+@given(plain)
 def test_breaks_increase_inside_and_something_jumps_at_each(scenario: Scenario) -> None:
     breaks = scenario.breaks
     assert np.all(np.diff(breaks, prepend=0.0, append=DURATION) > 0.0)
@@ -201,6 +201,7 @@ def test_a_pulse_begins_with_its_period_and_ends_before_its_width_is_over() -> N
     assert pulses.value_before(pulses.breaks).tolist() == [0.0, 2.0, 0.0, 2.0]
 
 
+@settings(deadline=None)  # the first example pays for the import of pint
 @given(st.lists(st.tuples(st.floats(0.01, 1.0), amplitude), min_size=1, max_size=10), amplitude)
 def test_a_table_is_linear_interpolation(points: list[tuple[float, float]], first: float) -> None:
     time = np.append(0.0, np.cumsum([gap for gap, _ in points]))

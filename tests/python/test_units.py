@@ -7,10 +7,11 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.units import check, convert
 
+untimed = settings(deadline=None)  # the first example pays for the import of pint
 finite = st.floats(-1e200, 1e200, allow_subnormal=False).filter(lambda number: number == 0.0 or abs(number) > 1e-200)
 
 
@@ -43,11 +44,13 @@ def test_conversions_follow_the_definitions(value: float, unit: str, to: str, ex
     assert convert(value, unit, to) == pytest.approx(expected, rel=1e-15)
 
 
+@untimed
 @given(finite)
 def test_radians_to_degrees_and_back_is_the_identity(angle: float) -> None:
     assert convert(convert(angle, "rad", "deg"), "deg", "rad") == pytest.approx(angle, rel=1e-15, abs=0.0)
 
 
+@untimed
 @given(finite, st.sampled_from([("rpm", "rad/s"), ("Ncm", "N.m"), ("min", "ms"), ("N.m/deg", "N.m/rad")]))
 def test_conversion_there_and_back_is_the_identity(value: float, pair: tuple[str, str]) -> None:
     there, back = pair
@@ -97,6 +100,7 @@ def test_a_unit_that_is_not_a_text_is_refused() -> None:
         check(3)
 
 
+@untimed
 @given(st.text(alphabet="NmradskgVA/.*()^-12 °²·\n'[", max_size=8))
 def test_any_text_is_refused_or_has_a_standard_spelling(text: str) -> None:
     try:

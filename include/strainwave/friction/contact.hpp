@@ -23,4 +23,13 @@ concept SetValued = requires(const Law& law) { law.hold(); };
 template <class Law>
 concept Bristle = requires(const Law& law) { law.decay({}); };
 
+/// Torque [N.m] that opposes steady sliding at `speed` [rad/s], all transients gone.
+template <class Law, class S>
+constexpr S steady(const Law& law, const S& speed) {
+    if constexpr (requires { law.settled(speed); })
+        return law.torque(law.settled(speed), Contact<S>::at(speed));
+    else
+        return law.torque({}, Contact<S>::at(speed));
+}
+
 }  // namespace strainwave::friction

@@ -3,11 +3,14 @@
 
 namespace strainwave::friction {
 
+/// exp(-80) vanishes beside 1 in every scalar; further out exp only underflows, slowly.
+inline constexpr double beyond_digits = 80.0;
+
 /// Sliding torque that falls from `breakaway` to `coulomb` as the speed passes `stribeck_speed`.
 template <class S>
 constexpr S stribeck_curve(const S& coulomb, const S& breakaway, const S& stribeck_speed, const S& speed) {
     const S u = speed / stribeck_speed;
-    return coulomb + (breakaway - coulomb) * exp(-u * u);
+    return coulomb + (breakaway - coulomb) * exp(-min(u * u, S(beyond_digits)));
 }
 
 template <class S>

@@ -46,18 +46,31 @@ struct DC {
         }
     };
 
-    constexpr S current(const State& x, const S& voltage, const S& speed) const {
-        return select(inductance > S(0.0), x.current, (voltage - back_emf * speed) / resistance);
-    }
-    constexpr State rate(const State& x, const S& voltage, const S& speed) const {
-        const S drop = voltage - resistance * x.current - back_emf * speed;
-        return {select(inductance > S(0.0), drop / max(inductance, S(smallest)), S(0.0))};
-    }
+    constexpr S current(const State& x, const S& voltage, const S& speed) const { return compile().current(x, voltage, speed); }
+    constexpr State rate(const State& x, const S& voltage, const S& speed) const { return compile().rate(x, voltage, speed); }
     /// How fast the current forgets itself [1/s].
-    constexpr State decay() const {
-        return {select(inductance > S(0.0), resistance / max(inductance, S(smallest)), S(0.0))};
+    constexpr State decay() const { return compile().decay(); }
+    constexpr S torque(const S& current) const { return compile().torque(current); }
+
+    /// The same motor with its divisions done.
+    struct Compiled {
+        using State = typename DC::State;
+        S resistance, conductance, per_inductance, torque_constant, back_emf, inertia;
+
+        constexpr S current(const State& x, const S& voltage, const S& speed) const {
+            return select(per_inductance > S(0.0), x.current, (voltage - back_emf * speed) * conductance);
+        }
+        constexpr State rate(const State& x, const S& voltage, const S& speed) const {
+            return {(voltage - resistance * x.current - back_emf * speed) * per_inductance};
+        }
+        constexpr State decay() const { return {resistance * per_inductance}; }
+        constexpr S torque(const S& current) const { return torque_constant * current; }
+    };
+
+    constexpr Compiled compile() const {
+        const S per_inductance = select(inductance > S(0.0), S(1.0) / max(inductance, S(smallest)), S(0.0));
+        return {resistance, S(1.0) / resistance, per_inductance, torque_constant, back_emf, inertia};
     }
-    constexpr S torque(const S& current) const { return torque_constant * current; }
 };
 
 }  // namespace strainwave::motor

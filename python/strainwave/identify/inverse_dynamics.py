@@ -18,7 +18,7 @@ quality is the filtering:
   the torque. The default cut-off is therefore the highest at which the share stays below 0.1 %, and at most a tenth of
   the sampling rate, where central differences still hold to about 1 % at the edge of the pass band.
 * Coulomb friction has no definite value at rest. There both sides of the equation are set to zero before the decimation
-  filter, so that no torque at rest reaches the fit.
+  filter, so that no torque at rest reaches the fit. A stop shorter than 2 / `cutoff` passes for motion.
 """
 
 from __future__ import annotations
@@ -153,7 +153,7 @@ def rigid_drive(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cuto
         [0.5, 0.2, 0.3, 0.1]
     """
     rows = regression(position, torque, time, cutoff=cutoff)
-    inverse: Array = np.linalg.pinv(rows.matrix)
+    inverse = np.asarray(np.linalg.pinv(rows.matrix), dtype=float)
     parameters = inverse @ rows.torque
     residual = rows.torque - rows.matrix @ parameters
     inertia, viscous, coulomb, offset = parameters.tolist()

@@ -1,0 +1,191 @@
+"""Measurements as experiments: each knows what a model predicts for it, with exact derivatives by the model's parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import _core, scenario
+from strainwave._core import Gear
+from strainwave.drives import PositionDrive
+from strainwave.recording import Recording
+from strainwave.simulation import derivatives
+
+Array = NDArray[np.float64]
+
+
+class Experiment(Protocol):
+    """What was measured, and what a model says to it.
+
+    Attributes:
+        channels: names of the quantities compared
+        units: unit of each channel
+        measured: measured values, shape (channels, n)
+        nuisances: names of unknowns of the measurement itself, such as the zero of an angle
+    """
+
+    @property
+    def channels(self) -> tuple[str, ...]: ...
+    @property
+    def units(self) -> tuple[str, ...]: ...
+    @property
+    def measured(self) -> Array: ...
+    @property
+    def nuisances(self) -> tuple[str, ...]: ...
+
+    def predict(self, model: Any, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        """Predicted values, shape (channels, n), and derivatives, shape (numbers + nuisances, channels, n)."""
+        ...
+
+
+@dataclass(frozen=True)
+class FrictionTable:
+    """Steady friction torque at the input, measured at constant speeds.
+
+    Args:
+        speed: input speed [rad/s], shape (n,)
+        torque: friction torque [N.m], of the sign of the speed, shape (n,)
+    """
+
+    speed: Array
+    torque: Array
+    channels = ("torque",)
+    units = ("N.m",)
+    nuisances = ()
+
+    @classmethod
+    def of(cls, recording: Recording) -> FrictionTable:
+        """From columns speed and torque; a torque given as a magnitude takes the sign of its speed."""
+        speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
+        if np.any(speed < 0.0) and np.all(torque >= 0.0):
+            torque = np.sign(speed) * torque
+        return cls(speed, torque)
+
+    @property
+    def measured(self) -> Array:
+        return self.torque[np.newaxis]
+
+    def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        torque, slopes = _core.differentiate_steady(model, self.speed, list(numbers))
+        return torque[np.newaxis], slopes[:, np.newaxis]
+
+
+@dataclass(frozen=True)
+class TorsionLoop:
+    """Torque over twist along a path, slow enough that only spring and hysteresis speak.
+
+    Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement.
+
+    Args:
+        twist: twist at the output [rad], shape (n,), monotone between its points
+        torque: torque at the output [N.m], shape (n,)
+        history: cyclic, if the same path had been run before; virgin, if the gear had not been loaded before
+    """
+
+    twist: Array
+    torque: Array
+    history: Literal["cyclic", "virgin"] = "cyclic"
+    channels = ("torque",)
+    units = ("N.m",)
+    nuisances = ("twist_zero", "torque_zero")
+
+    @classmethod
+    def of(cls, recording: Recording, gear: Gear) -> TorsionLoop:
+        """From columns twist and torque at the output, or input_angle and input_torque with the output locked.
+
+        What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque.
+        """
+        if "input_torque" in recording:
+            ratio = gear.kinematics.ratio
+            return cls(
+                recording.values("input_angle", "rad") / ratio, ratio * recording.values("input_torque", "N.m")
+            )
+        return cls(recording.values("twist", "rad").copy(), recording.values("torque", "N.m").copy())
+
+    def __post_init__(self) -> None:
+        turns = np.diff(np.sign(np.diff(self.twist[np.flatnonzero(np.diff(self.twist, prepend=np.nan))])))
+        if np.ptp(self.twist) == 0.0 or not np.any(turns):
+            raise ValueError(
+                "the torsion loop has one branch only: its twist never turns back, so stiffness and hysteresis cannot be "
+                "told apart; a loop must load and unload"
+            )
+
+    @property
+    def measured(self) -> Array:
+        return self.torque[np.newaxis]
+
+    @cached_property
+    def middle(self) -> float:
+        """Twist half way between the ends of the loop [rad]."""
+        return 0.5 * float(self.twist.min() + self.twist.max())
+
+    def path(self, twist_zero: float) -> Array:
+        """The twist from its zero, with the run before that a cyclic history needs."""
+        path = self.twist - twist_zero
+        return np.concatenate((path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
+
+    def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        twist_zero, torque_zero = nuisances
+        n = len(self.twist)
+        torque, slopes = _core.differentiate_loop(model, self.path(float(twist_zero)), list(numbers))
+        by_twist_zero = -model.stiffness.tangent(self.twist - float(twist_zero))
+        slopes = np.concatenate((slopes[:, -n:], by_twist_zero[np.newaxis], np.ones((1, n))))
+        return torque[np.newaxis, -n:] + float(torque_zero), slopes[:, np.newaxis]
+
+    def virgin(self) -> TorsionLoop:
+        """The same measurement, taken to be the first loading."""
+        return replace(self, history="virgin")
+
+
+@dataclass(frozen=True)
+class DriveLog:
+    """What a drive did under a known command, starting at rest.
+
+    Args:
+        recording: columns time, command and those named in `channels`, as `simulate` names and measures them
+        channels: columns to compare
+        dt: step of the simulation [s]
+    """
+
+    recording: Recording
+    channels: tuple[str, ...]
+    dt: float
+    nuisances = ()
+
+    @classmethod
+    def of(cls, recording: Recording, channels: Sequence[str] | None, dt: float | None) -> DriveLog:
+        """Takes all columns that a simulation has too, and steps of 0.2 ms or the sample interval, if that is shorter."""
+        for name in ("time", "command"):
+            if name not in recording:
+                raise ValueError(f'a drive log needs a column "{name}"; this one has {", ".join(recording.names)}')
+        known = [name for name, _, _ in _core.outputs if name != "command"]
+        chosen = tuple(name for name in recording.names if name in known) if channels is None else tuple(channels)
+        for name in chosen:
+            if name not in known or name not in recording:
+                raise ValueError(f'a drive log cannot be compared by "{name}"; it can by {", ".join(known)}')
+        if not chosen:
+            raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
+        interval = float(np.min(np.diff(recording.time)))
+        return cls(recording, chosen, min(2e-4, interval) if dt is None else dt)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        known = {name: unit for name, unit, _ in _core.outputs}
+        return tuple(known[name] for name in self.channels)
+
+    @cached_property
+    def measured(self) -> Array:
+        return np.stack([self.recording.values(name, unit) for name, unit in zip(self.channels, self.units, strict=True)])
+
+    def predict(self, model: PositionDrive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        time = self.recording.time - self.recording.time[0]
+        command = scenario.table(time, self.recording.values("command", model.control.command_unit))
+        names = [name for name, _, _ in _core.outputs]
+        rows = [names.index(name) for name in self.channels]
+        run, slopes = derivatives(model, command, numbers, self.dt, time)
+        return np.stack([run[name] for name in self.channels]), slopes[:, rows]

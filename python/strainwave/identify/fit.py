@@ -1,0 +1,323 @@
+"""Least squares on any free parameters of a model, with exact derivatives, and what the data say about each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import _core
+from strainwave._core import Gear
+from strainwave.drives import PositionDrive
+from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
+from strainwave.recording import Recording
+
+Array = NDArray[np.float64]
+DEGENERATE = 1e-10  # singular values below this share of the largest carry no information
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter as the data see it.
+
+    Attributes:
+        path: where it stands in the model
+        unit: its unit
+        start: value before the fit
+        value: value after it
+        sigma: standard deviation; infinite where the data do not tell
+        at_limit: whether the fit ended at a limit of the parameter
+    """
+
+    path: str
+    unit: str
+    start: float
+    value: float
+    sigma: float
+    at_limit: bool
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model fitted to an experiment.
+
+    Attributes:
+        model: the model with the fitted numbers
+        experiment: what it was fitted to
+        estimates: the free parameters, then the unknowns of the measurement
+        covariance: of the estimates, shape (p, p), infinite in directions that the data do not determine
+        predicted: what the model predicts, shape (channels, n)
+        training: which of the n samples took part, shape (n,)
+        evaluations: how often the model was run
+    """
+
+    model: Any
+    experiment: Experiment
+    estimates: tuple[Estimate, ...]
+    covariance: Array
+    predicted: Array
+    training: NDArray[np.bool_]
+    evaluations: int
+
+    @property
+    def gear(self) -> Gear:
+        """The fitted gear."""
+        gear: Gear = self.model.gear if isinstance(self.model, PositionDrive) else self.model
+        return gear
+
+    @cached_property
+    def correlation(self) -> Array:
+        """Correlation of the estimates, shape (p, p); not-a-number where the data do not tell."""
+        sigma = np.sqrt(np.diag(self.covariance))
+        with np.errstate(invalid="ignore"):
+            return self.covariance / np.outer(sigma, sigma)
+
+    @property
+    def residuals(self) -> Array:
+        """Measured less predicted, shape (channels, n)."""
+        return self.experiment.measured - self.predicted
+
+    def rms(self, *, held_out: bool = False) -> Array:
+        """Root mean square residual of each channel over the samples that took part, or over those that did not."""
+        chosen = ~self.training if held_out else self.training
+        return np.sqrt(np.mean(self.residuals[:, chosen] ** 2, axis=1)) if chosen.any() else np.full(len(self.residuals), np.nan)
+
+    def summary(self) -> str:
+        """A table of the estimates and the residuals, to print."""
+        lines = [f"{'parameter':44} {'start':>12} {'value':>14} {'sigma':>10}  unit"]
+        for e in self.estimates:
+            note = "  at its limit" if e.at_limit else "" if np.isfinite(e.sigma) else "  not determined by the data"
+            lines.append(f"{e.path:44} {e.start:12.5g} {e.value:14.7g} {e.sigma:10.2g}  {e.unit}{note}")
+        for name, unit, trained, held in zip(
+            self.experiment.channels, self.experiment.units, self.rms(), self.rms(held_out=True), strict=True
+        ):
+            kept_back = "" if np.isnan(held) else f", on data kept back {held:.4g} {unit}"
+            lines.append(f"residual of {name}: {trained:.4g} {unit} rms{kept_back}")
+        return "\n".join(lines)
+
+
+def fit(
+    model: Gear | PositionDrive,
+    recording: Recording | Experiment,
+    free: Sequence[str],
+    *,
+    channels: Sequence[str] | None = None,
+    dt: float | None = None,
+    training: NDArray[np.bool_] | None = None,
+    nuisances: Sequence[float] | None = None,
+    loss: str = "linear",
+) -> Fit:
+    """Fits free parameters of a model to a measurement by least squares.
+
+    The Jacobian comes from dual numbers through the same code that simulates, so it is exact to rounding. Channels are
+    weighed by their residuals, found in a first pass. The covariance accounts for residuals that hang together in time.
+
+    Args:
+        model: a drive, for a log over time; a gear, for a friction table or a torsion loop
+        recording: time, command and outputs (a drive log); speed and torque (a friction table, input side); twist and
+            torque, or input_angle and input_torque (a torsion loop); or an experiment made of one
+        free: paths of parameters, as "gear.friction_input.coulomb" of a drive or "friction_input.coulomb" of a gear;
+            "hysteresis.stiffness[2]" is one element, "hysteresis.stiffness" all of them
+        channels: columns of a drive log to compare; all that a simulation has too if not given
+        dt: step of the simulation [s]
+        training: which samples take part, shape (n,); all if not given
+        nuisances: where the unknowns of the measurement start
+        loss: "linear", or "soft_l1" where outliers are to be feared
+
+    Returns:
+        the fitted model with its uncertainty
+
+    Raises:
+        ValueError: an unknown path, too few samples, a recording without the columns needed
+
+    >>> import numpy as np, strainwave as sw
+    >>> truth = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
+    >>> speed = np.linspace(1.0, 50.0, 20)
+    >>> table = sw.Recording({"speed": speed, "torque": truth.friction_input.steady(speed)},
+    ...                      {"speed": "rad/s", "torque": "N.m"})
+    >>> start = truth.replace(friction_input=truth.friction_input.replace(coulomb=0.05, viscous=1e-4))
+    >>> found = sw.fit(start, table, ["friction_input.coulomb", "friction_input.viscous"])
+    >>> round(found.gear.friction_input.coulomb, 9), round(found.gear.friction_input.viscous, 9)
+    (0.02, 0.0003)
+    """
+    experiment = experiment_of(model, recording, channels, dt) if isinstance(recording, Recording) else recording
+    problem = _Problem(model, experiment, _numbers(model, free), training)
+    start = problem.start(nuisances)
+    weights = 1.0 / _scale(experiment.measured[:, problem.training])
+    passes = 1 if len(experiment.channels) == 1 else 2
+    for _ in range(passes):
+        found = problem.solve(start, weights, loss)
+        residual = (experiment.measured - problem.predict(found)[0])[:, problem.training]
+        weights = 1.0 / np.maximum(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)), 1e-12 * _scale(experiment.measured))
+        start = found
+    return problem.fit(found, weights)
+
+
+def experiment_of(
+    model: Gear | PositionDrive, recording: Recording, channels: Sequence[str] | None = None, dt: float | None = None
+) -> Experiment:
+    """The experiment that a recording holds, told by its columns and the kind of model.
+
+    Raises:
+        ValueError: the columns fit no experiment
+    """
+    if isinstance(model, PositionDrive):
+        return DriveLog.of(recording, channels, dt)
+    if {"speed", "torque"} <= set(recording.names):
+        return FrictionTable.of(recording)
+    if {"twist", "torque"} <= set(recording.names) or {"input_angle", "input_torque"} <= set(recording.names):
+        return TorsionLoop.of(recording, model)
+    raise ValueError(
+        f"columns {', '.join(recording.names)} are no experiment on a gear; a friction table has speed and torque, "
+        "a torsion loop twist and torque or input_angle and input_torque"
+    )
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A free parameter: its place among the numbers of the model, and what is known of it."""
+
+    number: int
+    path: str
+    unit: str
+    value: float
+    low: float
+    high: float
+
+
+def _numbers(model: Gear | PositionDrive, free: Sequence[str]) -> list[_Place]:
+    parameters = _core.parameters(model)
+    places = [
+        _Place(number, path, unit, value, low, high)
+        for number, (path, value, unit, _, low, high) in enumerate(parameters)
+        if path in free or path.split("[")[0] in free
+    ]
+    found = {place.path for place in places} | {place.path.split("[")[0] for place in places}
+    for path in free:
+        if path not in found:
+            import difflib
+
+            near = difflib.get_close_matches(path, [p[0] for p in parameters], n=3, cutoff=0.0)
+            raise ValueError(f'the model has no parameter "{path}"; near it are {", ".join(near)}')
+    return places
+
+
+def _scale(measured: Array) -> Array:
+    """How large each channel is, shape (channels, 1)."""
+    spread = np.std(measured, axis=1, keepdims=True)
+    size = np.max(np.abs(measured), axis=1, keepdims=True)
+    return np.where(spread > 0.0, spread, np.where(size > 0.0, size, 1.0))
+
+
+class _Problem:
+    """Least squares in numbers scaled to their size."""
+
+    def __init__(
+        self, model: Gear | PositionDrive, experiment: Experiment, places: list[_Place], training: NDArray[np.bool_] | None
+    ) -> None:
+        self.model, self.experiment, self.places = model, experiment, places
+        n = experiment.measured.shape[1]
+        self.training = np.ones(n, bool) if training is None else np.asarray(training, bool)
+        if self.training.shape != (n,):
+            raise ValueError(f"training has shape {self.training.shape}, the measurement has {n} samples")
+        unknowns = len(places) + len(experiment.nuisances)
+        if self.training.sum() * len(experiment.channels) <= unknowns:
+            raise ValueError(f"{self.training.sum()} samples cannot determine {unknowns} unknowns")
+        self.evaluations = 0
+        self._last: tuple[bytes, tuple[Array, Array]] | None = None
+
+    def start(self, nuisances: Sequence[float] | None) -> Array:
+        names = self.experiment.nuisances
+        return np.array([place.value for place in self.places] + list(nuisances if nuisances is not None else [0.0] * len(names)))
+
+    def model_with(self, x: Array) -> Any:
+        numbers = [value for _, value, *_ in _core.parameters(self.model)]
+        for place, value in zip(self.places, x, strict=False):
+            numbers[place.number] = float(value)
+        return _core.with_numbers(self.model, numbers)
+
+    def predict(self, x: Array) -> tuple[Array, Array]:
+        """Predictions and derivatives; the last ones are remembered, as solvers ask for them one after the other."""
+        key = x.tobytes()
+        if self._last is None or self._last[0] != key:
+            self.evaluations += 1
+            numbers = [place.number for place in self.places]
+            nuisances = x[len(self.places) :]
+            self._last = key, self.experiment.predict(self.model_with(x), numbers, nuisances)
+        return self._last[1]
+
+    def solve(self, start: Array, weights: Array, loss: str) -> Array:
+        from scipy.optimize import least_squares
+
+        free_ends = [(-np.inf, np.inf)] * len(self.experiment.nuisances)
+        low, high = np.array([(p.low, p.high) for p in self.places] + free_ends).reshape(-1, 2).T
+
+        def residuals(x: Array) -> Array:
+            predicted, _ = self.predict(x)
+            return ((predicted - self.experiment.measured) * weights)[:, self.training].ravel()
+
+        def jacobian(x: Array) -> Array:
+            _, slopes = self.predict(x)
+            return (slopes * weights)[:, :, self.training].reshape(len(x), -1).T
+
+        inside = np.clip(start, low, high)
+        solution = least_squares(
+            residuals, inside, jac=jacobian, bounds=(low, high), x_scale="jac", loss=loss, xtol=1e-12, ftol=1e-12, gtol=1e-12
+        )
+        return np.asarray(solution.x)
+
+    def fit(self, x: Array, weights: Array) -> Fit:
+        predicted, slopes = self.predict(x)
+        residual = (self.experiment.measured - predicted)[:, self.training] * weights
+        jacobian = (slopes * weights)[:, :, self.training].reshape(len(x), -1).T
+        covariance = _covariance(jacobian, residual)
+        sigma = np.sqrt(np.diag(covariance))
+        estimates = [
+            Estimate(p.path, p.unit, p.value, float(v), float(s), bool(v <= p.low or v >= p.high))
+            for p, v, s in zip(self.places, x, sigma, strict=False)
+        ]
+        start = self.start(None)
+        for i in range(len(self.places), len(x)):
+            name = self.experiment.nuisances[i - len(self.places)]
+            unit = "rad" if name == "twist_zero" else "N.m"
+            estimates.append(Estimate(name, unit, float(start[i]), float(x[i]), float(sigma[i]), False))
+        return Fit(self.model_with(x), self.experiment, tuple(estimates), covariance, predicted, self.training, self.evaluations)
+
+
+def _covariance(jacobian: Array, residual: Array) -> Array:
+    """Covariance of the unknowns; infinite variance where some direction they take part in leaves the residuals unchanged.
+
+    Variance of the residuals over degrees of freedom, times how many samples hang together: residuals that are no white
+    noise tell less than their number.
+    """
+    size = np.linalg.norm(jacobian, axis=0)
+    scaled = jacobian / np.where(size > 0.0, size, 1.0)
+    _, singular, directions = np.linalg.svd(scaled, full_matrices=False)
+    dead = singular <= DEGENERATE * singular.max(initial=0.0)
+    freedom = max(residual.size - len(size), 1)
+    variance = float(np.sum(residual**2)) / freedom * max(_correlation_length(row) for row in residual)
+    inverse = np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, singular))
+    root = directions.T * inverse
+    covariance: Array = variance * (root @ root.T) / np.outer(np.where(size > 0.0, size, 1.0), np.where(size > 0.0, size, 1.0))
+    undetermined = (np.abs(directions[dead]) > 1e-6).any(axis=0) | (size == 0.0)
+    covariance[undetermined, undetermined] = np.inf
+    return covariance
+
+
+def _correlation_length(residual: Array) -> float:
+    """Integrated autocorrelation time in samples, summed over Sokal's window; 1 for white noise.
+
+    Sokal, "Monte Carlo methods in statistical mechanics" (1997), section 3.
+    """
+    centred = residual - residual.mean()
+    power = np.abs(np.fft.rfft(centred, 2 * len(centred))) ** 2
+    if power.sum() == 0.0:
+        return 1.0
+    correlation = np.fft.irfft(power)[: len(centred)]
+    time = 2.0 * np.cumsum(correlation / correlation[0]) - 1.0
+    window = np.arange(len(time)) >= 5.0 * time
+    return float(max(1.0, time[np.argmax(window)] if window.any() else time[-1]))

@@ -1,0 +1,168 @@
+"""What every hysteresis obeys: passive, odd, a path and not its sampling; and the memory of those that have one.
+
+Rate independence is structural: no model is told the time.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from tests.strategies import built, log_uniform, models
+
+Array = NDArray[np.float64]
+
+laws = models("hysteresis")
+storing = models("hysteresis", "stored")
+maxwell = built(sw.hysteresis.MaxwellSlip)
+
+
+def paths_from_rest(points: int = 12) -> st.SearchStrategy[Array]:
+    """Twists in any order, from 0, with reversals large and small."""
+    amplitude = log_uniform(1e-5, 1e-1)
+    turns = st.lists(st.floats(-1.0, 1.0), min_size=2, max_size=points)
+    return st.tuples(amplitude, turns).map(lambda drawn: np.append(0.0, drawn[0] * np.array(drawn[1])))
+
+
+def scale(values: Array) -> float:
+    return float(np.abs(values).max())
+
+
+def close(values: Array, wanted: Array, of: Array) -> bool:
+    """Equal up to the rounding that a few operations on numbers as large as `of` leave."""
+    return bool(np.all(np.abs(np.asarray(values) - np.asarray(wanted)) <= 1e-12 * scale(of)))
+
+
+@given(laws, paths_from_rest())
+def test_from_rest_no_path_yields_work(law: Any, path: Array) -> None:
+    work = law.work(path)
+    assert work.min() >= -1e-12 * scale(work)
+
+
+@given(laws, paths_from_rest(6))
+def test_a_cycle_in_twist_and_memory_costs_work(law: Any, path: Array) -> None:
+    cycle = np.append(path, 0.0)
+    before = law.advance(np.tile(cycle, 300))
+    after = law.advance(cycle, state=before)
+    torque, work = law.trace(cycle, state=before), law.work(cycle, state=before)
+    members = [np.array(getattr(state, field["name"])) for field in type(before).fields for state in (before, after)]
+    assume(all(close(b, a, np.append(torque, 1e-300)) for b, a in zip(members[::2], members[1::2], strict=True)))
+    assert work[-1] >= -1e-11 * scale(np.append(torque, 0.0)) * scale(cycle)
+
+
+@given(laws, paths_from_rest())
+def test_hysteresis_is_odd_in_the_twist(law: Any, path: Array) -> None:
+    assert law.trace(-path).tolist() == (-law.trace(path)).tolist()
+    assert law.work(-path).tolist() == law.work(path).tolist()
+
+
+@given(laws, paths_from_rest(), st.lists(st.floats(0.0, 1.0), min_size=1, max_size=5))
+def test_a_path_and_not_its_sampling_decides(law: Any, path: Array, shares: list[float]) -> None:
+    inner = path[:-1, None] + np.diff(path)[:, None] * np.sort(shares)
+    fine = np.append(np.column_stack((path[:-1], inner)).ravel(), path[-1])
+    every = slice(None, None, len(shares) + 1)
+    assert close(law.trace(fine)[every], law.trace(path), of=law.trace(fine))
+    assert close(law.work(fine)[every], law.work(path), of=law.work(fine))
+
+
+@given(laws, paths_from_rest(), st.integers(1, 10))
+def test_a_path_can_be_interrupted(law: Any, path: Array, where: int) -> None:
+    where = min(where, len(path) - 1)
+    middle = law.advance(path[: where + 1])
+    assert law.trace(path[where:], state=middle).tolist() == law.trace(path)[where:].tolist()
+    assert law.advance(path[where:], state=middle) == law.advance(path)
+
+
+@given(laws, paths_from_rest())
+def test_work_is_torque_over_twist(law: Any, path: Array) -> None:
+    """Mean value theorem; the torque is monotone between points, so that its ends bound the mean."""
+    torque, work, step = law.trace(path), law.work(path), np.diff(path)
+    ends = np.sort(np.stack((torque[:-1] * step, torque[1:] * step)), axis=0)
+    slack = 1e-12 * (scale(work) + scale(torque) * scale(path))
+    assert np.all(np.diff(work) >= ends[0] - slack)
+    assert np.all(np.diff(work) <= ends[1] + slack)
+
+
+@given(laws, paths_from_rest())
+def test_torque_follows_the_motion(law: Any, path: Array) -> None:
+    torque, step = law.trace(path), np.diff(path)
+    assert np.all(np.diff(torque) * step >= -1e-12 * scale(torque) * np.abs(step))
+
+
+@given(storing, paths_from_rest())
+def test_work_is_stored_or_dissipated_and_dissipated_never_comes_back(law: Any, path: Array) -> None:
+    work, stored = law.work(path), law.stored(path)
+    dissipated = work - stored
+    assert stored.min() >= 0.0
+    assert np.all(np.diff(dissipated) >= -1e-12 * (scale(work) + scale(stored)))
+    assert dissipated[0] == 0.0
+
+
+# Maxwell slip: the memory of a gear
+
+
+def virgin(law: Any, twist: float) -> float:
+    return float(law.trace([0.0, twist])[-1])
+
+
+def capacity(law: Any) -> float:
+    return 1e-300 + sum(law.breakaway)
+
+
+@given(maxwell, log_uniform(1e-5, 1e-1), st.floats(0.0, 1.0))
+def test_maxwell_slip_obeys_masing(law: sw.hysteresis.MaxwellSlip, amplitude: float, share: float) -> None:
+    """After a reversal the branch is the virgin curve, twice as large: Masing1926."""
+    back = 2.0 * amplitude * share
+    torque = law.trace([0.0, amplitude, amplitude - back])[-1]
+    expected = virgin(law, amplitude) - 2.0 * virgin(law, amplitude * share)
+    assert torque == pytest.approx(expected, abs=1e-12 * capacity(law))
+
+
+@given(maxwell, log_uniform(1e-5, 1e-1), st.floats(0.0, 1.0))
+def test_maxwell_slip_returns_to_the_point_it_left(law: sw.hysteresis.MaxwellSlip, amplitude: float, share: float) -> None:
+    """A minor loop closes, and is forgotten from then on: wiping-out."""
+    back = amplitude * (1.0 - 2.0 * share)
+    path = [0.0, amplitude, back, amplitude]
+    torque = law.trace(path)
+    assert torque[3] == pytest.approx(torque[1], abs=1e-12 * capacity(law))
+    onward = [amplitude, 2.0 * amplitude, -amplitude]
+    with_loop = law.trace(onward, state=law.advance(path))
+    without = law.trace(onward, state=law.advance(path[:2]))
+    assert with_loop == pytest.approx(without, abs=1e-12 * capacity(law))
+
+
+@given(maxwell, paths_from_rest(), paths_from_rest(), log_uniform(1e-5, 1e-1))
+def test_maxwell_slip_loops_are_congruent(law: sw.hysteresis.MaxwellSlip, one: Array, other: Array, width: float) -> None:
+    """Loops between the same two twists are equal in shape, whatever came before."""
+    loop = np.array([0.0, width, 0.0, width])
+    shapes = [np.diff(law.trace(np.append(history, loop)))[-2:] for history in (one, other)]
+    assert shapes[0] == pytest.approx(shapes[1], abs=1e-12 * capacity(law))
+
+
+@given(maxwell, log_uniform(1e-5, 1e-1))
+def test_maxwell_slip_loses_what_slides(law: sw.hysteresis.MaxwellSlip, amplitude: float) -> None:
+    """Steady loss of a cycle: sum of 4 F_i (X - F_i / k_i) over the elements that slip."""
+    work = law.work([0.0, amplitude, -amplitude, amplitude])
+    pairs = zip(law.stiffness, law.breakaway, strict=True)
+    loss = sum(4.0 * force * max(amplitude - force / stiffness, 0.0) for stiffness, force in pairs)
+    assert work[3] - work[1] == pytest.approx(loss, abs=1e-11 * capacity(law) * amplitude)
+
+
+# Fading memory: what it cannot do
+
+
+@given(built(sw.hysteresis.FadingMemory), st.floats(0.1, 3.0), st.floats(0.1, 3.0))
+def test_minor_loops_of_fading_memory_do_not_close(law: sw.hysteresis.FadingMemory, far: float, back: float) -> None:
+    assume(law.stiffness > 0.0)
+    path = np.cumsum([0.0, far, -back, back]) / law.forgetting
+    torque = law.trace(path)
+    gap = (torque[3] - torque[1]) / (law.stiffness / law.forgetting)
+    # with T in A / alpha and twist in 1 / alpha: T1 = 1 - e^-f, T3 = 1 - 2 e^-b + (1 + T1) e^-2b
+    start = 1.0 - np.exp(-far)
+    assert gap == pytest.approx(1.0 - 2.0 * np.exp(-back) + (1.0 + start) * np.exp(-2.0 * back) - start, abs=1e-12)
+    assert abs(gap) > 1e-3 or abs(np.expm1(far - 2.0 * back)) < 1.0

@@ -1,0 +1,194 @@
+"""What every model of every list is: described, documented, checked, frozen, a value."""
+
+from __future__ import annotations
+
+import doctest
+import math
+import pickle
+import re
+from typing import Any
+
+import pytest
+import strainwave as sw
+from hypothesis import given
+from hypothesis import strategies as st
+from strainwave import _core, units
+from tests.strategies import Field, drives, gears, models, options, refusal
+
+LISTED = [model for family in _core.families.values() for model in family.values()]
+COMPOSED = [sw.Gear, sw.drives.PositionDrive]
+EVERY_MODEL = [*LISTED, *COMPOSED]
+EVERY_FIELD = [pytest.param(model, field, id=f"{model.name}.{field['name']}") for model in EVERY_MODEL for field in model.fields]
+EVERY_NUMBER = [case for case in EVERY_FIELD if case.values[1]["kind"] in ("number", "sequence", "count")]
+EVERY_PART = [case for case in EVERY_FIELD if case.values[1]["kind"] == "part"]
+EVERY_CHOICE = [case for case in EVERY_FIELD if case.values[1]["kind"] == "choice"]
+
+any_value = st.one_of([models(family) for family in _core.families] + [gears, drives])
+every_model = pytest.mark.parametrize("model", EVERY_MODEL, ids=lambda model: model.name)
+
+
+def shown(model: type, field: Field, value: float) -> str:
+    """How a message names a number: model, field, place, value, unit."""
+    place = "[0]" if field["kind"] == "sequence" else ""
+    unit = "" if field["unit"] == "1" else f" {field['unit']}"
+    return f"{model.name}.{field['name']}{place} = {value:g}{unit}"
+
+
+# Described and documented
+
+
+@every_model
+def test_a_model_names_its_source(model: type) -> None:
+    assert re.search(r"[A-Za-z]{4}", model.source)
+
+
+@every_model
+def test_the_documentation_has_an_example_that_runs(model: type) -> None:
+    example = doctest.DocTestParser().get_doctest(model.__doc__, {}, model.__name__, None, None)
+    assert example.examples
+    assert doctest.DocTestRunner(optionflags=doctest.FAIL_FAST).run(example) == (0, len(example.examples))
+
+
+@every_model
+def test_the_documentation_has_its_equation_and_every_symbol_of_its_fields(model: type) -> None:
+    text, parameters = model.__doc__.split("Parameters\n----------\n")
+    assert ".. math::" in text
+    for field in model.fields:
+        assert f"\n{field['name']}: {field['doc']}" in "\n" + parameters
+
+
+@pytest.mark.parametrize(("model", "field"), EVERY_FIELD)
+def test_a_field_has_a_name_a_text_and_a_unit_in_standard_spelling(model: type, field: Field) -> None:
+    assert field["name"].isidentifier()
+    assert re.match(r"[A-Z\d]", field["doc"])
+    assert "" == field["unit"] if field["kind"] == "part" else units.check(field["unit"]) == field["unit"]
+
+
+def test_no_two_models_of_a_family_share_a_name() -> None:
+    for family in _core.families.values():
+        assert {model.name for model in family.values()} == set(family)
+
+
+# Checked
+
+
+@pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
+@pytest.mark.parametrize("side", ["min", "max"])
+def test_a_number_out_of_its_range_is_refused_with_field_value_unit_and_limits(model: type, field: Field, side: str) -> None:
+    low, high = field["min"], field["max"]
+    if field[side] is None:
+        beyond, low_text, high_text = (-math.inf, "(-inf", "inf)") if side == "min" else (math.inf, "[", "inf)")
+    else:
+        beyond = field[side] - 1.0 if side == "min" else field[side] + 1.0
+    low_text = r"\(-inf" if low is None else rf"[\[(]{low:g}"
+    high_text = r"inf\)" if high is None else rf"{high:g}\]"
+    message = rf"{re.escape(shown(model, field, beyond))} must lie in {low_text}, {high_text}"
+    assert re.fullmatch(message, refusal(model, field, beyond))
+
+
+@pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
+def test_a_limit_itself_is_taken_just_if_its_bracket_says_so(model: type, field: Field) -> None:
+    if field["min"] is None:
+        return
+    closed = f"must lie in [{field['min']:g}, " in refusal(model, field, -1.0)
+    assert ("must lie in" not in refusal(model, field, field["min"])) == closed
+
+
+@pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
+def test_not_a_number_is_refused(model: type, field: Field) -> None:
+    assert shown(model, field, math.nan) in refusal(model, field, math.nan)
+
+
+@pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
+@pytest.mark.parametrize("value", [None, True, "1", 1j, object])
+def test_what_is_no_number_is_refused(model: type, field: Field, value: object) -> None:
+    given = [value] if field["kind"] == "sequence" else value
+    with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be a number, not "):
+        model(**{field["name"]: given})
+
+
+@pytest.mark.parametrize(("model", "field"), EVERY_CHOICE)
+def test_a_choice_is_one_of_its_options(model: type, field: Field) -> None:
+    assert len(options(model, field)) > 1
+    for option in options(model, field):
+        assert getattr(model().replace(**{field["name"]: option}), field["name"]) == option
+    assert refusal(model, field, "neither").endswith("not 'neither'")
+
+
+@pytest.mark.parametrize(("model", "field"), EVERY_PART)
+@pytest.mark.parametrize("value", [None, 1.0, "lugre"])
+def test_a_part_is_a_model_of_its_family(model: type, field: Field, value: object) -> None:
+    with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be "):
+        model(**{field["name"]: value})
+
+
+@every_model
+def test_an_unknown_parameter_is_refused_and_the_known_ones_are_named(model: type) -> None:
+    names = ", ".join(field["name"] for field in model.fields)
+    message = f"^{model.name} has no parameter 'unheard_of'; it has {names}$"
+    with pytest.raises(TypeError, match=message):
+        model(unheard_of=1.0)
+    with pytest.raises(TypeError, match=message):
+        model().replace(unheard_of=1.0)
+
+
+@every_model
+def test_sequences_that_belong_together_are_equally_long_and_not_too_long(model: type) -> None:
+    sequences = [field for field in model.fields if field["kind"] == "sequence"]
+    for field in sequences:
+        too_long = [1.0] * 1000
+        with pytest.raises(ValueError, match=rf"^{model.name}\.{field['name']} holds at most \d+ elements$"):
+            model(**{field["name"]: too_long})
+    if len(sequences) > 1:
+        with pytest.raises(ValueError, match=rf"^{model.name}: .* must have equally many elements$"):
+            model(**{sequences[0]["name"]: [1.0]})
+
+
+# Values
+
+
+@given(any_value)
+def test_what_is_printed_is_what_makes_the_same_value(value: Any) -> None:
+    names = {model.__name__: model for model in EVERY_MODEL}
+    assert eval(repr(value), names) == value
+
+
+@given(any_value)
+def test_a_value_survives_pickling(value: Any) -> None:
+    twin = pickle.loads(pickle.dumps(value))
+    assert twin == value
+    assert type(twin) is type(value)
+    assert hash(twin) == hash(value)
+
+
+@given(any_value)
+def test_a_value_is_made_of_its_fields(value: Any) -> None:
+    members = {field["name"]: getattr(value, field["name"]) for field in value.fields}
+    assert type(value)(**members) == value
+    assert value.replace() == value
+    assert type(value)().replace(**members) == value
+
+
+@given(any_value, any_value)
+def test_values_are_equal_just_if_type_and_members_are(one: Any, other: Any) -> None:
+    same = type(one) is type(other) and all(
+        getattr(one, field["name"]) == getattr(other, field["name"]) for field in one.fields
+    )
+    assert (one == other) == same
+
+
+@given(any_value)
+def test_a_value_is_frozen(value: Any) -> None:
+    for field in value.fields:
+        with pytest.raises(AttributeError):
+            setattr(value, field["name"], getattr(value, field["name"]))
+
+
+@given(st.one_of([models(family) for family in ("friction", "stiffness", "hysteresis", "kinematic_error")] + [gears, drives]))
+def test_numbers_taken_out_and_put_back_make_the_same_value(value: Any) -> None:
+    parameters = _core.parameters(value)
+    assert _core.with_numbers(value, [number for _, number, *_ in parameters]) == value
+    for path, number, unit, doc, low, high in parameters:
+        assert low <= number <= high, path
+        assert units.check(unit) == unit
+        assert doc
