@@ -228,7 +228,7 @@ def initial_state() -> Array:
 
 def sample_times() -> Array:
     """Times at which the solutions are compared [s], shape (5001,)."""
-    return np.arange(round(DURATION / SAMPLE) + 1) * SAMPLE
+    return SAMPLE * np.arange(round(DURATION / SAMPLE) + 1, dtype=np.float64)
 
 
 def state_scale() -> Array:
@@ -242,5 +242,4 @@ def output_and_torque(states: Array) -> Array:
     limit = np.array(ELEMENT_LIMIT)[:, None]
     hysteresis = ELEMENT_STIFFNESS * np.clip(states[6:], -limit, limit).sum(axis=0)
     torque = transmitted_torque(NUMPY)(twist, slope * states[2] - states[4], hysteresis)
-    compared: Array = np.array([states[3], torque]).T
-    return compared
+    return np.column_stack([states[3], torque])

@@ -1,0 +1,173 @@
+"""Torsion loops: spring and Maxwell-slip hysteresis from torque over twist.
+
+With slip twists chosen beforehand the loop is linear in the stiffnesses, all of which are positive: a convex problem with one
+answer (non-negative least squares), which needs no starting values. It finds how many elements the loop can tell apart;
+exact derivatives then refine stiffness, breakaway and the spring together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import hysteresis, stiffness
+from strainwave._core import Gear
+from strainwave.identify.experiment import TorsionLoop
+from strainwave.identify.fit import Fit, fit
+
+Array = NDArray[np.float64]
+
+SLIP_TWISTS = 14  # on a logarithmic grid; more cannot be told apart in any loop tried
+KNEES = 9  # places tried for the knees of a three-segment spring
+MOST_ELEMENTS = 6  # kept after the convex step
+SPRINGS = ("linear", "cubic", "three_segment")
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One kind of gear fitted to a loop.
+
+    Attributes:
+        name: its spring and the number of Maxwell elements
+        fit: the fit, of a gear with that spring and hysteresis
+        error: rms of the residuals on the samples kept back [N.m]; on all, where none were
+    """
+
+    name: str
+    fit: Fit
+    error: float
+
+
+def kept_back(n: int, blocks: int = 20, every: int = 4) -> NDArray[np.bool_]:
+    """Samples that train: all but every fourth of twenty blocks, which are kept back to validate.
+
+    Whole blocks, because neighbours on a loop resemble each other too much to test one by the other.
+    """
+    block = np.arange(n) * blocks // n
+    return block % every != every - 1
+
+
+def fit_loop(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None) -> list[Candidate]:
+    """Fits each kind of spring, in parallel with Maxwell-slip hysteresis, to a loop.
+
+    Args:
+        loop: measured torque over twist
+        gear: the gear to start from; its spring and hysteresis are replaced, the rest is kept
+        training: samples that take part, shape (n,); the rest validates
+
+    Returns:
+        candidates, best first by the error on data kept back; of two within 5 % the one with fewer parameters
+
+    Raises:
+        ValueError: too few samples for any candidate
+    """
+    chosen = np.ones(len(loop.twist), bool) if training is None else training
+    candidates = [_candidate(loop, gear, chosen, spring) for spring in SPRINGS]
+    best = min(candidate.error for candidate in candidates)
+    return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates) if c.error <= 1.05 * best else c.error))
+
+
+def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str) -> Candidate:
+    cyclic, virgin = _start(loop, training, spring), _start(loop.virgin(), training, spring)
+    start = min(cyclic, virgin, key=lambda s: s.error)
+    model = gear.replace(stiffness=start.spring, hysteresis=start.hysteresis)
+    free = [f"stiffness.{field['name']}" for field in start.spring.fields] + ["hysteresis.stiffness", "hysteresis.breakaway"]
+    found = fit(model, start.loop, free, training=training, nuisances=[loop.middle, start.torque_zero])
+    held_out = found.rms(held_out=True)[0]
+    name = f"{spring} spring with {len(start.hysteresis.stiffness)} Maxwell elements"
+    return Candidate(name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+
+
+Spring = stiffness.Linear | stiffness.Cubic | stiffness.ThreeSegment
+
+
+@dataclass(frozen=True)
+class _Start:
+    """Where the refinement starts: the convex problem's answer."""
+
+    loop: TorsionLoop
+    spring: Spring
+    hysteresis: hysteresis.MaxwellSlip
+    torque_zero: float
+    error: float
+
+
+def _start(loop: TorsionLoop, training: NDArray[np.bool_], spring: str) -> _Start:
+    from scipy.optimize import nnls
+
+    half = 0.5 * float(np.ptp(loop.twist))
+    slips = half * np.geomspace(5e-3, 0.95, SLIP_TWISTS)
+    plays = np.column_stack([_play(loop, slip) for slip in slips])
+    best: tuple[float, Array, tuple[float, ...]] | None = None
+    for knees in _knees(spring, half):
+        columns = np.column_stack((_spring_columns(spring, loop.twist - loop.middle, half, knees), plays, _zero_columns(loop)))
+        try:
+            weights, error = nnls(columns[training], loop.torque[training])
+        except RuntimeError:  # the active set cycles; other knees remain
+            continue
+        if best is None or error < best[0]:
+            best = error, weights, knees
+    if best is None:
+        raise ValueError("no spring with Maxwell elements fits this loop")
+    error, weights, knees = best
+    count = columns.shape[1] - len(slips) - 2
+    torque_zero = float(np.abs(loop.torque).max() * (weights[-2] - weights[-1]))
+    return _Start(
+        loop, _spring(spring, weights[:count], half, knees), _elements(weights[count:-2], slips), torque_zero, float(error)
+    )
+
+
+def _play(loop: TorsionLoop, slip: float) -> Array:
+    """Torque of an element of unit stiffness that slips at `slip` [rad]."""
+    element = hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip])
+    return element.trace(loop.path(loop.middle))[-len(loop.twist) :]
+
+
+def _zero_columns(loop: TorsionLoop) -> Array:
+    level = np.full(len(loop.twist), np.abs(loop.torque).max())
+    return np.column_stack((level, -level))
+
+
+def _knees(spring: str, half: float) -> Iterator[tuple[float, ...]]:
+    if spring == "three_segment":
+        yield from combinations(half * np.linspace(0.1, 0.97, KNEES), 2)
+    else:
+        yield ()
+
+
+def _spring_columns(spring: str, twist: Array, half: float, knees: tuple[float, ...]) -> Array:
+    """What each positive parameter of a spring contributes; slopes may only grow from segment to segment."""
+    if spring == "cubic":
+        return np.column_stack((twist, half * (twist / half) ** 3))
+    beyond = [np.sign(twist) * np.maximum(np.abs(twist) - knee, 0.0) for knee in knees]
+    return np.column_stack((twist, *beyond))
+
+
+def _spring(spring: str, weights: Array, half: float, knees: tuple[float, ...]) -> Spring:
+    soft = max(float(weights[0]), 1e-6 * float(np.sum(weights)), 1e-9)
+    if spring == "linear":
+        return stiffness.Linear(k=soft)
+    if spring == "cubic":
+        return stiffness.Cubic(a1=soft, a3=float(weights[1]) / half**2)
+    k2, k3 = soft + float(weights[1]), soft + float(weights[1] + weights[2])
+    t1 = soft * knees[0]
+    return stiffness.ThreeSegment(k1=soft, k2=k2, k3=k3, t1=t1, t2=t1 + k2 * (knees[1] - knees[0]))
+
+
+def _elements(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
+    """The elements that carry torque; neighbours on the grid are one element that slips between them."""
+    elements: list[tuple[float, float]] = []
+    last = -2
+    for i in np.flatnonzero(weights * slips > 1e-3 * np.sum(weights * slips)):
+        k, torque = float(weights[i]), float(weights[i] * slips[i])
+        if i == last + 1:
+            elements[-1] = elements[-1][0] + k, elements[-1][1] + torque
+        else:
+            elements.append((k, torque))
+        last = i
+    strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MOST_ELEMENTS], key=lambda e: e[1] / e[0])
+    return hysteresis.MaxwellSlip(stiffness=[k for k, _ in strongest], breakaway=[f for _, f in strongest])
