@@ -1,32 +1,29 @@
 """Accuracy and time of everything installed on the reference drive, side by side.
 
-    python benchmarks/run.py                          all solvers, minimum of several runs
+    python benchmarks/run.py                          all solvers, shortest time of several runs
     python benchmarks/run.py --peers casadi,numba     those whose name contains one of the words
     python benchmarks/run.py --quick                  one run each, 20 s at most
 
-Each solver runs alone, in a process of its own, through a ladder of settings. The table shows the cheapest setting that
-reaches the wanted accuracy, and the tightest. Errors are the largest over 5 s at 1 kHz; compiling is timed apart.
-The peers come with `pip install strainwave[bench]`. All figures go to build/benchmarks/table.json.
+Each solver goes through a ladder of settings. The table shows the cheapest one that reaches the wanted accuracy, and
+the tightest. Errors are the largest over 5 s at 1 kHz; compiling is timed apart. The peers come with
+`pip install strainwave[bench]`. The figures of all settings go to build/benchmarks/table.json.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import math
-import multiprocessing
 import os
 import platform
-import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict
 from importlib import metadata
-from multiprocessing.connection import Connection
 
-import numpy as np
+from measure import WANTED_OUTPUT_ANGLE, WANTED_TORQUE, Effort, Failure, Result, measure
 from peers import Peer, casadi_cvodes, cvode, diffrax_tsit5, numba_exponential, numba_rk4, scipy_lsoda, strainwave_drive
 from reference import FOLDER, reference_solution
-from reference_drive import Array
+from reference_drive import DURATION
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
@@ -34,165 +31,8 @@ MODULES = (strainwave_drive, numba_exponential, numba_rk4, casadi_cvodes, cvode,
 PEERS: tuple[Peer, ...] = tuple(peer for module in MODULES for peer in module.PEERS)
 BASELINE = "strainwave"
 
-WANTED_OUTPUT_ANGLE = 3e-6  # rad
-WANTED_TORQUE = 5e-2  # N.m
-
-
-@dataclass(frozen=True)
-class Effort:
-    """How long a run may take [s], and how often it is repeated: `runs` times, or until `enough` seconds are spent."""
-
-    limit: float
-    runs: int
-    enough: float
-
-
 THOROUGH = Effort(limit=120.0, runs=20, enough=5.0)
 QUICK = Effort(limit=20.0, runs=1, enough=0.0)
-
-
-@dataclass(frozen=True)
-class Result:
-    """One solver at one setting. Where it failed, `remark` says how, and the figures are infinite."""
-
-    solver: str
-    setting: str
-    value: float
-    output_angle_error: float = math.inf  # rad
-    torque_error: float = math.inf  # N.m
-    wall_time: float = math.inf  # s
-    compile_time: float = math.inf  # s
-    remark: str = ""
-
-    @property
-    def accurate(self) -> bool:
-        """Reaches the wanted accuracy."""
-        return self.output_angle_error <= WANTED_OUTPUT_ANGLE and self.torque_error <= WANTED_TORQUE
-
-
-def missing(peer: Peer) -> list[str]:
-    """Distributions that the solver needs and that are not installed."""
-    return [name for name in peer.distributions if not _installed(name)]
-
-
-def _installed(distribution: str) -> bool:
-    try:
-        metadata.version(distribution)
-    except metadata.PackageNotFoundError:
-        return False
-    return True
-
-
-def best_of(solve: Callable[[], Array], effort: Effort) -> tuple[float, Array]:
-    """Shortest time of several runs [s], and the samples of the last."""
-    times: list[float] = []
-    while len(times) < effort.runs and sum(times) <= effort.enough:
-        start = time.perf_counter()
-        samples = solve()
-        times.append(time.perf_counter() - start)
-    return min(times), samples
-
-
-def serve(peer: Peer, effort: Effort, pipe: Connection) -> None:
-    """Runs the ladder in the solver's own process; sends the compile time, then time and samples, or what failed."""
-    for value in peer.ladder:
-        try:
-            start = time.perf_counter()
-            solve = peer.prepare(value)
-            pipe.send(time.perf_counter() - start)
-            pipe.send(best_of(solve, effort))
-        except Exception as error:  # a failing solver is a result, whatever it raises
-            pipe.send(f"{type(error).__name__}: {error}")
-
-
-def measure(peer: Peer, effort: Effort, reference: Array) -> Iterator[Result]:
-    """A result for each setting, up to the first that exceeds the time limit."""
-    context = multiprocessing.get_context("spawn")
-    pipe, other_end = context.Pipe()
-    process = context.Process(target=serve, args=(peer, effort, other_end), daemon=True)
-    process.start()
-    other_end.close()
-    try:
-        for value in peer.ladder:
-            result = receive(peer, value, pipe, effort, reference)
-            yield result
-            if result.remark.startswith("more than"):
-                return
-    finally:
-        process.kill()  # also a solver that is deep in compiled code and hears nothing
-        process.join()
-
-
-def receive(peer: Peer, value: float, pipe: Connection, effort: Effort, reference: Array) -> Result:
-    """The result that the solver's process sends for one setting."""
-    message: object = 0.0
-    compiling = math.inf
-    for _ in ("compiled", "solved"):
-        if not pipe.poll(effort.limit + effort.enough):
-            return Result(peer.name, peer.setting, value, remark=f"more than {effort.limit:.0f} s")
-        try:
-            message = pipe.recv()
-        except EOFError:
-            return Result(peer.name, peer.setting, value, remark="its process died")
-        if isinstance(message, str):
-            return Result(peer.name, peer.setting, value, remark=message)
-        if isinstance(message, float):
-            compiling = message
-    assert isinstance(message, tuple)
-    wall, samples = message
-    errors = np.abs(samples - reference).max(axis=0)
-    return Result(peer.name, peer.setting, value, float(errors[0]), float(errors[1]), wall, compiling)
-
-
-def chosen(results: Sequence[Result]) -> list[Result]:
-    """What the table shows of a ladder: the cheapest accurate setting and the tightest that gave a solution."""
-    solved = [result for result in results if not result.remark]
-    if not solved:
-        return list(results[-1:])
-    accurate = [result for result in solved if result.accurate]
-    cheapest = min(accurate, key=lambda result: result.wall_time, default=solved[-1])
-    return [cheapest] if cheapest is solved[-1] else [cheapest, solved[-1]]
-
-
-def table(results: dict[str, list[Result]]) -> Table:
-    """The table of all solvers; times also as multiples of the baseline's, each at its cheapest accurate setting."""
-    baseline = next((r.wall_time for r in chosen(results.get(BASELINE, [])) if r.accurate), math.nan)
-    title = "Reference drive, 5 s: largest error of output angle and torque, time, and time over strainwave's"
-    view = Table(title=title, caption="* misses the wanted accuracy")
-    view.add_column("solver", no_wrap=True)
-    for heading in ("setting", "angle [rad]", "torque [N.m]", "wall [ms]", "ratio", "compile [s]"):
-        view.add_column(heading, justify="right", no_wrap=heading == "setting")
-    for result in (result for ladder in results.values() for result in chosen(ladder)):
-        setting = f"{result.setting} {result.value:.3g}"
-        if result.remark:
-            view.add_row(result.solver, setting, result.remark)
-            continue
-        ratio = result.wall_time / baseline
-        view.add_row(
-            result.solver + ("" if result.accurate else " *"),
-            setting,
-            f"{result.output_angle_error:.1e}",
-            f"{result.torque_error:.1e}",
-            f"{1e3 * result.wall_time:.1f}",
-            "-" if math.isnan(ratio) else f"{ratio:.3g}",
-            f"{result.compile_time:.1f}",
-        )
-    return view
-
-
-def save(results: dict[str, list[Result]]) -> None:
-    """Writes every setting tried, with the versions of what was measured, to table.json."""
-    needed = {name for peer in PEERS for name in peer.distributions if _installed(name)}
-    content = {
-        "machine": {"processor": platform.processor() or platform.machine(), "cores": os.cpu_count()},
-        "python": platform.python_version(),
-        "versions": {name: metadata.version(name) for name in sorted(needed)},
-        "wanted": {"output_angle": WANTED_OUTPUT_ANGLE, "torque": WANTED_TORQUE},
-        "results": [asdict(result) for ladder in results.values() for result in ladder],
-    }
-    partial = FOLDER / "table.json.partial"
-    partial.write_text(json.dumps(content, indent=1))
-    os.replace(partial, FOLDER / "table.json")
 
 
 def select(words: str) -> list[Peer]:
@@ -200,11 +40,64 @@ def select(words: str) -> list[Peer]:
     wanted = [word.strip().lower() for word in words.split(",")]
     for word in wanted:
         if not any(word in peer.name.lower() for peer in PEERS):
-            raise ValueError(f"--peers: no solver is named like '{word}'; there are {', '.join(p.name for p in PEERS)}")
+            raise ValueError(f"--peers: none is named like '{word}' of {'; '.join(peer.name for peer in PEERS)}")
     return [peer for peer in PEERS if any(word in peer.name.lower() for word in wanted)]
 
 
+def installed(distribution: str) -> bool:
+    """Whether pip knows it here."""
+    try:
+        metadata.version(distribution)
+    except metadata.PackageNotFoundError:
+        return False
+    return True
+
+
+def cheapest(results: Sequence[Result]) -> Result | None:
+    """The quickest of the accurate ones."""
+    return min((r for r in results if r.accurate), key=lambda result: result.wall_time, default=None)
+
+
+def table(results: Sequence[Result]) -> Table:
+    """Of each solver the cheapest accurate setting and the tightest; times also over the baseline's cheapest."""
+    baseline = cheapest([result for result in results if result.solver == BASELINE])
+    caption = f"ratio: time over strainwave's; * misses {WANTED_OUTPUT_ANGLE} rad or {WANTED_TORQUE} N.m"
+    view = Table(title=f"Reference drive, {DURATION:.0f} s", caption=caption, box=SIMPLE_HEAD, collapse_padding=True)
+    for heading in ("solver", "setting"):
+        view.add_column(heading, no_wrap=True)
+    for heading in ("angle error [rad]", "torque error [N.m]", "wall [ms]", "ratio", "compile [s]"):
+        view.add_column(heading, justify="right")
+    for solver in dict.fromkeys(result.solver for result in results):
+        ladder = [result for result in results if result.solver == solver]
+        for result in dict.fromkeys((cheapest(ladder) or ladder[-1], ladder[-1])):
+            view.add_row(
+                solver + ("" if result.accurate else " *"),
+                result.setting,
+                f"{result.output_angle_error:.1e}",
+                f"{result.torque_error:.1e}",
+                f"{1e3 * result.wall_time:.1f}",
+                f"{result.wall_time / baseline.wall_time:.3g}" if baseline else "-",
+                f"{result.compile_time:.1f}",
+            )
+    return view
+
+
+def save(outcomes: Sequence[Result | Failure]) -> None:
+    """Writes every setting tried, with the versions of what was measured, to table.json."""
+    versions = {name: metadata.version(name) for peer in PEERS for name in peer.distributions if installed(name)}
+    content = {
+        "machine": {"architecture": platform.machine(), "cores": os.cpu_count()},
+        "versions": {"python": platform.python_version(), **dict(sorted(versions.items()))},
+        "wanted": {"output_angle_error": WANTED_OUTPUT_ANGLE, "torque_error": WANTED_TORQUE},
+        "results": [asdict(outcome) for outcome in outcomes],
+    }
+    partial = FOLDER / "table.json.partial"
+    partial.write_text(json.dumps(content, indent=1, allow_nan=False))
+    os.replace(partial, FOLDER / "table.json")
+
+
 def main() -> None:
+    """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--peers", default="", metavar="WORDS", help="comma-separated words of the names; default: all")
     parser.add_argument("--quick", action="store_true", help="one run each, 20 s at most")
@@ -216,15 +109,18 @@ def main() -> None:
 
     console = Console()
     reference = reference_solution()[:, [2, 4]]
-    results: dict[str, list[Result]] = {}
+    outcomes: list[Result | Failure] = []
     for peer in peers:
-        if absent := missing(peer):
-            console.print(f"{peer.name}: not installed: pip install {' '.join(absent)}")
+        if missing := [name for name in peer.distributions if not installed(name)]:
+            console.print(f"{peer.name}: not installed: pip install {' '.join(missing)}")
             continue
         with console.status(peer.name):
-            results[peer.name] = list(measure(peer, QUICK if options.quick else THOROUGH, reference))
-    console.print(table(results))
-    save(results)
+            outcomes += measure(peer, QUICK if options.quick else THOROUGH, reference)
+    console.print(table([outcome for outcome in outcomes if isinstance(outcome, Result)]))
+    for outcome in outcomes:
+        if isinstance(outcome, Failure):
+            console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}")
+    save(outcomes)
 
 
 if __name__ == "__main__":

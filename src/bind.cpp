@@ -36,7 +36,7 @@ NB_MODULE(_core, core) {
     core.attr("__doc__") = "The physics, compiled.";
     core.attr("families") = nb::dict();
     core.attr("PassivityWarning") = nb::steal(PyErr_NewExceptionWithDoc(
-        "strainwave.PassivityWarning", "A set of parameters lets its model create energy.", PyExc_UserWarning, nullptr));
+        "strainwave._core.PassivityWarning", "A set of parameters lets its model create energy.", PyExc_UserWarning, nullptr));
     using namespace strainwave::host;
     bind_family(core, "kinematics", "Rigid motion: the signed ratio from the teeth and the fixed member.", kinematics::Models{});
     bind_family(core, "kinematic_error", "Pure kinematic error at the output, over the input angle.", kinematic_error::Models{});

@@ -280,7 +280,7 @@ nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string&
     c.def("__init__", [name](M* self, const nb::kwargs& values) { new (self) M(replaced(M{}, values, name)); },
           nb::sig(kept(signature<M>("__init__", "None"))));
     c.def("replace", [name](const M& self, const nb::kwargs& values) { return replaced(self, values, name); },
-          nb::sig(kept(signature<M>("replace", python_name))), "The same with the named parameters changed.");
+          nb::sig(kept(signature<M>("replace", python_type<M>(false)))), "The same with the named parameters changed.");
     const M defaults{};
     M::fields(defaults, [&]<class T>(const T& member, const Field& field) {
         const auto offset = reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&defaults);
@@ -296,8 +296,9 @@ nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string&
         return nb::isinstance<M>(other) && nb::try_cast<M>(other, right) && parts_of(self) == parts_of(right);
     }, nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"));
     c.def("__hash__", [](const M& self) { return nb::hash(nb::tuple(members(self).values())); });
-    c.def("__getstate__", [](const M& self) { return members(self); });
-    c.def("__setstate__", [name](M* self, const nb::dict& state) { new (self) M(replaced(M{}, nb::borrow<nb::kwargs>(state), name)); });
+    c.def("__getstate__", [](const M& self) { return members(self); }, nb::sig("def __getstate__(self) -> dict[str, object]"));
+    c.def("__setstate__", [name](M* self, const nb::dict& state) { new (self) M(replaced(M{}, nb::borrow<nb::kwargs>(state), name)); },
+          nb::sig("def __setstate__(self, state: dict[str, object], /) -> None"));
     c.attr("name") = name;
     if constexpr (requires { M::source; }) c.attr("source") = M::source;
     c.attr("fields") = schema<M>();

@@ -104,19 +104,20 @@ nb::tuple curve(const AnyGear<double>& gear, const Numbers& path, const std::vec
 /// What is known of every number of a set: path, value, unit, doc, min, max.
 template <class M>
 void bind_numbers(nb::module_& core) {
+    const std::string type = python_type<M>(false);
     core.def("parameters", [](const M& model) {
         nb::list list;
         for (const Parameter& p : parameters_of(model))
             list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc, p.field.min <= -unbounded ? -HUGE_VAL : p.field.min,
                                        p.field.max >= unbounded ? HUGE_VAL : p.field.max));
         return list;
-    }, nb::arg("model"), nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
+    }, nb::arg("model"), nb::sig(kept("def parameters(model: " + type + ") -> list[tuple[str, float, str, str, float, float]]")),
     "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
     core.def("with_numbers", [](const M& model, const std::vector<double>& numbers) {
         const Parts parts = parts_of(model);
         if (numbers.size() != parts.numbers.size()) throw nb::value_error("as many numbers as the model has parameters are needed");
         return assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
-    }, nb::arg("model"), nb::arg("numbers"), nb::sig("def with_numbers(model: T, numbers: collections.abc.Sequence[float]) -> T"),
+    }, nb::arg("model"), nb::arg("numbers"), nb::sig(kept("def with_numbers(model: " + type + ", numbers: collections.abc.Sequence[float]) -> " + type)),
     "The same models with other numbers, in the order of `parameters`.");
 }
 
@@ -133,8 +134,7 @@ void bind_drives(nb::module_& core) {
     drives.attr("__doc__") = "Drives: motor, control, gear and load.";
     core.attr("drives") = drives;
 
-    auto gear = bind<Gear>(core, "Gear", "gear");
-    gear.attr("__module__") = "strainwave";
+    bind<Gear>(core, "Gear", "gear");
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
     bind<Drive::Motion>(core, "Motion", "motion");
     bind<Drive::State>(core, "State", "state");

@@ -36,7 +36,7 @@ def log_uniform(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 def signed(magnitudes: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
-    return magnitudes | magnitudes.map(lambda magnitude: -magnitude)
+    return st.tuples(st.sampled_from([1.0, -1.0]), magnitudes).map(lambda drawn: drawn[0] * drawn[1])
 
 
 def refusal(model: type, field: Field, value: object) -> str:
@@ -49,7 +49,7 @@ def refusal(model: type, field: Field, value: object) -> str:
 
 
 def options(model: type, field: Field) -> list[str]:
-    """What a field that is a choice can be, as the model names it to who asks for something else."""
+    """What a field that is a choice can be, as the model tells who asks for something else."""
     return re.findall(r"'(\w+)'", refusal(model, field, None))
 
 
@@ -62,33 +62,38 @@ def numbers(model: type, field: Field) -> st.SearchStrategy[float]:
     return magnitudes if positive else st.one_of(st.just(0.0), *5 * [magnitudes])
 
 
-@st.composite
-def built(draw: st.DrawFn, model: type) -> Any:
-    """A model with every field drawn; its sequences are equally long."""
-    length = draw(st.integers(0, 8))
-    drawn: dict[str, Any] = {}
-    for field in model.fields:
-        name = field["name"]
-        match field["kind"]:
-            case "part":
-                drawn[name] = draw(gears if name == "gear" else models(FAMILY.get(name, name)))
-            case "choice":
-                drawn[name] = draw(st.sampled_from(options(model, field)))
-            case "count":
-                drawn[name] = draw(st.integers(int(field["min"]), int(field["max"])))
-            case "sequence":
-                drawn[name] = draw(st.lists(numbers(model, field), min_size=length, max_size=length))
-            case _:
-                drawn[name] = draw(numbers(model, field))
-    try:
-        return model(**drawn)
-    except ValueError:  # a relation between fields, as t2 >= t1, does not hold
-        reject()
+def values(model: type, field: Field) -> st.SearchStrategy[Any]:
+    """What a field may be. The sequences of one model are equally long."""
+    match field["kind"]:
+        case "part":
+            return gears if field["name"] == "gear" else models(FAMILY.get(field["name"], field["name"]))
+        case "choice":
+            return st.sampled_from(options(model, field))
+        case "count":
+            return st.integers(int(field["min"]), int(field["max"]))
+        case "sequence":
+            element, length = numbers(model, field), st.shared(st.integers(0, 8), key=model.name)
+            return length.flatmap(lambda n: st.lists(element, min_size=n, max_size=n))
+        case _:
+            return numbers(model, field)
+
+
+def built(model: type) -> st.SearchStrategy[Any]:
+    """A model with every field drawn."""
+
+    def make(drawn: dict[str, Any]) -> Any:
+        try:
+            return model(**drawn)
+        except ValueError:  # a relation between fields, as t2 >= t1, does not hold
+            reject()
+
+    return st.fixed_dictionaries({field["name"]: values(model, field) for field in model.fields}).map(make)
 
 
 def models(family: str, *verbs: str) -> st.SearchStrategy[Any]:
     """Any model of a family that has these verbs, with any numbers."""
-    return st.one_of([built(model) for model in _core.families[family].values() if all(hasattr(model, verb) for verb in verbs)])
+    having = [model for model in _core.families[family].values() if all(hasattr(model, verb) for verb in verbs)]
+    return st.one_of([built(model) for model in having])
 
 
 gears = built(sw.Gear)

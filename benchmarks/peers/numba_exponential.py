@@ -98,7 +98,7 @@ def exponential(maths: Maths) -> Function:
 
 PEERS = (
     Peer(
-        name="Numba exponential RK4",
+        name="Numba exponential",
         distributions=("numba",),
         setting="step",
         ladder=(5e-4, 2e-4, 1e-4),

@@ -63,6 +63,7 @@ def prepare(step: float) -> Callable[[], Array]:
         run = sw.simulate(drive, command, dt=step, sample=reference.SAMPLE)
         return np.column_stack([run["output_angle"], run["torque"]])
 
+    solve()  # the first run imports what the later ones need
     return solve
 
 

@@ -35,7 +35,7 @@ def test_an_array_of_speeds_gives_what_each_speed_gives(law: Any, speed: list[fl
 @given(set_valued)
 def test_what_sticks_holds_at_least_what_sliding_sets_in_with(law: Any) -> None:
     assert law.hold() >= 0.0
-    assert law.hold() * (1.0 + 1e-15) >= law.steady(1e-300)
+    assert law.steady(1e-300) <= law.hold() * (1.0 + 1e-15) + 1e-290  # the viscous part of so slow a motion
 
 
 @given(with_memory, signed(speeds))
@@ -48,7 +48,7 @@ def test_a_bristle_at_constant_speed_does_not_depend_on_the_step(law: Any, speed
     time = np.append(0.0, np.cumsum(steps))
     fine = law.trace(time, np.full(time.shape, speed))
     coarse = law.trace(time[[0, -1]], [speed, speed])
-    assert coarse[-1] == pytest.approx(fine[-1], rel=1e-12, abs=1e-12 * np.abs(fine).max())
+    assert coarse[-1] == pytest.approx(fine[-1], rel=1e-12, abs=1e-12 * abs(law.steady(speed)))
 
 
 @given(with_memory, st.lists(signed(speeds), min_size=2, max_size=10))

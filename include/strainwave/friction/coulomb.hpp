@@ -21,8 +21,8 @@ struct Coulomb {
         step size removes. A breakaway below coulomb counts as coulomb.
 
         >>> from strainwave.friction import Coulomb
-        >>> Coulomb(coulomb=0.07, breakaway=0.075, viscous=4e-4).steady(-100.0)
-        -0.11)";
+        >>> Coulomb(coulomb=0.07, breakaway=0.075, viscous=5e-4).steady(-20.0)
+        -0.08)";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {

@@ -22,8 +22,8 @@ struct FadingMemory {
         small reversals matter.
 
         >>> from strainwave.hysteresis import FadingMemory
-        >>> round(FadingMemory(stiffness=1000.0, forgetting=2000.0).trace([0.0, 0.002])[-1], 12)
-        0.490842180556)";
+        >>> FadingMemory(stiffness=1000.0, forgetting=2000.0).trace([0.0, 0.002, -0.001]).round(6)
+        array([ 0.      ,  0.490842, -0.497544]))";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {

@@ -27,8 +27,8 @@ struct MaxwellSlip {
 
         >>> from strainwave.hysteresis import MaxwellSlip
         >>> gear = MaxwellSlip(stiffness=[1000, 600, 300, 100], breakaway=[0.5, 0.9, 0.9, 0.6])
-        >>> [round(torque, 12) for torque in gear.trace([0.0, 0.004, -0.002])]
-        [0.0, 2.7, -2.5])";
+        >>> gear.trace([0.0, 0.004, -0.002]).round(12)
+        array([ 0. ,  2.7, -2.5]))";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,22 @@ from strainwave.recording import Recording
 from strainwave.simulation import derivatives
 
 Array = NDArray[np.float64]
+ENCODERS = ("input_angle", "output_angle")
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """An unknown of the measurement itself, such as the zero of an angle: fitted along, of no interest.
+
+    Attributes:
+        name: what it is
+        unit: its unit
+        start: where a fit starts
+    """
+
+    name: str
+    unit: str
+    start: float
 
 
 class Experiment(Protocol):
@@ -26,7 +42,7 @@ class Experiment(Protocol):
         channels: names of the quantities compared
         units: unit of each channel
         measured: measured values, shape (channels, n)
-        nuisances: names of unknowns of the measurement itself, such as the zero of an angle
+        nuisances: unknowns of the measurement
     """
 
     @property
@@ -36,7 +52,7 @@ class Experiment(Protocol):
     @property
     def measured(self) -> Array: ...
     @property
-    def nuisances(self) -> tuple[str, ...]: ...
+    def nuisances(self) -> tuple[Nuisance, ...]: ...
 
     def predict(self, model: Any, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         """Predicted values, shape (channels, n), and derivatives, shape (numbers + nuisances, channels, n)."""
@@ -56,7 +72,7 @@ class FrictionTable:
     torque: Array
     channels = ("torque",)
     units = ("N.m",)
-    nuisances = ()
+    nuisances: ClassVar[tuple[Nuisance, ...]] = ()
 
     @classmethod
     def of(cls, recording: Recording) -> FrictionTable:
@@ -85,14 +101,15 @@ class TorsionLoop:
         twist: twist at the output [rad], shape (n,), monotone between its points
         torque: torque at the output [N.m], shape (n,)
         history: cyclic, if the same path had been run before; virgin, if the gear had not been loaded before
+        torque_zero: where a fit starts to look for the zero of the torque [N.m]
     """
 
     twist: Array
     torque: Array
     history: Literal["cyclic", "virgin"] = "cyclic"
+    torque_zero: float = 0.0
     channels = ("torque",)
     units = ("N.m",)
-    nuisances = ("twist_zero", "torque_zero")
 
     @classmethod
     def of(cls, recording: Recording, gear: Gear) -> TorsionLoop:
@@ -118,6 +135,10 @@ class TorsionLoop:
     @property
     def measured(self) -> Array:
         return self.torque[np.newaxis]
+
+    @property
+    def nuisances(self) -> tuple[Nuisance, ...]:
+        return Nuisance("twist_zero", "rad", self.middle), Nuisance("torque_zero", "N.m", self.torque_zero)
 
     @cached_property
     def middle(self) -> float:
@@ -146,46 +167,73 @@ class TorsionLoop:
 class DriveLog:
     """What a drive did under a known command, starting at rest.
 
+    Where the encoders have their zeros is not known, so these are unknowns of the measurement; a commanded angle counts from
+    where it starts.
+
     Args:
-        recording: columns time, command and those named in `channels`, as `simulate` names and measures them
-        channels: columns to compare
+        time: instants [s], beginning with 0, shape (n,)
+        command: in the unit that the drive's control takes, shape (n,)
+        channels: names of the columns to compare, as `simulate` names them
+        measured: their values in the units of a simulation, shape (channels, n)
         dt: step of the simulation [s]
     """
 
-    recording: Recording
+    time: Array
+    command: Array
     channels: tuple[str, ...]
+    measured: Array
     dt: float
-    nuisances = ()
 
     @classmethod
-    def of(cls, recording: Recording, channels: Sequence[str] | None, dt: float | None) -> DriveLog:
-        """Takes all columns that a simulation has too, and steps of 0.2 ms or the sample interval, if that is shorter."""
+    def of(
+        cls, recording: Recording, drive: PositionDrive, channels: Sequence[str] | None = None, dt: float | None = None
+    ) -> DriveLog:
+        """From columns time, command and outputs; all that a simulation has too, unless `channels` names some.
+
+        Steps of 0.2 ms, or the sample interval if that is shorter.
+        """
         for name in ("time", "command"):
             if name not in recording:
                 raise ValueError(f'a drive log needs a column "{name}"; this one has {", ".join(recording.names)}')
-        known = [name for name, _, _ in _core.outputs if name != "command"]
+        known = {name: unit for name, unit, _ in _core.outputs if name != "command"}
         chosen = tuple(name for name in recording.names if name in known) if channels is None else tuple(channels)
         for name in chosen:
             if name not in known or name not in recording:
                 raise ValueError(f'a drive log cannot be compared by "{name}"; it can by {", ".join(known)}')
         if not chosen:
             raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
-        interval = float(np.min(np.diff(recording.time)))
-        return cls(recording, chosen, min(2e-4, interval) if dt is None else dt)
+        command = recording.values("command", drive.control.command_unit)
+        time = recording.time - recording.time[0]
+        interval = float(np.min(np.diff(time)))
+        return cls(
+            time,
+            command - command[0] if drive.control.command_unit == "rad" else command.copy(),
+            chosen,
+            np.stack([recording.values(name, known[name]) for name in chosen]),
+            min(2e-4, interval) if dt is None else dt,
+        )
 
     @property
     def units(self) -> tuple[str, ...]:
         known = {name: unit for name, unit, _ in _core.outputs}
         return tuple(known[name] for name in self.channels)
 
-    @cached_property
-    def measured(self) -> Array:
-        return np.stack([self.recording.values(name, unit) for name, unit in zip(self.channels, self.units, strict=True)])
+    @property
+    def nuisances(self) -> tuple[Nuisance, ...]:
+        return tuple(
+            Nuisance(f"{name}_zero", "rad", float(self.measured[row, 0]))
+            for row, name in enumerate(self.channels)
+            if name in ENCODERS
+        )
 
     def predict(self, model: PositionDrive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        time = self.recording.time - self.recording.time[0]
-        command = scenario.table(time, self.recording.values("command", model.control.command_unit))
+        command = scenario.table(self.time, self.command)
         names = [name for name, _, _ in _core.outputs]
-        rows = [names.index(name) for name in self.channels]
-        run, slopes = derivatives(model, command, numbers, self.dt, time)
-        return np.stack([run[name] for name in self.channels]), slopes[:, rows]
+        run, slopes = derivatives(model, command, numbers, self.dt, self.time)
+        predicted = np.stack([run[name] for name in self.channels])
+        by_zero = np.zeros((len(nuisances), *predicted.shape))
+        encoders = [row for row, name in enumerate(self.channels) if name in ENCODERS]
+        for unknown, (row, zero) in enumerate(zip(encoders, nuisances, strict=True)):
+            predicted[row] += zero
+            by_zero[unknown, row] = 1.0
+        return predicted, np.concatenate((slopes[:, [names.index(name) for name in self.channels]], by_zero))

@@ -108,7 +108,6 @@ def fit(
     channels: Sequence[str] | None = None,
     dt: float | None = None,
     training: NDArray[np.bool_] | None = None,
-    nuisances: Sequence[float] | None = None,
     loss: str = "linear",
 ) -> Fit:
     """Fits free parameters of a model to a measurement by least squares.
@@ -125,7 +124,6 @@ def fit(
         channels: columns of a drive log to compare; all that a simulation has too if not given
         dt: step of the simulation [s]
         training: which samples take part, shape (n,); all if not given
-        nuisances: where the unknowns of the measurement start
         loss: "linear", or "soft_l1" where outliers are to be feared
 
     Returns:
@@ -146,7 +144,7 @@ def fit(
     """
     experiment = experiment_of(model, recording, channels, dt) if isinstance(recording, Recording) else recording
     problem = _Problem(model, experiment, _numbers(model, free), training)
-    start = problem.start(nuisances)
+    start = problem.start()
     weights = 1.0 / _scale(experiment.measured[:, problem.training])
     passes = 1 if len(experiment.channels) == 1 else 2
     for _ in range(passes):
@@ -166,7 +164,7 @@ def experiment_of(
         ValueError: the columns fit no experiment
     """
     if isinstance(model, PositionDrive):
-        return DriveLog.of(recording, channels, dt)
+        return DriveLog.of(recording, model, channels, dt)
     if {"speed", "torque"} <= set(recording.names):
         return FrictionTable.of(recording)
     if {"twist", "torque"} <= set(recording.names) or {"input_angle", "input_torque"} <= set(recording.names):
@@ -230,9 +228,8 @@ class _Problem:
         self.evaluations = 0
         self._last: tuple[bytes, tuple[Array, Array]] | None = None
 
-    def start(self, nuisances: Sequence[float] | None) -> Array:
-        names = self.experiment.nuisances
-        return np.array([place.value for place in self.places] + list(nuisances if nuisances is not None else [0.0] * len(names)))
+    def start(self) -> Array:
+        return np.array([p.value for p in self.places] + [nuisance.start for nuisance in self.experiment.nuisances])
 
     def model_with(self, x: Array) -> Any:
         numbers = [value for _, value, *_ in _core.parameters(self.model)]
@@ -280,11 +277,10 @@ class _Problem:
             Estimate(p.path, p.unit, p.value, float(v), float(s), bool(v <= p.low or v >= p.high))
             for p, v, s in zip(self.places, x, sigma, strict=False)
         ]
-        start = self.start(None)
-        for i in range(len(self.places), len(x)):
-            name = self.experiment.nuisances[i - len(self.places)]
-            unit = "rad" if name == "twist_zero" else "N.m"
-            estimates.append(Estimate(name, unit, float(start[i]), float(x[i]), float(sigma[i]), False))
+        estimates += [
+            Estimate(nuisance.name, nuisance.unit, nuisance.start, float(v), float(s), False)
+            for nuisance, v, s in zip(self.experiment.nuisances, x[len(self.places) :], sigma[len(self.places) :], strict=True)
+        ]
         return Fit(self.model_with(x), self.experiment, tuple(estimates), covariance, predicted, self.training, self.evaluations)
 
 

@@ -8,7 +8,7 @@ exact derivatives then refine stiffness, breakaway and the spring together.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -76,7 +76,7 @@ def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], sprin
     start = min(cyclic, virgin, key=lambda s: s.error)
     model = gear.replace(stiffness=start.spring, hysteresis=start.hysteresis)
     free = [f"stiffness.{field['name']}" for field in start.spring.fields] + ["hysteresis.stiffness", "hysteresis.breakaway"]
-    found = fit(model, start.loop, free, training=training, nuisances=[loop.middle, start.torque_zero])
+    found = fit(model, replace(start.loop, torque_zero=start.torque_zero), free, training=training)
     held_out = found.rms(held_out=True)[0]
     name = f"{spring} spring with {len(start.hysteresis.stiffness)} Maxwell elements"
     return Candidate(name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))

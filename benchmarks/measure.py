@@ -1,0 +1,115 @@
+"""Measuring a solver of the reference drive: alone, in a process of its own that can be ended at any time."""
+
+from __future__ import annotations
+
+import multiprocessing
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+
+import numpy as np
+from peers import Peer
+from reference_drive import Array
+
+WANTED_OUTPUT_ANGLE = 3e-6  # rad
+WANTED_TORQUE = 5e-2  # N.m
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How long a setting may take [s], and how often its run is repeated: `runs` times, or for `enough` seconds."""
+
+    limit: float
+    runs: int
+    enough: float
+
+
+@dataclass(frozen=True)
+class Result:
+    """A solver at one setting: largest errors over the samples, shortest time of a run, time to compile."""
+
+    solver: str
+    setting: str
+    output_angle_error: float  # rad
+    torque_error: float  # N.m
+    wall_time: float  # s
+    compile_time: float  # s
+
+    @property
+    def accurate(self) -> bool:
+        """Reaches the wanted accuracy."""
+        return self.output_angle_error <= WANTED_OUTPUT_ANGLE and self.torque_error <= WANTED_TORQUE
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A solver at a setting that gave no solution, and why."""
+
+    solver: str
+    setting: str
+    reason: str
+
+
+class TimeLimitError(Exception):
+    """A solver exceeded its time limit."""
+
+
+def measure(peer: Peer, effort: Effort, reference: Array) -> Iterator[Result | Failure]:
+    """One of both for each setting, up to the first that exceeds the time limit; reference: shape (5001, 2)."""
+    pipe, remote = multiprocessing.Pipe()
+    process = multiprocessing.get_context("spawn").Process(target=_serve, args=(peer, effort, remote), daemon=True)
+    process.start()
+    remote.close()
+    try:
+        for value in peer.ladder:
+            setting = f"{peer.setting} {value:.3g}"
+            try:
+                samples, wall_time, compile_time = _receive(pipe, effort)
+            except TimeLimitError as error:
+                yield Failure(peer.name, setting, str(error))
+                return
+            except RuntimeError as error:
+                yield Failure(peer.name, setting, str(error))
+                continue
+            angle, torque = np.abs(samples - reference).max(axis=0)
+            yield Result(peer.name, setting, float(angle), float(torque), wall_time, compile_time)
+    finally:
+        process.kill()  # reaches also a solver that is deep in compiled code
+        process.join()
+
+
+def _serve(peer: Peer, effort: Effort, pipe: Connection) -> None:
+    """Runs the ladder in the solver's process; sends samples and times of each setting, or what went wrong."""
+    for value in peer.ladder:
+        try:
+            start = time.perf_counter()
+            solve = peer.prepare(value)
+            compile_time = time.perf_counter() - start
+            pipe.send((*_best_of(solve, effort), compile_time))
+        except Exception as error:  # whatever a solver raises is its result
+            pipe.send(f"{type(error).__name__}: {error}")
+
+
+def _best_of(solve: Callable[[], Array], effort: Effort) -> tuple[Array, float]:
+    """Samples of the last run, and the shortest time of all [s]."""
+    times: list[float] = []
+    while len(times) < effort.runs and sum(times) <= effort.enough:
+        start = time.perf_counter()
+        samples = solve()
+        times.append(time.perf_counter() - start)
+    if not np.isfinite(samples).all():
+        raise FloatingPointError("the solution is not finite")
+    return samples, min(times)
+
+
+def _receive(pipe: Connection, effort: Effort) -> tuple[Array, float, float]:
+    if not pipe.poll(effort.limit + effort.enough):
+        raise TimeLimitError(f"more than {effort.limit:.0f} s")
+    try:
+        message: tuple[Array, float, float] | str = pipe.recv()
+    except EOFError:
+        raise RuntimeError("its process died") from None
+    if isinstance(message, str):
+        raise RuntimeError(message)
+    return message

@@ -1,0 +1,173 @@
+"""What a developer does here, on a machine that has only Python 3.11 or later with its headers, git and a C++20 compiler.
+
+    python3 dev.py demo         run the demonstration; its report is out/demo/report.html
+    python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
+    python3 dev.py lint         check style, formatting and types
+    python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
+    python3 dev.py docs         build the documentation; it begins at out/docs/index.html
+    python3 dev.py stubs        write the type stubs of the compiled modules anew
+    python3 dev.py pin          write the exact versions of all dependencies anew, the newest that pyproject.toml allows
+
+The first call of each makes .venv and installs what it needs into it, with uv. Later calls find this done.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent
+BUILD = ROOT / "build"
+TOOLS = BUILD / "tools"
+STAMPS = BUILD / "installed"
+OUT = ROOT / "out"
+BIN = ROOT / ".venv" / "bin"
+PYTHON = BIN / "python"
+PINS = ROOT / ".ci" / "requirements.txt"
+
+
+def main(arguments: Sequence[str]) -> int:
+    if not arguments or arguments[0] not in VERBS:
+        print(__doc__)
+        return 0 if arguments and arguments[0] in ("-h", "--help") else 2
+    name, *options = arguments
+    return VERBS[name](options[1:] if options[:1] == ["--"] else options)
+
+
+# ---- The environment -------------------------------------------------------------------------------------------------
+
+
+def prepare(groups: Sequence[str] = (), extra: str = "") -> None:
+    """Installs the package with dependency groups and an extra, unless that is done, and compiles what was edited."""
+    stamp, state = STAMPS / "-".join(("package", *groups, extra)).strip("-"), digest(ROOT / "pyproject.toml", PINS)
+    if not (PYTHON.exists() and stamp.exists() and stamp.read_text() == state):
+        install(groups, extra)
+        STAMPS.mkdir(parents=True, exist_ok=True)
+        stamp.write_text(state)
+    call(PYTHON, "-c", "import strainwave")
+
+
+def install(groups: Sequence[str], extra: str) -> None:
+    check_machine()
+    if not PYTHON.exists():
+        call(uv(), "venv", "--quiet", "--python", sys.executable, BIN.parent)
+    pip_install = (uv(), "pip", "install", "--quiet", "--python", PYTHON, "--constraints", PINS)
+    say("installing the tools of the build")
+    call(*pip_install, "--group", "build")
+    say("installing strainwave and its dependencies; compiling takes some minutes the first time")
+    anew = [] if STAMPS.exists() else ["--reinstall-package", "strainwave"]
+    wanted = [word for group in groups for word in ("--group", group)]
+    call(*pip_install, "--no-build-isolation", *anew, "--editable", f".[{extra}]" if extra else ".", *wanted)
+
+
+def check_machine() -> None:
+    if sys.version_info < (3, 11):
+        sys.exit(f"dev.py: Python 3.11 or later is needed, this is {sys.version.split()[0]}")
+    if not Path(sysconfig.get_path("include"), "Python.h").exists():
+        sys.exit("dev.py: the headers of Python are missing; on Debian or Ubuntu: apt install python3-dev")
+    if not (os.environ.get("CXX") or shutil.which("c++") or shutil.which("g++") or shutil.which("clang++")):
+        sys.exit("dev.py: a C++20 compiler is missing; on Debian or Ubuntu: apt install g++")
+
+
+def uv() -> Path:
+    """The machine's uv, or one of this project's own."""
+    if found := shutil.which("uv"):
+        return Path(found)
+    own = TOOLS / "bin" / "uv"
+    if not own.exists():
+        say("installing uv into build/tools")
+        if subprocess.run([sys.executable, "-m", "venv", TOOLS], stdout=subprocess.DEVNULL).returncode:
+            sys.exit("dev.py: install uv (https://docs.astral.sh/uv), or pip for Python: apt install python3-venv")
+        call(TOOLS / "bin" / "python", "-m", "pip", "install", "--quiet", "uv>=0.7.1,<1")
+    return own
+
+
+def digest(*files: Path) -> str:
+    return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()
+
+
+def environment() -> dict[str, str]:
+    """The caller's, the tools of .venv found first, and the same certificates trusted by pip and uv."""
+    found = dict(os.environ, VIRTUAL_ENV=str(BIN.parent), PATH=f"{BIN}{os.pathsep}{os.environ['PATH']}")
+    certificates = found.get("SSL_CERT_FILE") or found.get("PIP_CERT")
+    return {"SSL_CERT_FILE": certificates, "PIP_CERT": certificates, **found} if certificates else found
+
+
+def attempt(*command: str | Path) -> int:
+    return subprocess.run([str(word) for word in command], cwd=ROOT, env=environment()).returncode
+
+
+def call(*command: str | Path) -> None:
+    """Runs a command that must succeed; what went wrong, it has said itself."""
+    if code := attempt(*command):
+        sys.exit(code)
+
+
+def say(message: str) -> None:
+    print(f"dev.py: {message}", flush=True)
+
+
+# ---- The verbs -------------------------------------------------------------------------------------------------------
+
+
+def demo(options: Sequence[str]) -> int:
+    prepare()
+    call(BIN / "strainwave", "demo", "--out", OUT / "demo", *options)
+    say(f"the report is {OUT / 'demo' / 'report.html'}")
+    return 0
+
+
+def test(options: Sequence[str]) -> int:
+    prepare(["test"])
+    return attempt(PYTHON, "-m", "pytest", "--numprocesses", "auto", "--dist", "worksteal", *options)
+
+
+def lint(options: Sequence[str]) -> int:
+    prepare(["lint", "test"])
+    sources = [file for folder in ("include", "src", "tests") for file in sorted((ROOT / folder).rglob("*.[ch]pp"))]
+    checks: tuple[tuple[str | Path, ...], ...] = (
+        (BIN / "ruff", "check", "."),
+        (BIN / "ruff", "format", "--check", "."),
+        (BIN / "mypy",),
+        (BIN / "clang-format", "--dry-run", "--Werror", *sources),
+    )
+    return max(attempt(*check, *options) for check in checks)
+
+
+def bench(options: Sequence[str]) -> int:
+    prepare(extra="bench")
+    return attempt(PYTHON, "benchmarks/run.py", *options)
+
+
+def docs(options: Sequence[str]) -> int:
+    prepare(["docs"])
+    call(PYTHON, "docs/build.py", OUT / "docs", *options)
+    say(f"the documentation begins at {OUT / 'docs' / 'index.html'}")
+    return 0
+
+
+def stubs(options: Sequence[str]) -> int:
+    prepare()
+    return attempt(PYTHON, "src/stubs.py", *options)
+
+
+def pin(options: Sequence[str]) -> int:
+    groups = [word for group in ("build", "docs", "lint", "test") for word in ("--group", group)]
+    plain = ("--no-header", "--no-annotate", "--no-emit-index-url", "--no-emit-find-links")
+    everything = ("--universal", "--upgrade", "--all-extras", *groups)
+    return attempt(uv(), "pip", "compile", "--quiet", "pyproject.toml", *everything, *plain, "-o", PINS, *options)
+
+
+VERBS: dict[str, Callable[[Sequence[str]], int]] = {
+    verb.__name__: verb for verb in (demo, test, lint, bench, docs, stubs, pin)
+}
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

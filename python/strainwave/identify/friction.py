@@ -1,0 +1,97 @@
+"""Friction tables: the law at the input from torques at constant speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import friction
+from strainwave._core import Gear
+from strainwave.identify.experiment import FrictionTable
+from strainwave.identify.fit import Fit, fit
+
+Array = NDArray[np.float64]
+
+FOLDS = 20  # a table is cut into at most so many parts, each predicted once from the others
+KINETIC = ("coulomb", "viscous")
+FALLING = ("coulomb", "breakaway", "stribeck_speed", "viscous")
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One set of free parameters fitted to a friction table.
+
+    Attributes:
+        name: what it describes
+        fit: the fit to the whole table
+        held_out: torque at each speed as predicted without the measurements near it [N.m], shape (n,)
+        error: rms of measured less `held_out` [N.m]
+    """
+
+    name: str
+    fit: Fit
+    held_out: Array
+    error: float
+
+
+def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
+    """Fits the input friction of a gear to a table, with and without a fall of torque at low speed.
+
+    The law of `gear.friction_input` is kept; a purely viscous one becomes Coulomb's. A table that shows no fall towards
+    breakaway gives a law without one; of Coulomb's law, whose steady torque does not depend on breakaway, the ratio of
+    breakaway to Coulomb torque is kept.
+
+    Args:
+        table: measured torque over speed
+        gear: the gear to start from
+
+    Returns:
+        candidates, best first by the error of predictions from the rest of the table; the simpler one unless the other is
+        better by more than 5 %
+
+    Raises:
+        ValueError: fewer than three speeds
+    """
+    speeds = len(np.unique(table.speed))
+    if speeds < 3:
+        raise ValueError(f"a friction table needs at least 3 speeds; this one has {speeds}")
+    law = gear.friction_input
+    candidates = [_straight(table, gear)]
+    if isinstance(law, friction.Stribeck | friction.LuGre) and speeds > len(FALLING) + 1:
+        candidates.append(_falling(table, gear, candidates[0].fit.gear.friction_input))
+    best = min(candidate.error for candidate in candidates)
+    return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates)))
+
+
+def _straight(table: FrictionTable, gear: Gear) -> Candidate:
+    """Coulomb and viscous friction, written into the law of the gear."""
+    line = np.polynomial.polynomial.polyfit(np.abs(table.speed), np.abs(table.torque), 1)
+    coulomb, viscous = max(float(line[0]), 1e-3 * float(np.abs(table.torque).max())), max(float(line[1]), 0.0)
+    start = gear.replace(friction_input=friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=viscous))
+    candidate = _candidate("Coulomb and viscous", table, start, KINETIC)
+    found, law = candidate.fit.gear.friction_input, gear.friction_input
+    if isinstance(law, friction.Viscous):
+        law = friction.Coulomb()
+    ratio = law.breakaway / law.coulomb if isinstance(law, friction.Coulomb) and law.coulomb > 0.0 else 1.0
+    written = law.replace(coulomb=found.coulomb, breakaway=ratio * found.coulomb, viscous=found.viscous)
+    return replace(candidate, fit=replace(candidate.fit, model=gear.replace(friction_input=written)))
+
+
+def _falling(table: FrictionTable, gear: Gear, straight: friction.Stribeck | friction.LuGre) -> Candidate:
+    speed = np.abs(table.speed[table.speed != 0.0])
+    middle = float(np.sqrt(speed.min() * speed.max()))
+    start = straight.replace(breakaway=1.5 * straight.coulomb, stribeck_speed=middle)
+    return _candidate("with a fall at low speed", table, gear.replace(friction_input=start), FALLING)
+
+
+def _candidate(name: str, table: FrictionTable, start: Gear, free: Sequence[str]) -> Candidate:
+    paths = [f"friction_input.{parameter}" for parameter in free]
+    fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(FOLDS, len(table.speed))
+    held_out = np.empty(len(table.speed))
+    for part in np.unique(fold):
+        left_out = fold == part
+        held_out[left_out] = fit(start, table, paths, training=~left_out).predicted[0, left_out]
+    return Candidate(name, fit(start, table, paths), held_out, float(np.sqrt(np.mean((table.torque - held_out) ** 2))))

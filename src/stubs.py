@@ -1,0 +1,49 @@
+"""Type stubs of the compiled modules, as the extension itself describes them: `python3 dev.py stubs` writes them."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from pathlib import Path
+
+from nanobind.stubgen import ReplacePattern, StubGen
+
+import strainwave
+from strainwave import _core
+
+PACKAGE = Path(strainwave.__file__).parent
+
+# Plain attributes carry no signature, so their types stand here.
+ATTRIBUTES = {
+    r"\.fields$": "fields: tuple[dict[str, Any], ...]",
+    r"\.families$": "families: dict[str, dict[str, type[Any]]]",
+    r"\.outputs$": "outputs: tuple[tuple[str, str, str], ...]",
+}
+
+
+def stubs() -> dict[Path, str]:
+    """The text of each stub, by its place in the package."""
+    modules = ("strainwave._core", "strainwave.drives", *(f"strainwave.{family}" for family in _core.families))
+    return {PACKAGE / f"{module.rpartition('.')[2]}.pyi": stub(module) for module in modules}
+
+
+def stub(module: str) -> str:
+    generator = StubGen(sys.modules[module], patterns=[pattern(*attribute) for attribute in ATTRIBUTES.items()])
+    generator.put(sys.modules[module])
+    return generator.get()
+
+
+def pattern(name: str, declaration: str) -> ReplacePattern:
+    return ReplacePattern(re.compile(name), [r"\from typing import Any", declaration, ""], 0)
+
+
+def main() -> None:
+    for path, text in stubs().items():
+        partial = path.with_suffix(".partial")
+        partial.write_text(text)
+        os.replace(partial, path)
+
+
+if __name__ == "__main__":
+    main()
