@@ -33,6 +33,7 @@ void bind_family(nb::module_& core, const char* name, const char* doc, List<Law.
 }  // namespace strainwave::host
 
 NB_MODULE(_core, core) {
+    nb::set_leak_warnings(false);  // models in default arguments and module tables live until the interpreter ends
     core.attr("__doc__") = "The physics, compiled.";
     core.attr("families") = nb::dict();
     core.attr("PassivityWarning") = nb::steal(PyErr_NewExceptionWithDoc(

@@ -36,7 +36,7 @@ void write(const Output<Slope>& output, std::size_t first, std::size_t count, st
 void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
                    std::size_t kept, const Pause& pause) {
     const Parts parts = parts_of(drive);
-    for (std::size_t first = 0; first < parameters.size(); first += width) {
+    for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
         std::size_t k = 0;
         const auto record = [&](const Output<Slope>& output) { write(output, first, parameters.size(), k++, kept, out, slopes); };
@@ -47,7 +47,7 @@ void differentiate(const Drive& drive, const Course& course, const std::vector<i
 
 void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out, double* slopes) {
     const Parts parts = parts_of(drive);
-    for (std::size_t first = 0; first < parameters.size(); first += width) {
+    for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
         write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque)}), first, parameters.size(), 0, 1, out, slopes);
     }

@@ -187,6 +187,23 @@ class Recording:
         raise ValueError(f'{path}: suffix "{suffix}" is not known; use .csv, .txt, .tsv or .parquet')
 
     @staticmethod
+    def header(path: str | Path) -> tuple[str, ...]:
+        """Names of the columns in a file, without their units.
+
+        Raises:
+            ValueError: the file cannot be read, or its suffix is not known.
+        """
+        if Path(path).suffix.lower() != ".parquet":
+            return tuple(label.name for label in _open_csv(path).labels)
+        import pyarrow
+        from pyarrow.parquet import read_schema
+
+        try:
+            return tuple(_parquet_label(field).name for field in read_schema(path))
+        except (OSError, pyarrow.ArrowException) as error:
+            raise ValueError(_unreadable(path, error)) from None
+
+    @staticmethod
     def from_csv(
         path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
     ) -> Recording:

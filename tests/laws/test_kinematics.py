@@ -6,8 +6,9 @@ import math
 from typing import Any
 
 import pytest
-import strainwave as sw
 from hypothesis import given
+from strainwave.kinematics import StrainWave
+
 from tests.strategies import built, models
 
 
@@ -17,8 +18,8 @@ def test_a_ratio_is_finite_and_not_zero(kinematics: Any) -> None:
     assert kinematics.ratio != 0.0
 
 
-@given(built(sw.kinematics.StrainWave))
-def test_the_ratio_solves_the_motion_of_the_three_members(kinematics: sw.kinematics.StrainWave) -> None:
+@given(built(StrainWave))
+def test_the_ratio_solves_the_motion_of_the_three_members(kinematics: StrainWave) -> None:
     """z_c w_c - z_f w_f = (z_c - z_f) w_w, the wave generator turning at w_w = 1 and one spline at rest."""
     flexspline, circular = kinematics.flexspline_teeth, kinematics.circular_spline_teeth
     output = 1.0 / kinematics.ratio
@@ -26,8 +27,10 @@ def test_the_ratio_solves_the_motion_of_the_three_members(kinematics: sw.kinemat
     assert driven == pytest.approx(circular - flexspline, rel=1e-14)
 
 
-@given(built(sw.kinematics.StrainWave))
-def test_the_other_spline_turns_the_other_way_and_the_ratios_differ_by_one(kinematics: sw.kinematics.StrainWave) -> None:
-    fixed_circular, fixed_flexspline = (kinematics.replace(fixed=fixed).ratio for fixed in ("circular_spline", "flexspline"))
-    assert fixed_circular < 0.0 < fixed_flexspline
-    assert fixed_circular + fixed_flexspline == pytest.approx(1.0, abs=1e-12 * fixed_flexspline)
+@given(built(StrainWave))
+def test_the_other_spline_turns_the_other_way_and_the_ratios_differ_by_one(
+    kinematics: StrainWave,
+) -> None:
+    reverse, forward = (kinematics.replace(fixed=fixed).ratio for fixed in ("circular_spline", "flexspline"))
+    assert reverse < 0.0 < forward
+    assert reverse + forward == pytest.approx(1.0, abs=1e-12 * forward)

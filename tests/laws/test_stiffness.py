@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from tests.strategies import log_uniform, models, signed
 
 springs = models("stiffness")
@@ -44,7 +45,7 @@ def test_stiffness_is_positive(spring: Any, torque: float) -> None:
 
 @given(springs, torques)
 def test_tangent_is_the_slope_of_the_torque(spring: Any, torque: float) -> None:
-    """Mean value theorem; the slopes at both ends bound the secant, for no spring's slope turns round within so short a step."""
+    """Mean value theorem; the ends bound the secant, for no spring's slope turns round within so short a step."""
     a = spring.twist(torque)
     b = a * (1.0 + STEP)
     secant = (spring.torque(b) - spring.torque(a)) / (b - a)

@@ -13,16 +13,22 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core, units
+
 from tests.strategies import Field, drives, gears, models, options, refusal
 
 LISTED = [model for family in _core.families.values() for model in family.values()]
 COMPOSED = [sw.Gear, sw.drives.PositionDrive]
 EVERY_MODEL = [*LISTED, *COMPOSED]
-EVERY_FIELD = [pytest.param(model, field, id=f"{model.name}.{field['name']}") for model in EVERY_MODEL for field in model.fields]
+EVERY_FIELD = [
+    pytest.param(model, field, id=f"{model.name}.{field['name']}") for model in EVERY_MODEL for field in model.fields
+]
 EVERY_NUMBER = [case for case in EVERY_FIELD if case.values[1]["kind"] in ("number", "sequence", "count")]
 EVERY_PART = [case for case in EVERY_FIELD if case.values[1]["kind"] == "part"]
 EVERY_CHOICE = [case for case in EVERY_FIELD if case.values[1]["kind"] == "choice"]
 
+any_numbers = st.one_of(
+    [models(family) for family in ("friction", "stiffness", "hysteresis", "kinematic_error")] + [gears, drives]
+)
 any_value = st.one_of([models(family) for family in _core.families] + [gears, drives])
 every_model = pytest.mark.parametrize("model", EVERY_MODEL, ids=lambda model: model.name)
 
@@ -61,7 +67,7 @@ def test_the_documentation_has_its_equation_and_every_symbol_of_its_fields(model
 def test_a_field_has_a_name_a_text_and_a_unit_in_standard_spelling(model: type, field: Field) -> None:
     assert field["name"].isidentifier()
     assert re.match(r"[A-Z\d]", field["doc"])
-    assert "" == field["unit"] if field["kind"] == "part" else units.check(field["unit"]) == field["unit"]
+    assert field["unit"] == "" if field["kind"] == "part" else units.check(field["unit"]) == field["unit"]
 
 
 def test_no_two_models_of_a_family_share_a_name() -> None:
@@ -74,10 +80,11 @@ def test_no_two_models_of_a_family_share_a_name() -> None:
 
 @pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
 @pytest.mark.parametrize("sense", [-1.0, 1.0])
-def test_a_number_out_of_its_range_is_refused_with_field_value_unit_and_limits(model: type, field: Field, sense: float) -> None:
+def test_a_number_out_of_its_range_is_refused_with_its_limits(model: type, field: Field, sense: float) -> None:
     limit = field["min"] if sense < 0.0 else field["max"]
     beyond = sense * math.inf if limit is None else limit + sense
-    found = re.fullmatch(re.escape(shown(model, field, beyond)) + r" must lie in [\[(](\S+), (\S+)[\])]", refusal(model, field, beyond))
+    message = re.escape(shown(model, field, beyond)) + r" must lie in [\[(](\S+), (\S+)[\])]"
+    found = re.fullmatch(message, refusal(model, field, beyond))
     assert found
     low, high = map(float, found.groups())
     assert low == (-math.inf if field["min"] is None else field["min"])
@@ -180,7 +187,7 @@ def test_a_value_is_frozen(value: Any) -> None:
             setattr(value, field["name"], getattr(value, field["name"]))
 
 
-@given(st.one_of([models(family) for family in ("friction", "stiffness", "hysteresis", "kinematic_error")] + [gears, drives]))
+@given(any_numbers)
 def test_numbers_taken_out_and_put_back_make_the_same_value(value: Any) -> None:
     parameters = _core.parameters(value)
     assert _core.with_numbers(value, [number for _, number, *_ in parameters]) == value

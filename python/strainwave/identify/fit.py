@@ -248,6 +248,8 @@ class _Problem:
         return self._last[1]
 
     def solve(self, start: Array, weights: Array, loss: str) -> Array:
+        if len(start) == 0:
+            return start
         from scipy.optimize import least_squares
 
         free_ends = [(-np.inf, np.inf)] * len(self.experiment.nuisances)

@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 SLIP_TWISTS = 14  # on a logarithmic grid; more cannot be told apart in any loop tried
 KNEES = 9  # places tried for the knees of a three-segment spring
 MOST_ELEMENTS = 6  # kept after the convex step
+NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
 SPRINGS = ("linear", "cubic", "three_segment")
 
 
@@ -60,15 +61,16 @@ def fit_loop(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None =
         training: samples that take part, shape (n,); the rest validates
 
     Returns:
-        candidates, best first by the error on data kept back; of two within 5 % the one with fewer parameters
+        candidates, best first by the error on data kept back; of those within 5 % of it, or
+        within a thousandth of the span of the torque, the one with the fewest parameters
 
     Raises:
         ValueError: too few samples for any candidate
     """
     chosen = np.ones(len(loop.twist), bool) if training is None else training
     candidates = [_candidate(loop, gear, chosen, spring) for spring in SPRINGS]
-    best = min(candidate.error for candidate in candidates)
-    return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates) if c.error <= 1.05 * best else c.error))
+    good = 1.05 * min(candidate.error for candidate in candidates) + NEGLIGIBLE * float(np.ptp(loop.torque))
+    return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
 
 
 def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str) -> Candidate:

@@ -1,0 +1,149 @@
+"""The command `strainwave`: thin; it reads files, calls the package and writes files."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from strainwave.gear_set import GearSet
+    from strainwave.identify.measurement import Kind
+    from strainwave.identify.twin import Twin
+
+REFUSED = 2  # exit code for input that cannot be used
+
+app = typer.Typer(
+    help="Strain wave gears: measurements in, a validated model of that gear out.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+@app.command()
+def twin(
+    gear: Annotated[str, typer.Option(help="Where to start: a catalogue set, as hfuc-25-100, or a gear file.")],
+    friction: Annotated[Path | None, typer.Option(help="Table of steady friction at the input: speed, torque.")] = None,
+    torsion: Annotated[
+        Path | None, typer.Option(help="Torsion loop: twist, torque; or input_angle, input_torque, output locked.")
+    ] = None,
+    log: Annotated[
+        Path | None, typer.Option(help="Run from rest: time, command, position, output_angle, current … as measured.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for gear.toml and report.html.")] = Path("twin"),
+    column: Annotated[
+        list[str] | None, typer.Option(help="A column's name in your file, as speed='Motor Speed'; repeat as needed.")
+    ] = None,
+    unit: Annotated[
+        list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
+    ] = None,
+) -> None:
+    """Identify a gear from measurements.
+
+    Measurements are CSV or Parquet files whose columns carry units, as speed [rad/s]. Any of them will do: each tells what it
+    can, a part of it is kept back to validate, and the report says what remains unknown.
+    """
+    from strainwave.gear_set import GearSet
+    from strainwave.identify.measurement import read_measurement
+    from strainwave.identify.twin import twin as identify
+    from strainwave.report.twin import twin_report
+
+    given: dict[Kind, Path | None] = {"friction": friction, "torsion": torsion, "log": log}
+    files = {kind: path for kind, path in given.items() if path is not None}
+    columns, units = _pairs("--column", column), _pairs("--unit", unit)
+    with _stages() as stage:
+        start = GearSet.read(gear)
+        recordings = {kind: read_measurement(kind, path, columns, units) for kind, path in files.items()}
+        found = identify(start, **recordings, sources={kind: path.name for kind, path in files.items()}, progress=stage)
+        stage("report")
+        _write(out, found.gear_set, twin_report(found))
+    _summarise(found, out)
+
+
+@app.command()
+def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/demo")) -> None:
+    """Identify a gear from published measurements, and simulate published experiments with it."""
+    from strainwave.demo import experiments, published_twin
+    from strainwave.report.twin import twin_report
+
+    with _stages() as stage:
+        found = published_twin(progress=stage)
+        stage("experiments")
+        runs = experiments(found)
+        stage("report")
+        _write(out, found.gear_set, twin_report(found, runs))
+    _summarise(found, out)
+
+
+@app.command()
+def gears(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> None:
+    """List the catalogue sets."""
+    from strainwave.gear_set import catalogue
+
+    print("\n".join(name for name in catalogue() if part.lower() in name))
+
+
+def _pairs(option: str, values: list[str] | None) -> dict[str, str]:
+    pairs = {}
+    for value in values or []:
+        name, equals, given = value.partition("=")
+        if not (name and equals and given):
+            raise ValueError(f"{option} {value}: write it as {option} name=value")
+        pairs[name] = given
+    return pairs
+
+
+def _write(folder: Path, gear_set: GearSet, report: str) -> None:
+    """Both files or none: each is written beside its place, then put there."""
+    from strainwave.report.page import write
+
+    folder.mkdir(parents=True, exist_ok=True)
+    draft = folder / ".gear.toml.part"
+    try:
+        gear_set.save(draft)
+        write(report, folder / "report.html")
+        os.replace(draft, folder / "gear.toml")
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _summarise(found: Twin, out: Path) -> None:
+    for evidence in found.evidence:
+        experiment = evidence.fit.experiment
+        errors = [
+            f"{name} {error:.3g} {unit}"
+            for name, unit, error in zip(experiment.channels, experiment.units, evidence.error, strict=True)
+        ]
+        print(f"{evidence.source}: rms error on data kept back: {', '.join(errors)}")
+    unknown = [verdict.path for verdict in found.verdicts if verdict.state == "not identified"]
+    if unknown:
+        print(f"not identified: {', '.join(unknown)}")
+    for c in found.contradictions:
+        print(f"contradiction: {c.path} = {c.earlier:g} {c.unit} ({c.earlier_source}) against {c.measured:.4g} ({c.source})")
+    print(f"wrote {out / 'gear.toml'} and {out / 'report.html'}")
+
+
+@contextmanager
+def _stages() -> Iterator[Callable[[str], None]]:
+    """Shows on a terminal what is being done, and stays silent in a pipe."""
+    from rich.console import Console
+
+    with Console(stderr=True).status("reading") as status:
+        yield lambda stage: status.update(stage)
+
+
+def main() -> None:
+    """Runs the command; input that cannot be used ends in one line and exit code 2, with nothing written."""
+    try:
+        app()
+    except KeyboardInterrupt:
+        sys.exit("strainwave: interrupted; nothing written")
+    except (ValueError, TypeError, OSError, FloatingPointError) as error:
+        print(f"strainwave: {error}", file=sys.stderr)
+        sys.exit(REFUSED)

@@ -1,0 +1,104 @@
+"""Drive logs: what a run of the whole drive says of its gear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import friction, kinematic_error
+from strainwave.drives import PositionDrive
+from strainwave.identify.experiment import DriveLog
+from strainwave.identify.fit import Fit, fit
+
+Array = NDArray[np.float64]
+
+TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
+ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
+RESTING = 0.02  # of the largest speed: a log that starts faster does not start at rest
+
+
+@dataclass(frozen=True)
+class LogFit:
+    """A drive fitted to a log.
+
+    Attributes:
+        fit: the fit to the first part of the record
+        error: rms of each channel over the rest, in the channel's unit, shape (channels,)
+    """
+
+    fit: Fit
+    error: Array
+
+
+def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
+    """Fits what a drive log can tell of a gear, by simulating the drive through the log's command.
+
+    Args:
+        log: command and measured outputs, starting at rest
+        drive: motor, control and load as known, the gear to start from
+        free: parameters of the gear to fit, as paths of the drive
+
+    Returns:
+        the fit to the first 70 % of the record, with its error on the rest
+
+    Raises:
+        ValueError: the log does not start at rest, or is too short for the parameters
+    """
+    _check_rest(log)
+    training = log.time <= TRAINING_SHARE * log.time[-1]
+    found = fit(drive, log, free, training=training)
+    return LogFit(found, found.rms(held_out=True))
+
+
+def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool, torsion_known: bool) -> list[str]:
+    """What a log can tell that no better measurement was given for.
+
+    Friction at the input from any log; the first stiffness and the kinematic error only where both shafts have encoders.
+    """
+    law = drive.gear.friction_input
+    parameters = {field["name"] for field in law.fields}
+    free = [] if friction_known else [f"gear.friction_input.{name}" for name in ("coulomb", "viscous") if name in parameters]
+    if {"input_angle", "output_angle"} <= set(log.channels):
+        if not torsion_known:
+            free.append(f"gear.stiffness.{drive.gear.stiffness.fields[0]['name']}")
+        free += ["gear.kinematic_error.amplitude", "gear.kinematic_error.phase"]
+    return free
+
+
+def prepared(log: DriveLog, drive: PositionDrive) -> PositionDrive:
+    """The drive with a gear whose laws have the parameters that the log can tell, started near the measurement."""
+    gear = drive.gear
+    if isinstance(gear.friction_input, friction.Viscous):
+        viscous = gear.friction_input.viscous
+        gear = gear.replace(friction_input=friction.Coulomb(coulomb=1e-3, breakaway=1e-3, viscous=viscous))
+    if {"input_angle", "output_angle"} <= set(log.channels):
+        gear = gear.replace(kinematic_error=_harmonics(log, gear.kinematics.ratio))
+    return drive.replace(gear=gear)
+
+
+def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
+    """Harmonics of the measured transmission error over the input angle, by linear least squares."""
+    input_angle = log.measured[log.channels.index("input_angle")]
+    output_angle = log.measured[log.channels.index("output_angle")]
+    angle = input_angle - input_angle[0]
+    error = angle / ratio - (output_angle - output_angle[0])
+    waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
+    columns = np.column_stack((np.ones_like(angle), angle, *waves))
+    weights = np.linalg.lstsq(columns, error, rcond=None)[0][2:].reshape(-1, 2)
+    return kinematic_error.Fourier(
+        order=ORDERS, amplitude=np.hypot(*weights.T).tolist(), phase=np.arctan2(weights[:, 1], weights[:, 0]).tolist()
+    )
+
+
+def _check_rest(log: DriveLog) -> None:
+    for row, name in enumerate(log.channels):
+        if name.endswith("_angle"):
+            speed = np.abs(np.gradient(log.measured[row], log.time))
+            first = float(np.median(speed[: max(3, len(speed) // 500)]))
+            if first > max(RESTING * float(speed.max()), 3.0 * float(np.quantile(speed, 0.02))):
+                raise ValueError(
+                    f"the drive log must start at rest: {name} starts at {first:.3g} rad/s, "
+                    f"{100 * first / speed.max():.0f} % of its largest speed"
+                )

@@ -1,0 +1,46 @@
+"""Pages: a template filled in and written as one file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from strainwave.recording import _replacing
+from strainwave.report import typeset
+
+
+def render(template: str, content: Mapping[str, Any]) -> str:
+    """The HTML of a template of this folder; whatever is put into it is escaped.
+
+    Args:
+        template: name of the file in templates/
+        content: what the template names
+
+    Raises:
+        jinja2.UndefinedError: the template names what `content` does not have
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("strainwave.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {name: getattr(typeset, name) for name in typeset.__all__}
+    return environment.get_template(template).render(content)
+
+
+def write(html: str, path: str | Path) -> None:
+    """Writes a page; what stood at `path` stays until the new page is complete.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write("<!doctype html>", f"{folder}/report.html")
+    ...     Path(f"{folder}/report.html").read_text()
+    '<!doctype html>'
+    """
+    with _replacing(path) as temporary:
+        temporary.write_text(html, encoding="utf-8", newline="\n")

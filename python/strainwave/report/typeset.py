@@ -1,0 +1,104 @@
+"""Numbers and units as a reader expects them in print: plain Unicode, the same in every locale."""
+
+from __future__ import annotations
+
+import math
+import re
+
+__all__ = ["number", "quantity", "uncertain", "unit"]
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+_PLAIN = (-4, 5)  # decades of numbers written without a power of ten
+_FINEST = 8  # digits; a standard deviation below the last of them is written by itself
+
+
+def number(value: float, digits: int = 6) -> str:
+    """A number to so many significant digits at most, with a power of ten where that is shorter.
+
+    >>> number(31000.0), number(0.0126), number(-5.818e-5), number(2e9)
+    ('31000', '0.0126', '−58.18 × 10⁻⁶', '2 × 10⁹')
+    """
+    if not math.isfinite(value):
+        return {math.inf: "∞", -math.inf: "−∞"}.get(value, "—")
+    if value == 0.0:
+        return "0"
+    power = _power(_decade(value, digits))
+    scaled = value / 10.0**power
+    return _signed(_fixed(scaled, digits - 1 - _decade(scaled, digits), strip=True)) + _times(power)
+
+
+def uncertain(value: float, sigma: float) -> str:
+    """A value with its standard deviation, which is written to two significant digits.
+
+    Not-a-number stands for no standard deviation, infinity for a value that nothing determines.
+
+    >>> uncertain(0.012554, 0.00213), uncertain(31234.0, 870.0), uncertain(5.8e-5, 9.96e-7)
+    ('0.0126 ± 0.0021', '31230 ± 870', '(58.0 ± 1.0) × 10⁻⁶')
+    >>> uncertain(0.02, float("inf")), uncertain(3e-4, 1e-18)
+    ('0.02 ± ∞', '0.0003 ± 1 × 10⁻¹⁸')
+    """
+    if math.isnan(sigma):
+        return number(value)
+    if not math.isfinite(sigma) or sigma <= abs(value) * 10.0**-_FINEST:
+        return f"{number(value)} ± {number(sigma, 2)}"
+    power = _power(_decade(max(abs(value), sigma), 2))
+    places = 1 - _decade(sigma / 10.0**power, 2)
+    pair = " ± ".join(_signed(_fixed(x / 10.0**power, places)) for x in (value, sigma))
+    return f"({pair}){_times(power)}" if power else pair
+
+
+def unit(text: str) -> str:
+    """A unit in print; nothing for plain numbers.
+
+    >>> unit("N.m.s/rad"), unit("kg.m2"), unit("V/(rad.s)"), unit("Ohm"), unit("1")
+    ('N·m·s/rad', 'kg·m²', 'V/(rad·s)', 'Ω', '')
+    """
+    if text == "1":
+        return ""
+    raised = re.sub(r"(?<=[A-Za-z])-?\d", lambda power: power[0].translate(_SUPERSCRIPTS), text)
+    return re.sub(r"\bdeg\b", "°", raised.replace("Ohm", "Ω")).replace(".", "·")
+
+
+def quantity(value: float, of: str, digits: int = 3) -> str:
+    """A number with its unit, scaled by a prefix where that reads better.
+
+    >>> quantity(0.000612, "N.m"), quantity(3.2e-6, "rad"), quantity(31000.0, "N.m/rad"), quantity(0.5, "1")
+    ('612 µN·m', '3.2 µrad', '31 kN·m/rad', '0.5')
+    """
+    power = prefix_power(value, of)
+    return f"{number(value / 10.0**power, digits)} {prefixed(of, power)}".strip()
+
+
+def prefix_power(largest: float, of: str) -> int:
+    """The power of ten, a multiple of three, by whose prefix numbers of this size are best written."""
+    if of == "1" or of.startswith(("k", "1/")) or not math.isfinite(largest) or 0.1 <= abs(largest) < 1e4 or largest == 0.0:
+        return 0
+    return min(max(3 * math.floor(_decade(largest, 3) / 3), -9), 6)
+
+
+def prefixed(of: str, power: int) -> str:
+    """A unit in print with the prefix of a power of ten."""
+    return _PREFIXES[power] + unit(of)
+
+
+def _decade(value: float, digits: int) -> int:
+    """Power of ten of the first digit, once the number is rounded to so many."""
+    return int(f"{value:.{digits - 1}e}".partition("e")[2])
+
+
+def _power(decade: int) -> int:
+    return 0 if _PLAIN[0] <= decade <= _PLAIN[1] else 3 * math.floor(decade / 3)
+
+
+def _fixed(value: float, places: int, *, strip: bool = False) -> str:
+    text = f"{round(value, places) + 0.0:.{max(places, 0)}f}"
+    return text.rstrip("0").rstrip(".") if strip and "." in text else text
+
+
+def _signed(text: str) -> str:
+    return text.replace("-", "−")
+
+
+def _times(power: int) -> str:
+    return f" × 10{str(power).translate(_SUPERSCRIPTS)}" if power else ""

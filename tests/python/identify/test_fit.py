@@ -1,0 +1,148 @@
+"""Least squares with exact derivatives: the truth comes back, and the uncertainty is what it says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import strainwave as sw
+from numpy.typing import NDArray
+from strainwave.identify.experiment import TorsionLoop
+from strainwave.identify.fit import fit
+
+SPEED = np.linspace(-60.0, 60.0, 41)[np.arange(41) != 20]
+LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
+FREE = ["friction_input.coulomb", "friction_input.viscous"]
+
+
+def friction_table(noise: NDArray[np.float64] | float = 0.0) -> sw.Recording:
+    return sw.Recording({"speed": SPEED, "torque": LAW.steady(SPEED) + noise}, {"speed": "rad/s", "torque": "N.m"})
+
+
+def gear(**changes: object) -> sw.Gear:
+    return sw.Gear(friction_input=LAW.replace(coulomb=0.1, viscous=1e-5)).replace(**changes)
+
+
+def drive(**changes: float) -> sw.drives.PositionDrive:
+    return sw.drives.PositionDrive(
+        gear=sw.Gear(
+            kinematics=sw.kinematics.StrainWave(),
+            stiffness=sw.stiffness.Cubic(a1=changes.get("a1", 1.5e4), a3=1e9),
+            damping=5.0,
+            friction_input=LAW.replace(
+                coulomb=changes.get("coulomb", LAW.coulomb), viscous=changes.get("viscous", LAW.viscous)
+            ),
+        ),
+        motor=sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4),
+        load=sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0),
+    )
+
+
+def drive_log(noise: float = 0.0, seed: int = 0) -> sw.Recording:
+    samples = np.linspace(0.0, 1.0, 501)  # straight lines between samples, as a log has its command
+    command = sw.scenario.table(samples, 6.0 * np.sin(3.0 * np.pi * samples))
+    run = sw.simulate(drive(), command, sample=2e-3).select(["time", "command", "input_angle", "output_angle"])
+    random = np.random.default_rng(seed)
+    columns = {name: run[name] + 0.0 for name in run.names}
+    columns["input_angle"] += noise * random.normal(size=len(run)) + 0.3
+    columns["output_angle"] += 1e-2 * noise * random.normal(size=len(run)) - 1.0
+    return sw.Recording(columns, {name: run.unit(name) for name in run.names})
+
+
+def test_a_table_without_noise_gives_the_law_back() -> None:
+    found = fit(gear(), friction_table(), FREE)
+    assert found.gear.friction_input.coulomb == pytest.approx(LAW.coulomb, rel=1e-9)
+    assert found.gear.friction_input.viscous == pytest.approx(LAW.viscous, rel=1e-9)
+
+
+def test_least_squares_agrees_with_the_linear_algebra_of_the_same_problem() -> None:
+    noise = 1e-3 * np.random.default_rng(1).normal(size=len(SPEED))
+    found = fit(gear(), friction_table(noise), FREE)
+    columns = np.column_stack((np.sign(SPEED), SPEED))
+    exact = np.linalg.lstsq(columns, LAW.steady(SPEED) + noise, rcond=None)[0]
+    assert [e.value for e in found.estimates] == pytest.approx(exact, rel=1e-8)
+
+
+def test_one_sigma_covers_two_thirds_and_three_sigma_nearly_all() -> None:
+    distances = []
+    for seed in range(200):
+        noise = 1e-3 * np.random.default_rng(seed).normal(size=len(SPEED))
+        found = fit(gear(), friction_table(noise), FREE)
+        distances += [
+            abs(e.value - truth) / e.sigma for e, truth in zip(found.estimates, (0.03, 4e-4), strict=True)
+        ]
+    assert 0.62 < np.mean(np.array(distances) < 1.0) < 0.80  # a normal law has 0.68, correlation lengths above 1 add a little
+    assert np.mean(np.array(distances) < 3.0) > 0.985
+
+
+def test_a_drive_log_gives_friction_and_stiffness_back_whatever_the_zeros_of_its_encoders() -> None:
+    start = drive(a1=1.2e4, coulomb=0.02, viscous=1e-4)
+    found = sw.fit(
+        start, drive_log(), ["gear.friction_input.coulomb", "gear.friction_input.viscous", "gear.stiffness.a1"]
+    )
+    values = {e.path: e.value for e in found.estimates}
+    assert values["gear.friction_input.coulomb"] == pytest.approx(0.03, rel=1e-6)
+    assert values["gear.friction_input.viscous"] == pytest.approx(4e-4, rel=1e-6)
+    assert values["gear.stiffness.a1"] == pytest.approx(1.5e4, rel=1e-6)
+    assert values["input_angle_zero"] == pytest.approx(0.3, abs=1e-9)
+    assert values["output_angle_zero"] == pytest.approx(-1.0, abs=1e-9)
+
+
+def test_noise_in_two_channels_of_different_size_is_weighed_by_itself() -> None:
+    found = sw.fit(drive(a1=1.2e4), drive_log(noise=1e-3), ["gear.stiffness.a1", "gear.friction_input.coulomb"])
+    assert found.rms() == pytest.approx([1e-3, 1e-5], rel=0.1)
+    for estimate, truth in zip(found.estimates, (1.5e4, 0.03), strict=False):
+        assert abs(estimate.value - truth) < 4.0 * estimate.sigma
+
+
+def test_a_parameter_the_data_do_not_touch_has_no_finite_sigma() -> None:
+    twist = np.concatenate((np.linspace(0.0, 1e-4, 30), np.linspace(1e-4, -1e-4, 60), np.linspace(-1e-4, 0.0, 30)))
+    spring = sw.stiffness.ThreeSegment(k1=3e4, k2=5e4, k3=6e4, t1=14.0, t2=48.0)
+    loop = TorsionLoop(twist, spring.torque(twist))
+    found = fit(sw.Gear(stiffness=spring.replace(k1=2e4)), loop, ["stiffness.k1", "stiffness.k3"])
+    k1, k3, *_ = found.estimates
+    assert k1.value == pytest.approx(3e4, rel=1e-6)
+    assert np.isfinite(k1.sigma)
+    assert np.isinf(k3.sigma)
+    assert "not determined by the data" in found.summary()
+
+
+def test_samples_left_out_do_not_take_part() -> None:
+    training = SPEED > 0.0
+    spoilt = friction_table(np.where(training, 0.0, -1.0))
+    found = fit(gear(), spoilt, FREE, training=training)
+    assert found.gear.friction_input.coulomb == pytest.approx(LAW.coulomb, rel=1e-8)
+    assert found.rms(held_out=True)[0] == pytest.approx(1.0, rel=1e-6)
+
+
+def test_soft_loss_forgives_an_outlier() -> None:
+    noise = 1e-4 * np.random.default_rng(3).normal(size=len(SPEED))
+    noise[5] = 0.2
+    strict = fit(gear(), friction_table(noise), FREE)
+    soft = fit(gear(), friction_table(noise), FREE, loss="soft_l1")
+    error = [abs(f.gear.friction_input.coulomb - LAW.coulomb) for f in (strict, soft)]
+    assert error[1] < 0.5 * error[0]
+
+
+@pytest.mark.parametrize(
+    ("free", "message"),
+    [
+        (["friction_input.columb"], r'no parameter "friction_input.columb"; near it are friction_input.coulomb'),
+        (["stiffness.a1"], r'no parameter "stiffness.a1"'),
+    ],
+)
+def test_an_unknown_parameter_is_refused_with_its_neighbours(free: list[str], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        fit(gear(), friction_table(), free)
+
+
+def test_columns_that_are_no_experiment_are_refused() -> None:
+    recording = sw.Recording({"speed": SPEED}, {"speed": "rad/s"})
+    with pytest.raises(ValueError, match="are no experiment on a gear"):
+        fit(gear(), recording, FREE)
+    with pytest.raises(ValueError, match='needs a column "time"'):
+        fit(drive(), recording, ["gear.stiffness.a1"])
+
+
+def test_fewer_samples_than_unknowns_are_refused() -> None:
+    with pytest.raises(ValueError, match="cannot determine"):
+        fit(gear(), friction_table(), FREE, training=np.arange(len(SPEED)) < 2)

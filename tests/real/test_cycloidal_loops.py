@@ -1,0 +1,58 @@
+"""Maxwell-slip in parallel with a spring, on torsion loops measured by others.
+
+Torque over deflection of printed cycloidal gears, output locked: JelmerV, Anti-Backlash-Cycloidal-Actuator (CC BY-SA 4.0),
+digitised from its figures. No public loop of a strain wave gear is known to us. A quarter of each loop, in blocks, is kept
+back and only predicted. Run with `-s` to read the numbers.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.identify.experiment import TorsionLoop
+from strainwave.identify.torsion import fit_loop, kept_back
+
+FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cycloidal-loops"
+LOOPS = [
+    "torque-displacement_of_Baseline_ax0_line0_d62728.csv",
+    "torque-displacement_of_Baseline_ax1_line0_d62728.csv",
+    "torque-displacement_of_Conic_Disk_ax0_line2_3b528b.csv",
+    "torque-displacement_of_Conic_Disk_ax1_line1_440154.csv",
+    "torque-displacement_of_Split_Pinwheel_ax0_line0_d62728.csv",
+    "torque-displacement_of_Split_Pinwheel_ax1_line4_5ec962.csv",
+]
+
+pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"measured data not found: {FOLDER} (set STRAINWAVE_DATA)")
+
+
+def measured(name: str) -> TorsionLoop:
+    columns = {"twist": "deflection_deg", "torque": "motor_torque_output_side_Nm"}
+    recording = sw.Recording.from_csv(FOLDER / name, columns=columns, units={"twist": "deg", "torque": "N.m"})
+    return TorsionLoop.of(recording, sw.Gear())
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_a_measured_loop_is_predicted_where_it_was_kept_back(
+    name: str, record_property: Callable[[str, object], None]
+) -> None:
+    loop = measured(name)
+    span = float(np.ptp(loop.torque))
+    best = fit_loop(loop, sw.Gear(), kept_back(len(loop.twist)))[0]
+    held_out, trained = best.error / span, best.fit.rms()[0] / span
+    record_property("held_out", held_out)
+    print(f"\n{name}: {best.name}, rms error {100 * trained:.2f} % of the span, {100 * held_out:.2f} % kept back")
+    without = fit_without_hysteresis(loop) / span
+    assert held_out < 0.05
+    assert held_out < 0.4 * without  # the memory is what explains the loop
+
+
+def fit_without_hysteresis(loop: TorsionLoop) -> float:
+    """Error of the best cubic curve through the training samples, on the samples kept back [N.m]."""
+    training, x = kept_back(len(loop.twist)), loop.twist / np.ptp(loop.twist)
+    curve = np.polynomial.Polynomial.fit(x[training], loop.torque[training], 3)
+    return float(np.sqrt(np.mean((loop.torque - curve(x))[~training] ** 2)))
