@@ -4,17 +4,19 @@
 /// What a model can be asked from Python, found out from what it can do.
 namespace strainwave::host {
 
+using Argument = nb::ndarray<const double, nb::c_contig>;
+
 /// Numbers from Python as an array, refused unless all are finite.
-inline nb::ndarray<double, nb::c_contig> numbers(nb::handle values, const char* name) {
-    const auto array = nb::cast<nb::ndarray<double, nb::c_contig>>(
-        nb::module_::import_("numpy").attr("ascontiguousarray")(values, nb::arg("dtype") = "float64"));
+inline Argument numbers(nb::handle values, const char* name) {
+    const auto array = nb::cast<Argument>(
+        nb::module_::import_("numpy").attr("asarray")(values, nb::arg("dtype") = "float64", nb::arg("order") = "C"));
     for (std::size_t i = 0; i < array.size(); ++i)
         if (!std::isfinite(array.data()[i]))
             throw nb::value_error((std::string(name) + "[" + std::to_string(i) + "] = " + shortest(array.data()[i]) + " is not finite").c_str());
     return array;
 }
 
-inline nb::ndarray<double, nb::c_contig> path_of(nb::handle values, const char* name) {
+inline Argument path_of(nb::handle values, const char* name) {
     const auto path = numbers(values, name);
     if (path.ndim() != 1 || path.size() == 0)
         throw nb::value_error((std::string(name) + " must be a one-dimensional sequence of at least one number").c_str());
@@ -22,7 +24,7 @@ inline nb::ndarray<double, nb::c_contig> path_of(nb::handle values, const char* 
 }
 
 /// A new array of the same shape, and its numbers.
-inline std::pair<Values, double*> like(const nb::ndarray<double, nb::c_contig>& model) {
+inline std::pair<Values, double*> like(const Argument& model) {
     std::vector<std::size_t> shape;
     for (std::size_t i = 0; i < model.ndim(); ++i) shape.push_back(model.shape(i));
     auto* data = new double[model.size() + 1];
@@ -36,12 +38,13 @@ void function(nb::class_<M>& c, const char* name, const char* argument, const ch
     c.def(name, [f](const M& self, double x) { return f(self, x); }, nb::arg(argument).noconvert(),
           nb::sig(kept(std::string("def ") + name + "(self, " + argument + ": float) -> float")), doc);
     c.def(name,
-          [f, argument](const M& self, nb::handle values) {
+          [f, argument](const M& self, nb::handle values) -> nb::object {
               const auto x = numbers(values, argument);
-              auto [out, y] = like(x);
               const auto law = compiled(self);
+              if (x.ndim() == 0) return nb::float_(f(law, *x.data()));
+              auto [out, y] = like(x);
               for (std::size_t i = 0; i < x.size(); ++i) y[i] = f(law, x.data()[i]);
-              return out;
+              return nb::cast(out);
           },
           nb::arg(argument),
           nb::sig(kept(std::string("def ") + name + "(self, " + argument +
@@ -78,7 +81,7 @@ void kinematics_verbs(nb::class_<M>& c) {
 
 /// Calls visit(state, increment, i) along a path, the state brought up to date after each step.
 template <class M, class Visit>
-typename M::State follow(const M& m, typename M::State x, const nb::ndarray<double, nb::c_contig>& path, Visit&& visit) {
+typename M::State follow(const M& m, typename M::State x, const Argument& path, Visit&& visit) {
     visit(x, 0.0, std::size_t{0});
     for (std::size_t i = 1; i < path.size(); ++i) {
         const double increment = path.data()[i] - path.data()[i - 1];

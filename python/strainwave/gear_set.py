@@ -539,9 +539,10 @@ def _schema(name: str, keys: Mapping[str, Any]) -> Any:
 def _example(parameter: _Parameter, default: Any) -> str:
     if parameter.kind == "choice":
         return f'"{default}"'
-    value = "[…]" if parameter.kind == "sequence" else "…"
     unit = "" if parameter.unit == "1" else f', unit = "{parameter.unit}"'
-    return f'{{ value = {value}{unit}, source = "…" }}'
+    if parameter.kind == "sequence":
+        return f'{{ value = […]{unit}, source = "…" }}, or [] for none'
+    return f'{{ value = …{unit}, source = "…" }}'
 
 
 def _checked(form: _Form, content: Mapping[str, Any]) -> dict[str, Any]:

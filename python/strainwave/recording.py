@@ -277,7 +277,7 @@ class Recording:
         axes = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
         for axis, (unit, group) in zip(axes, groups.items(), strict=True):
             for name in group:
-                axis.plot(*_envelope(self[against], self[name]), linewidth=1.0, label=name)
+                axis.plot(*envelope(self[against], self[name]), linewidth=1.0, label=name)
             axis.set_ylabel(f"{group[0]} [{unit}]" if len(group) == 1 else f"[{unit}]")
             axis.legend(loc="upper right")
         axes[-1].set_xlabel(f"{against} [{self.unit(against)}]")
@@ -363,8 +363,18 @@ def _first_fault(columns: Mapping[str, Array], units: Mapping[str, str]) -> _Fau
     return None
 
 
-def _envelope(x: Array, y: Array, stretches: int = 5_000) -> tuple[Array, Array]:
-    """The curve itself, or the extremes of x and y in each of many stretches of it, in order."""
+def envelope(x: Array, y: Array, stretches: int = 5_000) -> tuple[Array, Array]:
+    """A curve to draw: itself or, if it is much longer, the extremes of x and y in each of many stretches of it, in order.
+
+    Args:
+        x, y: the samples of the curve, shape (n,)
+        stretches: into how many it is cut; up to four samples for each, nothing is left out
+
+    >>> time = np.arange(100_000.0)
+    >>> drawn, values = envelope(time, np.where(time == 777.0, 1.0, 0.0), stretches=10)
+    >>> len(drawn), float(values.max())
+    (21, 1.0)
+    """
     if len(x) <= 4 * stretches:
         return x, y
     length = -(-len(x) // stretches)

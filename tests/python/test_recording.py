@@ -266,7 +266,9 @@ def test_parquet_is_compressed_split_and_labelled(tmp_path: Path) -> None:
 def test_a_write_that_fails_leaves_the_old_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str, writer: str
 ) -> None:
-    def fail(*_: object, **__: object) -> None:
+    def fail(_: pa.Table, file: object, **__: object) -> None:
+        if isinstance(file, Path):
+            file.write_text("half")
         raise OSError("disk full")
 
     path = tmp_path / "run"

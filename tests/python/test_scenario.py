@@ -288,6 +288,7 @@ def test_what_is_no_signal_is_refused(make: Callable[[], object], message: str) 
         (lambda: sine("1", 1.0, 1.0), "sine.amplitude must be a number, not '1'"),  # type: ignore[arg-type]
         (lambda: step(1.0, None), "step.duration must be a number, not None"),  # type: ignore[arg-type]
         (lambda: step(1.0, 1.0) + 1.0, "unsupported operand type(s) for +: 'Scenario' and 'float'"),  # type: ignore[operator]
+        (lambda: np.ones(2) * step(1.0, 1.0), "unsupported operand type(s) for *: 'numpy.ndarray' and 'Scenario'"),  # type: ignore[operator]
         (lambda: step(1.0, 1.0) * step(1.0, 1.0), "unsupported operand type(s) for *: 'Scenario' and 'Scenario'"),  # type: ignore[operator]
     ],
 )

@@ -95,19 +95,22 @@ class FrictionTable:
 class TorsionLoop:
     """Torque over twist along a path, slow enough that only spring and hysteresis speak.
 
-    Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement.
+    Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement. A linear spring cannot
+    tell them apart; for it the zero of the twist is taken as known.
 
     Args:
         twist: twist at the output [rad], shape (n,), monotone between its points
         torque: torque at the output [N.m], shape (n,)
         history: cyclic, if the same path had been run before; virgin, if the gear had not been loaded before
         torque_zero: where a fit starts to look for the zero of the torque [N.m]
+        twist_zero: zero of the twist, if it is known [rad]
     """
 
     twist: Array
     torque: Array
     history: Literal["cyclic", "virgin"] = "cyclic"
     torque_zero: float = 0.0
+    twist_zero: float | None = None
     channels = ("torque",)
     units = ("N.m",)
 
@@ -138,7 +141,8 @@ class TorsionLoop:
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        return Nuisance("twist_zero", "rad", self.middle), Nuisance("torque_zero", "N.m", self.torque_zero)
+        torque = Nuisance("torque_zero", "N.m", self.torque_zero)
+        return (torque,) if self.twist_zero is not None else (torque, Nuisance("twist_zero", "rad", self.middle))
 
     @cached_property
     def middle(self) -> float:
@@ -151,12 +155,11 @@ class TorsionLoop:
         return np.concatenate((path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
 
     def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        twist_zero, torque_zero = nuisances
+        torque_zero, twist_zero = (*nuisances, self.twist_zero)[:2]
         n = len(self.twist)
-        torque, slopes = _core.differentiate_loop(model, self.path(float(twist_zero)), list(numbers))
-        by_twist_zero = -model.stiffness.tangent(self.twist - float(twist_zero))
-        slopes = np.concatenate((slopes[:, -n:], by_twist_zero[np.newaxis], np.ones((1, n))))
-        return torque[np.newaxis, -n:] + float(torque_zero), slopes[:, np.newaxis]
+        torque, slopes = _core.differentiate_loop(model, self.path(twist_zero), list(numbers))
+        by_zeros = np.stack((np.ones(n), -model.stiffness.tangent(self.twist - twist_zero)))[: len(nuisances)]
+        return torque[np.newaxis, -n:] + torque_zero, np.concatenate((slopes[:, -n:], by_zeros))[:, np.newaxis]
 
     def virgin(self) -> TorsionLoop:
         """The same measurement, taken to be the first loading."""

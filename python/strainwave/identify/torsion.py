@@ -22,7 +22,7 @@ from strainwave.identify.fit import Fit, fit
 Array = NDArray[np.float64]
 
 SLIP_TWISTS = 14  # on a logarithmic grid; more cannot be told apart in any loop tried
-KNEES = 9  # places tried for the knees of a three-segment spring
+KNEES = 1.0 - np.geomspace(0.9, 0.012, 9)  # of half the span: places tried for the knees of a three-segment spring
 MOST_ELEMENTS = 6  # kept after the convex step
 NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
 SPRINGS = ("linear", "cubic", "three_segment")
@@ -78,10 +78,21 @@ def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], sprin
     start = min(cyclic, virgin, key=lambda s: s.error)
     model = gear.replace(stiffness=start.spring, hysteresis=start.hysteresis)
     free = [f"stiffness.{field['name']}" for field in start.spring.fields] + ["hysteresis.stiffness", "hysteresis.breakaway"]
-    found = fit(model, replace(start.loop, torque_zero=start.torque_zero), free, training=training)
+    twist_zero = loop.middle if spring == "linear" else None
+    experiment = replace(start.loop, torque_zero=start.torque_zero, twist_zero=twist_zero)
+    found = _in_order(fit(model, experiment, free, training=training))
     held_out = found.rms(held_out=True)[0]
     name = f"{spring} spring with {len(start.hysteresis.stiffness)} Maxwell elements"
     return Candidate(name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+
+
+def _in_order(found: Fit) -> Fit:
+    """The same curve with its knees in order: a second knee below the first is none."""
+    spring = found.gear.stiffness
+    if not isinstance(spring, stiffness.ThreeSegment) or spring.t2 >= spring.t1:
+        return found
+    ordered = stiffness.ThreeSegment(k1=spring.k1, k2=spring.k2, k3=spring.k3, t1=spring.t1, t2=spring.t1)
+    return replace(found, model=found.gear.replace(stiffness=ordered))
 
 
 Spring = stiffness.Linear | stiffness.Cubic | stiffness.ThreeSegment
@@ -136,7 +147,7 @@ def _zero_columns(loop: TorsionLoop) -> Array:
 
 def _knees(spring: str, half: float) -> Iterator[tuple[float, ...]]:
     if spring == "three_segment":
-        yield from combinations(half * np.linspace(0.1, 0.97, KNEES), 2)
+        yield from combinations(half * KNEES, 2)
     else:
         yield ()
 

@@ -10,16 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import _core
+from strainwave._core import Gear
+from strainwave.drives import PositionDrive
 from strainwave.gear_set import Entry, GearSet
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
 from strainwave.identify.fit import Estimate, Fit
 from strainwave.identify.friction import fit_friction
 from strainwave.identify.log import fit_log, free_parameters, prepared
+from strainwave.identify.measurement import Kind
 from strainwave.identify.torsion import fit_loop, kept_back
 from strainwave.recording import Recording
 
 Array = NDArray[np.float64]
-Kind = Literal["friction", "torsion", "log"]
 
 UNTOLD = 0.5  # relative standard deviation above which a parameter counts as not identified
 ENTANGLED = 0.98  # correlation above which two parameters cannot be told apart
@@ -154,32 +156,28 @@ def twin(
     if friction is None and torsion is None and log is None:
         raise ValueError("a twin needs at least one measurement: a friction table, a torsion loop or a drive log")
     named = {"friction": "friction table", "torsion": "torsion loop", "log": "drive log"} | (sources or {})
-    gear_set, evidence = start, []
+    gear = start.gear
+    evidence: list[Evidence] = []
     if friction is not None:
         progress("friction table")
-        evidence.append(_from_friction(gear_set, friction, named["friction"]))
-        gear_set = replace(gear_set, gear=evidence[-1].fit.gear)
+        evidence.append(_from_friction(gear, friction, named["friction"]))
+        gear = evidence[-1].fit.gear
     if torsion is not None:
         progress("torsion loop")
-        evidence.append(_from_torsion(gear_set, torsion, named["torsion"]))
-        gear_set = replace(gear_set, gear=evidence[-1].fit.gear)
+        evidence.append(_from_torsion(gear, torsion, named["torsion"]))
+        gear = evidence[-1].fit.gear
     if log is not None:
         progress("drive log")
-        evidence.append(_from_log(gear_set, log, named["log"], known={e.kind for e in evidence}))
-        gear_set = replace(gear_set, gear=evidence[-1].fit.gear)
-    verdicts = _verdicts(start, gear_set, evidence)
-    return Twin(
-        start,
-        replace(gear_set, name=f"{start.name} twin", sources=_sources(start, verdicts)),
-        tuple(evidence),
-        tuple(verdicts),
-        tuple(_contradictions(start, evidence)),
-    )
+        evidence.append(_from_log(start.drive.replace(gear=gear), log, named["log"], {e.kind for e in evidence}))
+        gear = evidence[-1].fit.gear
+    verdicts = _verdicts(start, gear, evidence)
+    found = replace(start, name=f"{start.name}, twin", gear=gear, sources=_sources(start, verdicts))
+    return Twin(start, found, tuple(evidence), tuple(verdicts), tuple(_contradictions(start, evidence)))
 
 
-def _from_friction(gear_set: GearSet, recording: Recording, source: str) -> Evidence:
+def _from_friction(gear: Gear, recording: Recording, source: str) -> Evidence:
     table = FrictionTable.of(recording)
-    best, *others = fit_friction(table, gear_set.gear)
+    best, *others = fit_friction(table, gear)
     held_out = (table.torque - best.held_out)[np.newaxis]
     low, high = float(np.abs(table.speed).min()), float(np.abs(table.speed).max())
     remarks = [f"valid between {low:.4g} and {high:.4g} rad/s at the input; validated by leaving out speeds in turn"]
@@ -191,9 +189,9 @@ def _from_friction(gear_set: GearSet, recording: Recording, source: str) -> Evid
     )  # fmt: skip
 
 
-def _from_torsion(gear_set: GearSet, recording: Recording, source: str) -> Evidence:
-    loop = TorsionLoop.of(recording, gear_set.gear)
-    best, *others = fit_loop(loop, gear_set.gear, kept_back(len(loop.twist)))
+def _from_torsion(gear: Gear, recording: Recording, source: str) -> Evidence:
+    loop = TorsionLoop.of(recording, gear)
+    best, *others = fit_loop(loop, gear, kept_back(len(loop.twist)))
     remarks = [f"valid up to {np.abs(loop.torque).max():.4g} N.m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"]
     if "input_torque" in recording:
         remarks.append("measured at the input with the output locked: friction of the wave generator is inside the loop")
@@ -203,8 +201,7 @@ def _from_torsion(gear_set: GearSet, recording: Recording, source: str) -> Evide
     )  # fmt: skip
 
 
-def _from_log(gear_set: GearSet, recording: Recording, source: str, known: set[Kind]) -> Evidence:
-    drive = gear_set.drive
+def _from_log(drive: PositionDrive, recording: Recording, source: str, known: set[Kind]) -> Evidence:
     log = DriveLog.of(recording, drive)
     drive = prepared(log, drive)
     free = free_parameters(log, drive, friction_known="friction" in known, torsion_known="torsion" in known)
@@ -234,14 +231,14 @@ def _estimates(evidence: Sequence[Evidence]) -> dict[str, tuple[Evidence, int, E
     }
 
 
-def _parameters(gear_set: GearSet) -> dict[str, tuple[float, str]]:
-    return {f"gear.{path}": (value, unit) for path, value, unit, *_ in _core.parameters(gear_set.gear)}
+def _parameters(gear: Gear) -> dict[str, tuple[float, str]]:
+    return {f"gear.{path}": (value, unit) for path, value, unit, *_ in _core.parameters(gear)}
 
 
-def _verdicts(start: GearSet, found: GearSet, evidence: Sequence[Evidence]) -> list[Verdict]:
-    before, estimates = _parameters(start), _estimates(evidence)
+def _verdicts(start: GearSet, gear: Gear, evidence: Sequence[Evidence]) -> list[Verdict]:
+    before, estimates = _parameters(start.gear), _estimates(evidence)
     verdicts = []
-    for path, (value, unit) in _parameters(found).items():
+    for path, (value, unit) in _parameters(gear).items():
         earlier = before.get(path, (np.nan, unit))[0]
         if path in estimates:
             e, index, estimate = estimates[path]
@@ -276,7 +273,8 @@ def _why_not(evidence: Evidence, index: int, estimate: Estimate) -> str:
 
 
 def _sources(start: GearSet, verdicts: Sequence[Verdict]) -> dict[str, Entry]:
-    sources = {}
+    numbers = _parameters(start.gear)  # the rest of the drive, and counts of teeth, are no numbers of the gear that a fit can touch
+    sources = {path: entry for path, entry in start.sources.items() if path not in numbers}
     for verdict in verdicts:
         if verdict.state == "kept" and verdict.path in start.sources:
             sources[verdict.path] = start.sources[verdict.path]
@@ -291,7 +289,7 @@ def _sources(start: GearSet, verdicts: Sequence[Verdict]) -> dict[str, Entry]:
 
 def _contradictions(start: GearSet, evidence: Sequence[Evidence]) -> list[Contradiction]:
     """Identified parameters that a measured or published starting value excludes. Assumed values contradict nothing."""
-    before, found = _parameters(start), []
+    before, found = _parameters(start.gear), []
     for path, (e, index, estimate) in _estimates(evidence).items():
         entry = start.sources.get(path)
         if entry is None or path not in before or entry.source.startswith("assumed") or _why_not(e, index, estimate):

@@ -1,14 +1,15 @@
 """Figures of reports as SVG: drawn by matplotlib's objects, coloured by the page that shows them.
 
 Colours are names (measured, model, …) that a page defines for its light and its dark scheme, so that one drawing serves
-both. The same data give the same bytes.
+both. The same data give the same bytes, whatever style or locale the machine prefers.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING
+import re
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -22,13 +23,15 @@ from strainwave.report.experiment import Experiment
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-    from strainwave.identify.twin import Contradiction, Evidence, Twin
+    from strainwave.identify.twin import Evidence, Twin
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Element = ElementTree.Element
+Draw = Callable[["Figure"], None]
 
 LIGHT = {
     "ink": "#1c2127",
@@ -50,12 +53,12 @@ DARK = {
 }
 RUNS = ("model", "measured", "kept-back", "earlier")  # colours of the runs of an experiment, in their order
 STRETCHES = 300  # of a long record, each drawn by its extremes: about two to a pixel
-MARKED = 120  # samples up to which each is drawn as a point
+MARKED = 150  # samples up to which each is drawn as a point
+WIDE = 100.0  # ratio of speeds beyond which their axis is logarithmic
 
 STYLE = {
     "axes.axisbelow": True,
     "axes.edgecolor": LIGHT["muted"],
-    "axes.formatter.useoffset": False,
     "axes.grid": True,
     "axes.labelcolor": LIGHT["ink"],
     "axes.spines.right": False,
@@ -79,72 +82,313 @@ STYLE = {
 }
 
 
-# What can be drawn
+# ---- What can be drawn -----------------------------------------------------------------------------------------------
 
 
 def friction_table(evidence: Evidence) -> str:
-    """Friction torque over speed, measured and modelled, and how far each measurement lies from its prediction."""
+    """Friction torque over speed, measured and modelled; how far each measurement lies from what the others predict."""
 
     def draw(figure: Figure) -> None:
-        torque, residual = _panels(figure, "Friction torque at the input", "Measured less predicted from the others")
-        _friction_points(torque, _table(evidence))
-        _friction_law(torque, evidence.fit.gear.friction_input, _table(evidence), color=LIGHT["model"], label="model")
-        _residual(residual, _table(evidence).speed, evidence.held_out[0], "N.m", np.ones(len(_table(evidence).speed), bool))
-        _finish(residual, "speed of the input", "rad/s")
+        torque, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))
+        _friction_points(torque, evidence)
+        _friction_law(torque, evidence, evidence.fit.gear.friction_input, color=LIGHT["model"], label="model")
+        _residual(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["kept-back"])
+        _label(torque, "friction torque", "N.m")
+        _label(residual, "measured − predicted from the other speeds", "N.m", "input speed", "rad/s")
         _legend(torque)
 
-    return _inline(draw, (6.2, 3.9), "friction", f"Friction torque over input speed: {evidence.source}")
+    return _inline(draw, (6.2, 3.9), "friction", f"Friction torque over input speed, {evidence.source}")
 
 
 def torsion_loop(evidence: Evidence) -> str:
-    """Torque over twist, measured and modelled, and the residual along the loop."""
+    """Torque over twist, measured and modelled; the residual along the loop."""
 
     def draw(figure: Figure) -> None:
-        loop, residual = figure.subplots(2, 1, height_ratios=(2.6, 1.0))
-        _name(loop, "Torque at the output")
-        _name(residual, "Measured less modelled")
+        loop, residual = figure.subplots(2, 1, height_ratios=(2.8, 1.0))
+        sample, kept_back = np.arange(1.0, len(evidence.fit.training) + 1.0), ~evidence.fit.training
         _loop(loop, evidence)
-        training = evidence.fit.training
-        _residual(residual, np.arange(1.0, len(training) + 1.0), evidence.fit.residuals[0], "N.m", ~training)
-        _shade(residual, np.arange(1.0, len(training) + 1.0), ~training)
-        _finish(residual, "sample", "1")
+        _residual(residual, sample, evidence.fit.residuals[0], color=LIGHT["ink"])
+        _shade(residual, sample, kept_back)
+        _label(loop, "torque at the output", "N.m", "twist at the output", "rad")
+        _label(residual, "measured − modelled", "N.m", "sample", "1")
         _legend(loop)
 
-    return _inline(draw, (6.2, 5.2), "torsion", f"Torque over twist: {evidence.source}")
+    return _inline(draw, (6.2, 5.4), "torsion", f"Torque over twist, {evidence.source}")
 
 
 def drive_log(evidence: Evidence, channel: int) -> str:
     """One channel of a drive log over time, measured and modelled, and the residual."""
-    log = evidence.fit.experiment
+    log, fit = evidence.fit.experiment, evidence.fit
     assert isinstance(log, DriveLog)
+    name, unit = output_name(log.channels[channel]), log.units[channel]
 
     def draw(figure: Figure) -> None:
-        values, residual = _panels(figure, channel_name(log.channels[channel]), "Measured less modelled")
-        measured, predicted = log.measured[channel], evidence.fit.predicted[channel]
-        power = _power(np.concatenate((measured, predicted)), log.units[channel])
-        _name(values, channel_name(log.channels[channel]), log.units[channel], power)
-        _curve(values, log.time, measured / 10.0**power, color=LIGHT["measured"], linewidth=2.2, alpha=0.55, label="measured")
-        _curve(values, log.time, predicted / 10.0**power, color=LIGHT["model"], linewidth=1.0, label="model")
-        _residual(residual, log.time, evidence.fit.residuals[channel], log.units[channel], ~evidence.fit.training)
+        values, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
+        _curve(values, log.time, log.measured[channel], color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
+        _curve(values, log.time, fit.predicted[channel], color=LIGHT["model"], linewidth=1.0, label="model")
+        _residual(residual, log.time, fit.residuals[channel], color=LIGHT["ink"])
         for axes in (values, residual):
-            _shade(axes, log.time, ~evidence.fit.training)
-        _finish(residual, "time", "s")
+            _shade(axes, log.time, ~fit.training)
+        _label(values, name, unit)
+        _label(residual, "measured − modelled", unit, "time", "s")
         _legend(values)
 
-    return _inline(draw, (6.2, 3.7), log.channels[channel], f"{channel_name(log.channels[channel])}: {evidence.source}")
+    return _inline(draw, (6.2, 3.6), f"log-{channel}", f"{name} over time, {evidence.source}")
 
 
 def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
-    """The friction law that a twin started from and the measurement that contradicts it: two data sets."""
+    """The friction law of the starting set and the friction table that contradicts it: two data sets on one axis."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
-        table, law = _table(evidence), twin.start.gear.friction_input
-        _friction_law(axes, law, table, color=LIGHT["earlier"], linestyle=(0, (6, 2)), linewidth=2.0, label="starting set")
-        _friction_law(axes, evidence.fit.gear.friction_input, table, color=LIGHT["model"], linewidth=1.0, label="fitted law")
-        _friction_points(axes, table)
-        _finish(axes, "speed of the input", "rad/s")
-        _name(axes, "Friction torque at the input")
+        earlier = twin.start.gear.friction_input
+        _friction_law(axes, evidence, earlier, color=LIGHT["earlier"], linestyle="--", linewidth=2.0, label="starting set")
+        _friction_law(axes, evidence, evidence.fit.gear.friction_input, color=LIGHT["model"], label="fitted to the table")
+        _friction_points(axes, evidence)
+        axes.set_ylim(*_with_zero(axes.get_ylim()))
+        _label(axes, "friction torque", "N.m", "input speed", "rad/s")
         _legend(axes)
 
-    return _inline(draw, (6.2, 2.9), "contradiction", "Friction law of the starting set and measured friction torque")
+    return _inline(draw, (6.2, 2.9), "two-laws", f"Friction law of the starting set and {evidence.source}, two data sets")
+
+
+def experiment(simulated: Experiment, name: str) -> str:
+    """Command, response and, where both are of one unit, their difference over time."""
+    first = simulated.runs[0][1]
+    comparable = first.unit(simulated.command) == first.unit(simulated.response)
+
+    def draw(figure: Figure) -> None:
+        response, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
+        command = response if comparable else below
+        _curve(command, first.time, first[simulated.command], color=LIGHT["ink"], linestyle="--", label="command")
+        for number, (label, run) in enumerate(simulated.runs):
+            style = {"color": LIGHT[RUNS[number % len(RUNS)]], "label": f" {label}"}  # a label may begin with anything but _
+            _curve(response, run.time, run[simulated.response], **style)
+            if comparable:
+                _curve(below, run.time, run[simulated.response] - run[simulated.command], **style)
+        _label(response, output_name(simulated.response), first.unit(simulated.response))
+        name_below = "response − command" if comparable else "command"
+        _label(below, name_below, first.unit(simulated.command), "time", "s")
+        _legend(response)
+
+    return _inline(draw, (6.2, 3.6), name, f"{simulated.name}: command and response over time")
+
+
+def overview(twin: Twin) -> str:
+    """A picture by itself: the torsion loop and the friction table of a twin that has both, measured and modelled.
+
+    Raises:
+        ValueError: the twin has no friction table or no torsion loop
+    """
+    found = {evidence.kind: evidence for evidence in twin.evidence}
+    if missing := {"torsion", "friction"} - found.keys():
+        raise ValueError(f"the twin has no evidence of kind {min(missing)}; the picture shows torsion and friction")
+
+    def draw(figure: Figure) -> None:
+        loop, friction = figure.subplots(1, 2)
+        _loop(loop, found["torsion"])
+        _label(loop, "torque", "N.m", "twist at the output", "rad")
+        _friction_points(friction, found["friction"])
+        law = found["friction"].fit.gear.friction_input
+        _friction_law(friction, found["friction"], law, color=LIGHT["model"], label="model")
+        _label(friction, "friction torque", "N.m", "input speed", "rad/s")
+        for axes in (loop, friction):
+            _legend(axes)
+
+    return _standalone(draw, (8.4, 3.2), "overview", "Torsion loop and friction of a strain wave gear, measured and modelled")
+
+
+def output_name(column: str) -> str:
+    """What a column of a simulation is called in words."""
+    return {name: words for name, _, words in _core.outputs}.get(column, column.replace("_", " "))
+
+
+# ---- Parts of drawings -----------------------------------------------------------------------------------------------
+
+
+def _table(evidence: Evidence) -> FrictionTable:
+    table = evidence.fit.experiment
+    assert isinstance(table, FrictionTable)
+    return table
+
+
+def _friction_points(axes: Axes, evidence: Evidence) -> None:
+    table = _table(evidence)
+    order = np.argsort(table.speed, kind="stable")
+    speed, torque = envelope(table.speed[order], table.torque[order], MARKED)
+    axes.plot(speed, torque, "o", color=LIGHT["measured"], label="measured", zorder=3)
+    magnitude = np.abs(speed)
+    if np.ptp(np.sign(speed)) == 0.0 and magnitude.max() > WIDE * magnitude.min():
+        axes.set_xscale("log")
+
+
+def _friction_law(axes: Axes, evidence: Evidence, law: Any, label: str, **style: Any) -> None:
+    """The law over the speeds measured, each direction by itself."""
+    speed = _table(evidence).speed
+    for side in (speed[speed < 0.0], speed[speed > 0.0]):
+        if side.size:
+            ends = np.abs(side).min(), np.abs(side).max()
+            swept = np.sign(side[0]) * np.union1d(np.linspace(*ends, 200), np.geomspace(*ends, 200))
+            axes.plot(swept, law.steady(swept), label=label, **style)
+            label = ""
+
+
+def _loop(axes: Axes, evidence: Evidence) -> None:
+    loop, fit = evidence.fit.experiment, evidence.fit
+    assert isinstance(loop, TorsionLoop)
+    form = ".-" if len(loop.twist) <= MARKED else "-"
+    axes.plot(*envelope(loop.twist, loop.torque, STRETCHES), form, color=LIGHT["measured"], linewidth=0.9, label="measured")
+    label = "kept back"
+    for block in _blocks(~fit.training):
+        axes.plot(*envelope(loop.twist[block], loop.torque[block], STRETCHES), form, color=LIGHT["kept-back"], label=label)
+        label = ""
+    axes.plot(*envelope(loop.twist, fit.predicted[0], STRETCHES), color=LIGHT["model"], linewidth=1.1, label="model")
+
+
+def _curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
+    axes.plot(*envelope(x, y, STRETCHES), **style)
+
+
+def _residual(axes: Axes, x: Array, residual: Array, color: str) -> None:
+    """Each by itself where there are few, else as a curve."""
+    axes.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
+    if len(x) <= MARKED:
+        axes.vlines(x, 0.0, residual, color=color, linewidth=0.8)
+        axes.plot(x, residual, "o", color=color, markersize=2.8)
+    else:
+        _curve(axes, x, residual, color=color, linewidth=0.8)
+
+
+def _shade(axes: Axes, x: Array, kept_back: Mask) -> None:
+    """Marks what took no part in the fit."""
+    between = np.concatenate((x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]))
+    label = "kept back"
+    for block in _blocks(kept_back):
+        ends = between[block.start], between[block.stop]
+        axes.axvspan(*ends, facecolor=LIGHT["kept-back"], alpha=0.13, linewidth=0.0, label=label)
+        label = ""
+
+
+def _blocks(chosen: Mask) -> Iterator[slice]:
+    """The stretches of neighbours that are chosen."""
+    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
+    return (slice(start, stop) for start, stop in edges.reshape(-1, 2).tolist())
+
+
+def _with_zero(ends: tuple[float, float]) -> tuple[float, float]:
+    return min(ends[0], 0.0), max(ends[1], 0.0)
+
+
+def _label(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> None:
+    """Names the quantities and shows them in the prefix that suits their size; the upright one stands above its axis."""
+    axes.set_title(f"{y}{_scaled(axes.yaxis, y_unit)}")
+    if x:
+        axes.set_xlabel(f"{x}{_scaled(axes.xaxis, x_unit)}")
+
+
+def _scaled(axis: Axis, unit: str) -> str:
+    from matplotlib.ticker import FuncFormatter
+
+    power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
+    axis.set_major_formatter(FuncFormatter(lambda value, _: typeset.number(value / 10.0**power, 4)))
+    text = typeset.prefixed(unit, power)
+    return f" [{text}]" if text else ""
+
+
+def _legend(axes: Axes) -> None:
+    """In a row above the axes, at the right."""
+    axes.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, borderaxespad=0.0, borderpad=0.3, columnspacing=1.2,
+        handletextpad=0.5,
+    )  # fmt: skip
+
+
+# ---- From a drawing to SVG -------------------------------------------------------------------------------------------
+
+
+def _inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
+    """SVG to stand in a page, whose colours and letters it takes."""
+    return ElementTree.tostring(_svg(draw, size, name, title), encoding="unicode")
+
+
+def _standalone(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
+    """SVG to stand in a file, with the colours of the light and of the dark scheme."""
+    svg = _svg(draw, size, name, title)
+    svg.set("xmlns", "http://www.w3.org/2000/svg")
+    style = ElementTree.Element("style")
+    style.text = (
+        f":root {{ font-family: system-ui, sans-serif; {variables(LIGHT)} }} "
+        f"@media (prefers-color-scheme: dark) {{ :root {{ {variables(DARK)} }} }}"
+    )
+    svg.insert(0, style)
+    return ElementTree.tostring(svg, encoding="unicode") + "\n"
+
+
+def variables(colours: dict[str, str]) -> str:
+    """Colours as a style sheet defines them."""
+    return " ".join(f"--{name}: {colour};" for name, colour in colours.items())
+
+
+def _svg(draw: Draw, size: tuple[float, float], name: str, title: str) -> Element:
+    from matplotlib import style
+    from matplotlib.figure import Figure
+
+    file = io.StringIO()
+    with style.context(["default", STYLE | {"svg.hashsalt": name}]):
+        figure = Figure(figsize=size)
+        draw(figure)
+        nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+        figure.savefig(file, format="svg", transparent=True, metadata=nothing)
+    return _tidied(ElementTree.fromstring(file.getvalue()), name, title)
+
+
+def _tidied(drawn: Element, name: str, title: str) -> Element:
+    """The drawing without what a page does not need: names of elements, digits beyond a hundredth of a point, fonts."""
+    references = {found for element in drawn.iter() for found in re.findall(r"#([\w-]+)", " ".join(element.attrib.values()))}
+    for element in drawn.iter():
+        element.tag = element.tag.partition("}")[2]
+        element.attrib = {
+            key.partition("}")[2] or key: _tidied_value(key, value, name)
+            for key, value in element.attrib.items()
+            if key != "id" or value in references
+        }
+        element.text, element.tail = (element.text or "").strip() if element.tag == "text" else None, None
+        _style_once(element)
+    svg = ElementTree.Element("svg", {"viewBox": drawn.attrib["viewBox"], "role": "img", "aria-label": title})
+    svg.attrib |= {"stroke-linejoin": "round", "stroke-linecap": "butt"}
+    svg.extend(child for child in drawn if child.find("style") is None)
+    return svg
+
+
+def _tidied_value(key: str, value: str, name: str) -> str:
+    if key == "id":
+        return f"{name}-{value}"
+    if key == "d":
+        return _path(value)
+    if key == "style":
+        value = re.sub(r"font-family: [^;]*;? ?", "", value)
+        return re.sub(r"#\w{6}", lambda colour: _COLOURS.get(colour[0], colour[0]), value)
+    value = re.sub(r"#(?=\w)", f"#{name}-", value) if key.endswith("href") or key == "clip-path" else value
+    return re.sub(r"-?\d+\.\d+", _rounded, value) if key in ("x", "y", "width", "height", "transform") else value
+
+
+_COLOURS = {colour: f"var(--{name}, {colour})" for name, colour in LIGHT.items()}
+
+
+def _path(text: str) -> str:
+    """A path in few letters: after M and L, further points need no letter of their own."""
+    text = re.sub(r"-?\d+\.\d+", _rounded, " ".join(text.split()))
+    return text.replace(" L ", " ") if set(re.findall("[A-Za-z]", text)) <= {"M", "L"} else text
+
+
+def _rounded(number: re.Match[str]) -> str:
+    return f"{float(number[0]):.2f}".rstrip("0").rstrip(".")
+
+
+def _style_once(group: Element) -> None:
+    """Moves a style that all markers of a group have up to the group."""
+    styles = {child.get("style", "") for child in group}
+    if len(group) > 1 and len(styles) == 1 and all(child.tag.endswith("use") for child in group):
+        group.set("style", styles.pop())
+        for child in group:
+            del child.attrib["style"]

@@ -1,0 +1,179 @@
+"""The drive of document P, with r = 1/100 (E-P1, E-P2), against numbers computed independently at high precision.
+
+Its friction is the simplified model, of the motor side unless a test says otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import strainwave as sw
+from scipy.linalg import expm
+
+COULOMB = 0.072  # N.m, s3 of Table 1
+BREAKAWAY = 1.0388 * COULOMB
+MOTOR_DAMPING, LOAD_DAMPING = 0.0004, 0.0010  # N.m.s/rad, Table 3
+
+GEAR = sw.Gear(
+    kinematics=sw.kinematics.PlainRatio(reduction=100.0),
+    stiffness=sw.stiffness.Linear(k=150.0),
+    friction_input=sw.friction.Coulomb(coulomb=COULOMB, breakaway=BREAKAWAY, viscous=MOTOR_DAMPING),
+)
+DRIVE = sw.drives.PositionDrive(
+    gear=GEAR,
+    motor=sw.motor.DC(resistance=2.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=0.0012),
+    load=sw.loads.Inertia(inertia=0.0050),
+)
+LINEAR = DRIVE.replace(
+    gear=GEAR.replace(
+        friction_input=sw.friction.Viscous(viscous=MOTOR_DAMPING),
+        friction_output=sw.friction.Viscous(viscous=LOAD_DAMPING),
+    )
+)
+OPEN_CIRCUIT = DRIVE.motor.replace(torque_constant=0.0)
+
+
+def first(fulfilled: Callable[[float], bool], low: float, high: float) -> float:
+    """Where in (low, high] something begins to hold that does not hold before, to the last digit: bisection."""
+    assert not fulfilled(low)
+    assert fulfilled(high)
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (low, middle) if fulfilled(middle) else (middle, high)
+    return high
+
+
+# The linear drive
+
+
+def propagator(drive: sw.drives.PositionDrive, dt: float) -> np.ndarray:
+    """The matrix of one step of a linear drive, over input angle, input speed, transmission error, output speed."""
+    names = ("input_angle", "input_speed", "transmission_error", "output_speed")
+    rest = drive.rest()
+    after = [drive.step(rest.replace(motion=rest.motion.replace(**{name: 1.0})), dt=dt).motion for name in names]
+    return np.array([[getattr(motion, name) for motion in after] for name in names])
+
+
+def eigenfrequency(drive: sw.drives.PositionDrive) -> float:
+    """The highest [rad/s]; the step is of order four, and short enough that its own error lies at 1e-12."""
+    dt = 1e-5
+    return float(np.abs(np.angle(np.linalg.eigvals(propagator(drive, dt)))).max() / dt)
+
+
+def undamped(kinematics: object, input_inertia: float, output_inertia: float, k: float) -> sw.drives.PositionDrive:
+    return sw.drives.PositionDrive(
+        gear=sw.Gear(kinematics=kinematics, stiffness=sw.stiffness.Linear(k=k)),
+        motor=sw.motor.DC(torque_constant=0.0, inertia=input_inertia),
+        load=sw.loads.Inertia(inertia=output_inertia),
+    )
+
+
+def test_eigenfrequency_of_document_p() -> None:
+    drive = undamped(GEAR.kinematics, 0.0012, 0.0050, 150.0)
+    assert eigenfrequency(drive) == pytest.approx(173.2411613907041, rel=1e-11)
+
+
+def test_a_ratio_as_printed_would_give_another_eigenfrequency() -> None:
+    """E-P1: with r = 100 the load turns a hundred times the motor."""
+    drive = undamped(sw.kinematics.PlainRatio(reduction=0.01), 0.0012, 0.0050, 150.0)
+    dt = 1e-7
+    turned = np.abs(np.angle(np.linalg.eigvals(propagator(drive, dt)))).max() / dt
+    assert turned == pytest.approx(35355.8, abs=0.05)
+
+
+def test_eigenfrequency_of_the_two_inertia_gear_free_and_with_its_input_locked() -> None:
+    reversing = sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202)
+    assert eigenfrequency(undamped(reversing, 1.5e-4, 0.05, 8000.0)) == pytest.approx(406.61201818605, rel=1e-11)
+    assert eigenfrequency(undamped(reversing, 1e30, 0.05, 8000.0)) == pytest.approx(400.0, rel=1e-11)
+
+
+def test_step_response_of_the_linear_four_states() -> None:
+    run = sw.simulate(LINEAR, sw.scenario.constant(12.0, 0.5), dt=1e-4)
+    state = [run[name][-1] for name in ("input_angle", "input_speed", "output_angle", "output_speed")]
+    known = [25.15915806045715, 90.36585048354819, 0.2515619529156611, 0.9170600091745092]
+    assert state == pytest.approx(known, rel=1e-9)
+
+
+def test_step_response_is_the_matrix_exponential_at_every_sample() -> None:
+    """Document P's state-space form, its r = 1/100."""
+    motor, load, k, r = 0.0012, 0.0050, 150.0, 0.01
+    damping = MOTOR_DAMPING + 0.05 * 0.05 / 2.0
+    system = np.zeros((5, 5))
+    system[0, 1] = system[2, 3] = 1.0
+    system[1] = [-r * r * k / motor, -damping / motor, r * k / motor, 0.0, 0.05 / 2.0 * 12.0 / motor]
+    system[3] = [r * k / load, 0.0, -k / load, -LOAD_DAMPING / load, 0.0]
+    run = sw.simulate(LINEAR, sw.scenario.constant(12.0, 0.5), dt=1e-4, sample=0.01)
+    exact = np.stack([expm(system * time)[:4, 4] for time in run["time"]])
+    for column, name in enumerate(("input_angle", "input_speed", "output_angle", "output_speed")):
+        np.testing.assert_allclose(run[name], exact[:, column], rtol=0.0, atol=1e-9 * np.abs(exact[:, column]).max())
+
+
+# Set-valued friction
+
+
+def test_no_load_speed_and_current() -> None:
+    """Without friction at the load; the gear is damped, which a steady state does not feel."""
+    damped = DRIVE.replace(gear=GEAR.replace(damping=1.0))
+    run = sw.simulate(damped, sw.scenario.constant(12.0, 30.0), dt=1e-3, sample=30.0)
+    assert run["input_speed"][-1] == pytest.approx(138.1818181818, rel=1e-12)
+    assert run["output_speed"][-1] == pytest.approx(1.381818181818, rel=1e-12)
+    assert run["current"][-1] == pytest.approx(2.545454545455, rel=1e-12)
+
+
+def driven(voltage: float) -> sw.Recording:
+    return sw.simulate(DRIVE, sw.scenario.constant(voltage, 0.02), dt=1e-3)
+
+
+def test_breakaway_voltage() -> None:
+    threshold = first(lambda voltage: driven(voltage)["input_speed"].any(), 2.0, 4.0)
+    assert threshold == pytest.approx(2.991744, rel=1e-15)
+
+
+def test_below_breakaway_the_drive_stands_still_to_the_last_bit() -> None:
+    run = driven(2.99174)
+    for name in ("input_angle", "input_speed", "output_angle", "output_speed", "twist", "torque"):
+        assert not run[name].any()
+    assert np.ptp(run["current"]) == np.ptp(run["friction_input"]) == 0.0
+    assert run["friction_input"][0] == pytest.approx(0.05 * 2.99174 / 2.0, rel=1e-15)
+    state = DRIVE.rest()
+    assert DRIVE.step(state, command=2.99174, dt=1e-3) == state
+
+
+def coasting(duration: float) -> sw.Recording:
+    """From 100 rad/s with the circuit open; the gear so soft that the load stays out of it."""
+    drive = DRIVE.replace(gear=GEAR.replace(stiffness=sw.stiffness.Linear(k=1e-30)), motor=OPEN_CIRCUIT)
+    rest = drive.rest()
+    start = rest.replace(motion=rest.motion.replace(input_speed=100.0), sliding_input=1.0)
+    return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, start=start)
+
+
+def test_coasting_down_takes_its_time_and_angle() -> None:
+    stop = first(lambda duration: coasting(duration)["input_speed"][-1] == 0.0, 1.3, 1.4)
+    assert stop == pytest.approx(1.32549825684, rel=1e-11)
+    assert coasting(2.0)["input_angle"][-1] == pytest.approx(61.4103137693, rel=1e-11)
+
+
+def test_the_coulomb_oscillator_turns_at_its_peaks_and_sticks() -> None:
+    """A mass on a spring to a wall, here an output of endless inertia, with dry friction at the mass."""
+    stiction = sw.friction.Coulomb(coulomb=COULOMB, breakaway=COULOMB)
+    oscillator = sw.drives.PositionDrive(
+        gear=sw.Gear(
+            kinematics=sw.kinematics.PlainRatio(reduction=1.0),
+            stiffness=sw.stiffness.Linear(k=0.5),
+            friction_input=stiction,
+        ),
+        motor=sw.motor.DC(torque_constant=0.0, inertia=0.0012),
+        load=sw.loads.Inertia(inertia=1e30),
+    )
+    rest = oscillator.rest()
+    start = rest.replace(motion=rest.motion.replace(input_angle=1.0, transmission_error=1.0))
+
+    def after(duration: float) -> sw.Recording:
+        return sw.simulate(oscillator, sw.scenario.constant(0.0, duration), dt=1e-4, sample=duration, start=start)
+
+    stuck = 0.4617179388582711
+    peaks = [after(stuck * half_periods / 3.0)["input_angle"][-1] for half_periods in (1, 2, 3)]
+    assert peaks == pytest.approx([-0.712, 0.424, -0.136], rel=1e-10)
+    assert first(lambda time: after(time)["input_speed"][-1] == 0.0, 0.45, 0.47) == pytest.approx(stuck, rel=1e-10)
+    assert after(1.0)["input_angle"][-1] == pytest.approx(-0.136, rel=1e-10)

@@ -1,0 +1,66 @@
+"""Every example a reader can copy runs, and shows what the page says it shows."""
+
+from __future__ import annotations
+
+import doctest
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+class Example(NamedTuple):
+    code: str
+    line: int
+
+
+def examples(page: Path) -> list[Example]:
+    """The fenced blocks of Python on a page, and the line before each."""
+    text = page.read_text()
+    return [Example(block[1], text.count("\n", 0, block.start(1))) for block in FENCE.finditer(text)]
+
+
+def write_files(page: Path, folder: Path) -> None:
+    """A block whose first line is a comment with the name of a file is that file, there before the examples run."""
+    for block in NAMED.finditer(page.read_text()):
+        (folder / block[2]).write_text(block[1])
+
+
+def run_session(example: Example, names: dict[str, object], page: Path) -> None:
+    """Runs a block that shows a session, and compares what it prints."""
+    session = doctest.DocTestParser().get_doctest(example.code, names, page.name, str(page), example.line)
+    said: list[str] = []
+    result = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(session, out=said.append, clear_globs=False)
+    names.update(session.globs)
+    assert result.failed == 0, "".join(said)
+
+
+def run_program(example: Example, names: dict[str, object], page: Path) -> None:
+    exec(compile("\n" * example.line + example.code, page, "exec"), names)
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if examples(page)], ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_examples_of_a_page_run_one_after_the_other(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_files(page, tmp_path)
+    names: dict[str, object] = {"__name__": "__main__"}
+    for example in examples(page):
+        (run_session if example.code.startswith(">>>") else run_program)(example, names, page)
+
+
+def test_an_example_that_shows_something_else_fails(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("text\n\n```python\nx = 1\n```\n\n```python\n>>> x + 1\n3\n```\n")
+    program, session = examples(page)
+    names: dict[str, object] = {}
+    run_program(program, names, page)
+    with pytest.raises(AssertionError, match="line 8"):
+        run_session(session, names, page)
