@@ -58,15 +58,20 @@ def cheapest(results: Sequence[Result]) -> Result | None:
     return min((r for r in results if r.accurate), key=lambda result: result.wall_time, default=None)
 
 
+def three_digits(value: float) -> str:
+    """At least three significant digits, without exponent."""
+    return f"{value:.3g}" if value < 1000.0 else f"{value:.0f}"
+
+
 def table(results: Sequence[Result]) -> Table:
     """Of each solver the cheapest accurate setting and the tightest; times also over the baseline's cheapest."""
     baseline = cheapest([result for result in results if result.solver == BASELINE])
     caption = f"ratio: time over strainwave's; * misses {WANTED_OUTPUT_ANGLE} rad or {WANTED_TORQUE} N.m"
-    view = Table(title=f"Reference drive, {DURATION:.0f} s", caption=caption, box=SIMPLE_HEAD, collapse_padding=True)
+    view = Table(title=f"Reference drive, {DURATION:.0f} s", caption=caption, box=SIMPLE_HEAD, pad_edge=False)
     for heading in ("solver", "setting"):
         view.add_column(heading, no_wrap=True)
-    for heading in ("angle error [rad]", "torque error [N.m]", "wall [ms]", "ratio", "compile [s]"):
-        view.add_column(heading, justify="right")
+    for heading in ("angle error [rad]", "torque error [N.m]", "wall [ms]", "ratio", "build [s]"):
+        view.add_column(heading, justify="right", min_width=7)
     for solver in dict.fromkeys(result.solver for result in results):
         ladder = [result for result in results if result.solver == solver]
         for result in dict.fromkeys((cheapest(ladder) or ladder[-1], ladder[-1])):
@@ -75,8 +80,8 @@ def table(results: Sequence[Result]) -> Table:
                 result.setting,
                 f"{result.output_angle_error:.1e}",
                 f"{result.torque_error:.1e}",
-                f"{1e3 * result.wall_time:.1f}",
-                f"{result.wall_time / baseline.wall_time:.3g}" if baseline else "-",
+                three_digits(1e3 * result.wall_time),
+                three_digits(result.wall_time / baseline.wall_time) if baseline else "-",
                 f"{result.compile_time:.1f}",
             )
     return view

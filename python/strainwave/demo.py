@@ -7,30 +7,42 @@ publication known to us measures both on one gear, so the result shows the way, 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from strainwave import scenario
+from strainwave.drives import PositionDrive
 from strainwave.gear_set import GearSet
 from strainwave.identify.measurement import read_measurement
 from strainwave.identify.twin import Twin, twin
+from strainwave.recording import Recording
 from strainwave.report.experiment import Experiment, Figure
 from strainwave.scenario import Scenario
 from strainwave.simulation import simulate
 
 PUBLISHED = Path(__file__).with_name("published")
 
-# Document P, Table 4: figures to compare with. It prints neither its amplitudes nor its raw measurements.
+# Document P, Table 4: root mean square error [rad], largest error [rad], correlation coefficient. It compares simulated with
+# measured responses, and prints neither its amplitudes nor its measurements.
 TABLE_4 = {
     "step": (0.0021, 0.0050, 0.995),
     "sine, 1 Hz": (0.0018, 0.0042, 0.997),
     "pulse train": (0.0015, 0.0038, 0.998),
 }
-COMMANDS: dict[str, Scenario] = {
-    "step": scenario.step(amplitude=0.05, duration=2.0, start=0.1),
-    "sine, 1 Hz": scenario.sine(amplitude=0.05, frequency=1.0, duration=3.0),
-    "pulse train": scenario.pulse_train(amplitude=0.05, period=1.0, width=0.5, duration=3.0, start=0.1),
-}
+REMARK = (
+    "Amplitudes and controller are assumed, as document P gives none. The figures compare the response with the command; those "
+    "of document P compare its simulation with measurements that were not published. They are shown to compare with, not as reproduced."
+)
+
+
+def commands() -> dict[str, Scenario]:
+    """The three experiments of document P: step, 1 Hz sine and pulse train of the output angle [rad]."""
+    return {
+        "step": scenario.step(amplitude=0.05, duration=2.0, start=0.1),
+        "sine, 1 Hz": scenario.sine(amplitude=0.05, frequency=1.0, duration=3.0),
+        "pulse train": scenario.pulse_train(amplitude=0.05, period=1.0, width=0.5, duration=3.0, start=0.1),
+    }
 
 
 def published_twin(progress: Callable[[str], None] = lambda stage: None) -> Twin:
@@ -42,3 +54,37 @@ def published_twin(progress: Callable[[str], None] = lambda stage: None) -> Twin
         sources={"friction": "document P, Table 2 (measured)", "torsion": "document T, Table 2, row 0°"},
         progress=progress,
     )
+
+
+def experiments(found: Twin) -> list[Experiment]:
+    """Document P's experiments with the twin, with the friction that contradicts it, and with document P's drive as printed."""
+    drive, printed = found.gear_set.drive, found.start.drive
+    earlier = drive.gear.replace(friction_input=printed.gear.friction_input)
+    drives = {
+        "twin": drive,
+        "twin with the friction of Tables 1 and 3": drive.replace(gear=earlier),
+        "document P as printed": printed,
+    }
+    return [_experiment(name, command, drives) for name, command in commands().items()]
+
+
+def _experiment(name: str, command: Scenario, drives: dict[str, PositionDrive]) -> Experiment:
+    runs = tuple((label, simulate(drive, command, sample=2e-3)) for label, drive in drives.items())
+    figures = zip(*(_figures(run) for _, run in runs), strict=True)
+    names = (("root mean square error", "rad"), ("largest error", "rad"), ("correlation coefficient", "1"))
+    return Experiment(
+        name=name,
+        remark=REMARK,
+        runs=runs,
+        figures=tuple(
+            Figure(what, unit, values, published)
+            for (what, unit), values, published in zip(names, figures, TABLE_4[name], strict=True)
+        ),
+        source="document P, Table 4",
+    )
+
+
+def _figures(run: Recording) -> tuple[float, float, float]:
+    error = run["output_angle"] - run["command"]
+    correlation = np.corrcoef(run["output_angle"], run["command"])[0, 1]
+    return float(np.sqrt(np.mean(error**2))), float(np.abs(error).max()), float(correlation)

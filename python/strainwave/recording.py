@@ -364,7 +364,7 @@ def _first_fault(columns: Mapping[str, Array], units: Mapping[str, str]) -> _Fau
 
 
 def envelope(x: Array, y: Array, stretches: int = 5_000) -> tuple[Array, Array]:
-    """A curve to draw: itself or, if it is much longer, the extremes of x and y in each of many stretches of it, in order.
+    """A curve to draw: itself or, if much longer, the extremes of x and y in each of many stretches of it, in order.
 
     Args:
         x, y: the samples of the curve, shape (n,)

@@ -287,10 +287,15 @@ def _label(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> N
 
 
 def _scaled(axis: Axis, unit: str) -> str:
-    from matplotlib.ticker import FuncFormatter
-
+    """Numbers an axis in the prefix that suits its size, all to the same digit unless it is logarithmic; gives the unit."""
     power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
-    axis.set_major_formatter(FuncFormatter(lambda value, _: typeset.number(value / 10.0**power, 4)))
+
+    def tick(value: float, _: int | None) -> str:
+        ticks = [typeset.number(float(place) / 10.0**power, 4) for place in (*axis.get_majorticklocs(), value)]
+        places = max(len(text.partition(".")[2]) for text in ticks)
+        return ticks[-1] if axis.get_scale() == "log" else typeset.fixed(value / 10.0**power, places)
+
+    axis.set_major_formatter(tick)
     text = typeset.prefixed(unit, power)
     return f" [{text}]" if text else ""
 

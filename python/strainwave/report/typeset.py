@@ -25,7 +25,8 @@ def number(value: float, digits: int = 6) -> str:
         return "0"
     power = _power(_decade(value, digits))
     scaled = value / 10.0**power
-    return _signed(_fixed(scaled, digits - 1 - _decade(scaled, digits), strip=True)) + _times(power)
+    text = fixed(scaled, digits - 1 - _decade(scaled, digits))
+    return (text.rstrip("0").rstrip(".") if "." in text else text) + _times(power)
 
 
 def uncertain(value: float, sigma: float) -> str:
@@ -44,7 +45,7 @@ def uncertain(value: float, sigma: float) -> str:
         return f"{number(value)} ± {number(sigma, 2)}"
     power = _power(_decade(max(abs(value), sigma), 2))
     places = 1 - _decade(sigma / 10.0**power, 2)
-    pair = " ± ".join(_signed(_fixed(x / 10.0**power, places)) for x in (value, sigma))
+    pair = " ± ".join(fixed(x / 10.0**power, places) for x in (value, sigma))
     return f"({pair}){_times(power)}" if power else pair
 
 
@@ -70,6 +71,15 @@ def quantity(value: float, of: str, digits: int = 3) -> str:
     return f"{number(value / 10.0**power, digits)} {prefixed(of, power)}".strip()
 
 
+def fixed(value: float, places: int) -> str:
+    """A number rounded to so many decimal places, or to tens, hundreds … where there are fewer than none.
+
+    >>> fixed(-0.0312, 2), fixed(-0.001, 2), fixed(31234.0, -2)
+    ('−0.03', '0.00', '31200')
+    """
+    return f"{round(value, places) + 0.0:.{max(places, 0)}f}".replace("-", "−")
+
+
 def prefix_power(largest: float, of: str) -> int:
     """The power of ten, a multiple of three, by whose prefix numbers of this size are best written."""
     if of == "1" or of.startswith(("k", "1/")) or not math.isfinite(largest) or 0.1 <= abs(largest) < 1e4 or largest == 0.0:
@@ -89,15 +99,6 @@ def _decade(value: float, digits: int) -> int:
 
 def _power(decade: int) -> int:
     return 0 if _PLAIN[0] <= decade <= _PLAIN[1] else 3 * math.floor(decade / 3)
-
-
-def _fixed(value: float, places: int, *, strip: bool = False) -> str:
-    text = f"{round(value, places) + 0.0:.{max(places, 0)}f}"
-    return text.rstrip("0").rstrip(".") if strip and "." in text else text
-
-
-def _signed(text: str) -> str:
-    return text.replace("-", "−")
 
 
 def _times(power: int) -> str:

@@ -1,0 +1,649 @@
+"""Gear files: what is read, what is refused and in which words, what survives writing."""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+import re
+import subprocess
+import sys
+import tomllib
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import pytest
+import strainwave as sw
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from strainwave import _core
+from strainwave.gear_set import Entry, GearSet, Quantity, catalogue, load, save
+
+from tests.strategies import drives, gears, models
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENT = (ROOT / "docs" / "gear-files.md").read_text(encoding="utf-8")
+SHIPPED = {file.stem: file for file in (ROOT / "python" / "strainwave" / "catalogue").glob("*.toml")}
+
+BASE = """
+name = "Printed 20:1"
+
+[kinematics]
+model = "plain_ratio"
+reduction = { value = 20.0, source = "counted" }
+
+[stiffness]
+model = "cubic"
+a1 = { value = 716.2, unit = "N.m/rad", source = "torsion loop" }
+a3 = { value = 2e6, unit = "N.m/rad3", source = "torsion loop" }
+"""
+
+# Examples may share one folder; the first of them pays for the imports.
+untimed = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+
+
+def exactly(message: str) -> str:
+    return f"^{re.escape(message)}$"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def with_line(old: str, new: str) -> str:
+    """The base file with one line changed."""
+    (line,) = [line for line in BASE.splitlines() if line.startswith(old)]
+    return BASE.replace(line, new)
+
+
+# What is read
+
+
+def test_numbers_in_other_units_are_converted_to_si(folder: Path) -> None:
+    text = with_line("a1", 'a1 = { value = 12.5, unit = "N.m/deg", uncertainty = 0.4, source = "x" }')
+    text = text.replace("2e6", "2e3").replace("N.m/rad3", "kN.m/rad3")
+    text += """
+[kinematic_error]
+model = "fourier"
+order = { value = [2.0], source = "x" }
+amplitude = { value = [3.0], unit = "arcmin", source = "x", spread = 0.5 }
+phase = { value = [90.0], unit = "°", source = "x" }
+[friction_input]
+model = "stribeck"
+coulomb = { value = 20.0, unit = "mN.m", source = "x" }
+breakaway = { value = 3.0, unit = "Ncm", source = "x" }
+stribeck_speed = { value = 10.0, unit = "rpm", source = "x" }
+viscous = { value = 0.1, unit = "mN.m.s/rad", source = "x" }
+[gear]
+damping = { value = 1, unit = "N.m.s/rad", source = "x" }
+input_inertia = { value = 21.0, unit = "g.cm2", source = "x" }
+"""
+    Path("my.toml").write_text(text, encoding="utf-8")
+    gear_set = GearSet.read("my.toml")
+    gear = gear_set.gear
+    assert gear.stiffness.a1 == pytest.approx(12.5 * 180 / math.pi, rel=1e-15)
+    assert gear.stiffness.a3 == 2e6
+    assert gear.kinematic_error.amplitude[0] == pytest.approx(3 * math.pi / 10_800, rel=1e-15)
+    assert gear.kinematic_error.phase[0] == pytest.approx(math.pi / 2, rel=1e-15)
+    assert gear.friction_input.coulomb == pytest.approx(0.02, rel=1e-15)
+    assert gear.friction_input.breakaway == pytest.approx(0.03, rel=1e-15)
+    assert gear.friction_input.stribeck_speed == pytest.approx(math.pi / 3, rel=1e-15)
+    assert gear.friction_input.viscous == pytest.approx(1e-4, rel=1e-15)
+    assert gear.damping == 1.0
+    assert gear.input_inertia == pytest.approx(2.1e-6, rel=1e-15)
+    uncertainty = gear_set.sources["gear.stiffness.a1"].uncertainty
+    assert uncertainty == pytest.approx(0.4 * 180 / math.pi, rel=1e-15)
+    assert gear_set.sources["gear.kinematic_error.amplitude[0]"].spread == 0.5  # relative: the same in every unit
+
+
+def test_the_uncertainty_of_a_temperature_is_a_difference() -> None:
+    kelvin = Quantity(value=20.0, unit="degC", source="x", uncertainty=0.5).to("K")
+    assert (kelvin.value, kelvin.uncertainty) == (293.15, 0.5)
+
+
+def test_a_table_left_out_does_nothing_and_says_so(folder: Path) -> None:
+    Path("my.toml").write_text(BASE)
+    gear_set = GearSet.read("my.toml")
+    gear = gear_set.gear
+    assert gear.kinematics == sw.kinematics.PlainRatio(reduction=20.0)
+    assert gear.kinematic_error.error(1.0) == 0.0
+    assert gear.friction_input.steady(3.0) == gear.friction_output.steady(3.0) == 0.0
+    assert not gear.hysteresis.trace([0.0, 1e-3]).any()
+    assert gear.damping == gear.input_inertia == 0.0
+    not_given = {path for path, entry in gear_set.sources.items() if entry == Entry("not given")}
+    assert not_given == {
+        "gear.friction_input.viscous", "gear.friction_output.viscous", "gear.damping", "gear.input_inertia",
+    }  # fmt: skip
+    gear_set.save("again.toml")
+    assert GearSet.read("again.toml") == gear_set
+
+
+def test_each_number_of_a_sequence_can_have_its_own_source(folder: Path) -> None:
+    Path("my.toml").write_text(
+        BASE
+        + """
+[hysteresis]
+model = "maxwell_slip"
+stiffness = { value = [300, 150.0], unit = "N.m/rad", source = "loop" }
+breakaway = [
+    { value = 200.0, unit = "mN.m", source = "loop", uncertainty = 30.0 },
+    { value = 0.4, unit = "N.m", source = "assumed" },
+]
+"""
+    )
+    gear_set = GearSet.read("my.toml")
+    assert gear_set.gear.hysteresis == sw.hysteresis.MaxwellSlip(stiffness=[300.0, 150.0], breakaway=[0.2, 0.4])
+    sources = {path: entry for path, entry in gear_set.sources.items() if "hysteresis" in path}
+    assert sources == {
+        "gear.hysteresis.stiffness[0]": Entry("loop"),
+        "gear.hysteresis.stiffness[1]": Entry("loop"),
+        "gear.hysteresis.breakaway[0]": Entry("loop", uncertainty=0.03),
+        "gear.hysteresis.breakaway[1]": Entry("assumed"),
+    }
+    gear_set.save("again.toml")
+    assert GearSet.read("again.toml") == gear_set
+
+
+def test_a_byte_order_mark_and_windows_line_ends_are_no_matter(folder: Path) -> None:
+    Path("my.toml").write_text(BASE)
+    Path("windows.toml").write_bytes(b"\xef\xbb\xbf" + BASE.replace("\n", "\r\n").encode())
+    assert GearSet.read("windows.toml") == GearSet.read("my.toml")
+
+
+def test_a_path_is_what_has_a_folder_or_ends_in_toml(folder: Path) -> None:
+    Path("sub").mkdir()
+    for path in (Path("my.toml"), Path("sub/noending")):
+        path.write_text(BASE)
+    assert load("my.toml") == load(Path("my.toml")) == load("sub/noending") == load(folder / "sub" / "noending")
+
+
+# What is refused
+
+STIFFNESS = 'write model = "linear" or "cubic" or "three_segment"'
+PARTS = (
+    "name, maker, note, ratings, kinematics, kinematic_error, stiffness, hysteresis, friction_input, friction_output, "
+    "gear, motor, control, load"
+)
+HYSTERESIS = """
+[hysteresis]
+model = "maxwell_slip"
+stiffness = { value = [300.0, 150.0], unit = "N.m/rad", source = "loop" }
+breakaway = """
+TEETH = """model = "strain_wave"
+flexspline_teeth = { value = 40, source = "counted" }
+circular_spline_teeth = { value = 42, source = "counted" }
+fixed = "circular_spline"
+"""
+WHOLE = BASE.replace('model = "plain_ratio"\nreduction = { value = 20.0, source = "counted" }\n', TEETH)
+
+REFUSED = {
+    # the file as a whole
+    "": "my.toml is empty",
+    "# nothing but a comment\n": "my.toml is empty",
+    # names and tables
+    with_line("name", ""): 'my.toml name is missing; write name = "…"',
+    with_line("name", "name = ''"): "my.toml name = '' must be one line of text",
+    with_line("name", "name = 'a'\nmaker = 3"): 'my.toml maker = 3 must be a text; write maker = "…"',
+    with_line("name", "name = 'a'\ncolour = 3"): f"my.toml colour: not a part of a gear file; it has {PARTS}",
+    with_line("[stiffness]", "[stifness]"): f"my.toml stifness: not a part of a gear file; it has {PARTS}",
+    with_line("name", "name = 'a'\nload = 3"): (
+        'my.toml load = 3 must be a table; write [load] with model = "inertia" or "pendulum"'
+    ),
+    BASE[: BASE.index("[stiffness]")]: (
+        'my.toml stiffness is missing; write [stiffness] with model = "linear" or "cubic" or "three_segment"'
+    ),
+    # models
+    with_line('model = "cubic"', ""): f"my.toml [stiffness] has no model; {STIFFNESS}",
+    with_line('model = "cubic"', 'model = "quartic"'): (
+        f'my.toml [stiffness] model = "quartic" is not known; {STIFFNESS}'
+    ),
+    with_line('model = "cubic"', "model = 3"): f'my.toml [stiffness] model = "3" is not known; {STIFFNESS}',
+    with_line('model = "cubic"', 'model = ["cubic"]'): (
+        f"my.toml [stiffness] model = \"['cubic']\" is not known; {STIFFNESS}"
+    ),
+    # parameters
+    with_line("a1", "k9 = 1.0"): "my.toml [stiffness] k9: not a parameter of cubic; it has a1, a3",
+    with_line("a3", ""): (
+        'my.toml [stiffness] a3 is missing; write a3 = { value = …, unit = "N.m/rad3", source = "…" }'
+    ),
+    BASE + "[gear]\ndamping = { value = 1, unit = 'N.m.s/rad', source = 'x' }\n": (
+        'my.toml [gear] input_inertia is missing; write input_inertia = { value = …, unit = "kg.m2", source = "…" }'
+    ),
+    BASE + "[gear]\nmodel = 'x'\n": "my.toml [gear] model: not a parameter of gear; it has damping, input_inertia",
+    # numbers; the common tail shows how the entry is written
+    with_line("a1", "a1 = 716.2"): "my.toml [stiffness] a1 = 716.2 must be a table; " + (
+        'write a1 = { value = 716.2, unit = "N.m/rad", source = "…" }'
+    ),
+    with_line("a1", "a1 = { value = 716.2 }"): (
+        'my.toml [stiffness] a1 has no unit; write a1 = { value = 716.2, unit = "N.m/rad", source = "…" }'
+    ),
+    with_line("a1", 'a1 = { value = 716.2, unit = "N.m/rad" }'): (
+        'my.toml [stiffness] a1 has no source; write a1 = { value = 716.2, unit = "N.m/rad", source = "…" }'
+    ),
+    WHOLE.replace("value = 40, ", ""): (
+        'my.toml [kinematics] flexspline_teeth has no value; write flexspline_teeth = { value = …, source = "…" }'
+    ),
+    with_line("a1", "a1 = { value = 1.0, unit = 'N.m/rad', source = '' }"): (
+        "my.toml [stiffness] a1: source = '' must be one line of text"
+    ),
+    with_line("a1", "a1 = { value = 1.0, unit = 'N.m/rad', source = 'x', spread = -0.3 }"): (
+        "my.toml [stiffness] a1: spread = -0.3 must lie in [0, inf)"
+    ),
+    with_line("a1", "a1 = { value = 1.0, unit = 'N.m', source = 'x' }"): (
+        'my.toml [stiffness] a1: cannot convert "N.m" to "N.m/rad"'
+    ),
+    with_line("a1", "a1 = { value = 1.0, unit = 'N.m/rd', source = 'x' }"): (
+        'my.toml [stiffness] a1: unit "N.m/rd" is not known; write it like N.m, rad/s, deg'
+    ),
+    with_line("a1", "a1 = { value = -716.2, unit = 'N.m/rad', source = 'x' }"): (
+        "my.toml [stiffness] cubic.a1 = -716.2 N.m/rad must lie in (0, inf)"
+    ),
+    with_line("a1", "a1 = { value = 1e308, unit = 'kN.m/rad', source = 'x' }"): (
+        "my.toml [stiffness] a1: value = inf N.m/rad must be finite"
+    ),
+    # choices and counts
+    WHOLE.replace('"circular_spline"', '"wave"'): (
+        "my.toml [kinematics] strain_wave.fixed must be 'circular_spline' or 'flexspline', not 'wave'"
+    ),
+    WHOLE.replace('"circular_spline"', "1"): (
+        'my.toml [kinematics] fixed = 1 must be a text; write fixed = "circular_spline"'
+    ),
+    WHOLE.replace("40", "40.5"): (
+        "my.toml [kinematics] strain_wave.flexspline_teeth must be a whole number, not 40.5"
+    ),
+    WHOLE.replace("40", "42"): (
+        "my.toml [kinematics] strain_wave: circular_spline_teeth must exceed flexspline_teeth"
+    ),
+    WHOLE.replace("40, ", "40, unit = 'rad', "): (
+        'my.toml [kinematics] flexspline_teeth: cannot convert "rad" to "1"'
+    ),
+    # sequences
+    BASE + HYSTERESIS + "{ value = [0.2], unit = 'N.m', source = 'x' }": (
+        "my.toml [hysteresis] maxwell_slip: stiffness and breakaway must have equally many elements"
+    ),
+    BASE + HYSTERESIS + "{ value = [0.2, -1.0], unit = 'N.m', source = 'x' }": (
+        "my.toml [hysteresis] maxwell_slip.breakaway[1] = -1 N.m must lie in [0, inf)"
+    ),
+    BASE + HYSTERESIS + "{ value = [], unit = 'N.m', source = 'x' }": (
+        "my.toml [hysteresis] breakaway = {'source': 'x', 'unit': 'N.m', 'value': []} must be a list; "
+        'write breakaway = { value = […], unit = "N.m", source = "…" }, or [] for none'
+    ),
+    BASE + HYSTERESIS + "[0.2, 0.4]": (
+        "my.toml [hysteresis] breakaway[0] = 0.2 must be a table; "
+        'write breakaway = { value = […], unit = "N.m", source = "…" }, or [] for none'
+    ),
+    BASE + HYSTERESIS + "{ value = [0.2, 'x'], unit = 'N.m', source = 'x' }": (
+        "my.toml [hysteresis] breakaway[1] = 'x' must be a number; "
+        'write breakaway = { value = […], unit = "N.m", source = "…" }, or [] for none'
+    ),
+    BASE + HYSTERESIS + "[{ value = 0.2, unit = 'N.m', source = 'x' }, { value = 0.2, unit = 'rad', source = 'x' }]": (
+        'my.toml [hysteresis] breakaway: cannot convert "rad" to "N.m"'
+    ),
+    # ratings
+    BASE + "[ratings]\npeak_torque = 4.0": (
+        "my.toml [ratings] peak_torque = 4.0 must be a table; "
+        'write peak_torque = { value = 4.0, unit = "…", source = "…" }'
+    ),
+    BASE + "[ratings]\npeak_torque = { value = 4.0, unit = 'N.n', source = 'x' }": (
+        'my.toml [ratings] peak_torque: unit "N.n" is not known; write it like N.m, rad/s, deg'
+    ),
+}  # fmt: skip
+
+ENTRY = {
+    "nan": "a1 = nan must be finite",
+    "-inf": "a1 = -inf must be finite",
+    "'soft'": "a1 = 'soft' must be a number",
+    "true": "a1 = True must be a number",
+    "[716.2]": "a1 = [716.2] must be a number",
+    "{}": "a1 = {} must be a number",
+    "1" + 400 * "0": "a1 = 100000000000000000...0000000000000000000 must be a number",
+    "1.0, sprad = 0.3": "a1: an entry has no sprad",
+    "1.0, spread = nan": "a1.spread = nan must be finite",
+    "1.0, uncertainty = 'big'": "a1.uncertainty = 'big' must be a number",
+}
+REFUSED |= {
+    with_line("a1", f"a1 = {{ value = {value}, unit = 'N.m/rad', source = 'x' }}"): (
+        f'my.toml [stiffness] {words}; write a1 = {{ value = …, unit = "N.m/rad", source = "…" }}'
+    )
+    for value, words in ENTRY.items()
+}
+
+
+@pytest.mark.parametrize(("text", "message"), REFUSED.items(), ids=REFUSED.values())
+def test_what_is_wrong_is_refused_in_one_line_with_its_place(folder: Path, text: str, message: str) -> None:
+    Path("my.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=exactly(message)):
+        load("my.toml")
+
+
+def test_what_cannot_be_read_is_refused(folder: Path) -> None:
+    with pytest.raises(ValueError, match=exactly("my.toml cannot be read: No such file or directory")):
+        load("my.toml")
+    with pytest.raises(ValueError, match=exactly(f"{folder} cannot be read: Is a directory")):
+        load(folder)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"name = 'a'\nname = 'b'\n", r"Cannot overwrite a value \(at line 2, column 11\)"),
+        (b"\n\n[stiffness\n", r"Expected '\]' at the end of a table declaration \(at line 3, column 11\)"),
+        (b"a1\n", r"Expected '=' after a key in a key/value pair \(at line 1, column 3\)"),
+        (b"name = '\xff'", "'utf-8' codec can't decode byte 0xff"),
+        (b"x = " + 9_999 * b"[", ""),
+    ],
+)
+def test_what_is_no_toml_is_refused_with_the_line(folder: Path, content: bytes, reason: str) -> None:
+    Path("my.toml").write_bytes(content)
+    with pytest.raises(ValueError, match=rf"^my\.toml is not valid TOML: {reason}"):
+        load("my.toml")
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("HFUC-25-100", "; near it are hfuc-25-100"),
+        ("hfuc-25-101", "; near it are hfuc-25-.*, hfuc-25-100"),
+        ("xyz", "; strainwave"),
+    ],
+)
+def test_a_name_not_in_the_catalogue_is_answered_with_those_near_it(name: str, near: str) -> None:
+    with pytest.raises(ValueError, match=f'^no gear set "{name}" in the catalogue{near}.*catalogue\\(\\) lists all'):
+        load(name)
+
+
+def every_parameter() -> list[Any]:
+    return [
+        pytest.param(family, model, field, id=f"{model.name}.{field['name']}")
+        for family in ("stiffness", "hysteresis", "kinematic_error", "kinematics", "motor", "control")
+        for model in _core.families[family].values()
+        for field in model.fields
+    ]
+
+
+@pytest.mark.parametrize(("family", "model", "parameter"), every_parameter())
+def test_no_parameter_of_any_model_may_be_left_out(
+    folder: Path, family: str, model: Any, parameter: dict[str, Any]
+) -> None:
+    drive = sw.drives.PositionDrive()
+    in_gear = hasattr(drive.gear, family)
+    drive = (
+        drive.replace(gear=drive.gear.replace(**{family: model()})) if in_gear else drive.replace(**{family: model()})
+    )
+    save(drive, "my.toml", name="x", source="x")
+    lines = Path("my.toml").read_text().splitlines()
+    table = lines.index(f"[{family}]")
+    row = next(i for i in range(table, len(lines)) if lines[i].startswith(f"{parameter['name']} = "))
+    Path("my.toml").write_text("\n".join(lines[:row] + lines[row + 1 :]))
+    with pytest.raises(ValueError, match=rf"^my\.toml \[{family}\] {parameter['name']} is missing; write "):
+        load("my.toml")
+
+
+# The value
+
+
+def test_every_number_has_a_source_and_every_source_a_number() -> None:
+    gear_set = GearSet.read("hfuc-25-100")
+    sources = dict(gear_set.sources)
+    del sources["gear.stiffness.k2"]
+    with pytest.raises(ValueError, match=exactly("HFUC-25-100: gear.stiffness.k2 has no source")):
+        gear_set.replace(sources=sources)
+    with pytest.raises(ValueError, match=exactly("HFUC-25-100: sources name gear.x, which is no number of the set")):
+        gear_set.replace(sources={**gear_set.sources, "gear.x": Entry("x")})
+    with pytest.raises(ValueError, match=exactly("HFUC-25-100: gear.stiffness.k has no source")):
+        gear_set.replace(gear=gear_set.gear.replace(stiffness=sw.stiffness.Linear(k=1.0)))
+
+
+@given(drives)
+def test_the_paths_are_those_of_the_drives_parameters_and_its_counts(drive: sw.drives.PositionDrive) -> None:
+    counts = {f"gear.kinematics.{f['name']}" for f in drive.gear.kinematics.fields if f["kind"] == "count"}
+    numbers = {path for path, *_ in _core.parameters(drive)}
+    assert GearSet.of(drive, name="x", source="x").sources.keys() == numbers | counts
+
+
+def test_a_set_is_frozen_hashable_and_survives_pickling_and_copying() -> None:
+    gear_set = GearSet.read("csg-20-100")
+    for twin in (pickle.loads(pickle.dumps(gear_set)), copy.deepcopy(gear_set)):
+        assert twin == gear_set
+        assert hash(twin) == hash(gear_set)
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        gear_set.sources["gear.damping"] = Entry("x")  # type: ignore[index]
+    assert gear_set.replace(note="other") != gear_set
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "message"),
+    [
+        (lambda: Entry(""), ValueError, "source = '' must be one line of text"),
+        (lambda: Entry("two\nlines"), ValueError, r"source = 'two\nlines' must be one line of text"),
+        (lambda: Entry(3), TypeError, "source must be a text, not 3"),
+        (lambda: Entry("x", spread=-1.0), ValueError, "spread = -1.0 must lie in [0, inf)"),
+        (lambda: Entry("x", uncertainty=math.nan), ValueError, "uncertainty = nan must lie in [0, inf)"),
+        (lambda: Entry("x", uncertainty=math.inf), ValueError, "uncertainty = inf must lie in [0, inf)"),
+        (lambda: Quantity(value=math.inf, unit="N.m", source="x"), ValueError, "value = inf N.m must be finite"),
+        (
+            lambda: Quantity(value=1.0, unit="N.n", source="x"),
+            ValueError,
+            'unit "N.n" is not known; write it like N.m, rad/s, deg',
+        ),
+        (lambda: GearSet.of(3, name="x", source="x"), TypeError, "position_drive.gear must be a Gear, not 3"),
+        (
+            lambda: GearSet.read("hfuc-25-100").replace(motor=3),
+            TypeError,
+            "position_drive.motor must be one of DC, not 3",
+        ),
+        (
+            lambda: GearSet.read("hfuc-25-100").replace(ratings={"peak_torque": 4.0}),
+            TypeError,
+            "peak_torque must have a strainwave.gear_set.Quantity, not 4.0",
+        ),
+    ],
+)
+def test_a_wrong_value_is_refused(make: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=exactly(message)):
+        make()
+
+
+def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() -> None:
+    bare = GearSet.of(sw.Gear(), name="bare", source="x")
+    with pytest.raises(
+        ValueError, match=exactly("bare has no [motor] and no [load]; a drive needs a motor and a load")
+    ):
+        _ = bare.drive
+    motor, load = sw.motor.DC(resistance=2.0), sw.loads.Inertia(inertia=3.0)
+    drive = sw.drives.PositionDrive(gear=sw.Gear(damping=7.0), motor=motor, load=load)
+    whole = GearSet.of(drive, name="whole", source="x")
+    assert whole.drive == drive
+    sources = {path: entry for path, entry in whole.sources.items() if not path.startswith("control.")}
+    assert whole.replace(control=None, sources=sources).drive.control == sw.control.OpenLoop(gain=1.0)
+    sources = {path: entry for path, entry in sources.items() if not path.startswith("load.")}
+    with pytest.raises(ValueError, match=exactly("whole has no [load]; a drive needs a motor and a load")):
+        _ = whole.replace(control=None, load=None, sources=sources).drive
+
+
+# What survives writing
+
+lines = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() and text.strip() != "")
+positive = st.floats(0.0, 1e300)
+entries = st.builds(Entry, lines, st.none() | positive, st.none() | positive)
+units = st.sampled_from(["1", "rad", "rpm", "N.m", "arcmin", "degC", "Nm/(rad/s)"])
+ratings = st.builds(
+    Quantity, lines, st.none() | positive, st.none() | positive,
+    value=st.floats(allow_nan=False, allow_infinity=False), unit=units,
+)  # fmt: skip
+
+
+@st.composite
+def gear_sets(draw: st.DrawFn) -> GearSet:
+    """A set with any models, with or without the rest of a drive, each number with a source of its own."""
+    families = {"motor": "motor", "control": "control", "load": "loads"}
+    chosen = {part: draw(st.none() | models(family)) for part, family in families.items()}
+    gear = draw(gears)
+    whole = {part: model for part, model in chosen.items() if model is not None}
+    paths = GearSet.of(sw.drives.PositionDrive(gear=gear, **whole), name="x", source="x").sources
+    absent = tuple(f"{part}." for part in chosen.keys() - whole.keys())
+    shared, own = draw(entries), draw(st.booleans())
+    return GearSet(
+        name=draw(lines),
+        maker=draw(st.just("") | lines),
+        note=draw(st.text(st.characters(exclude_categories=["Cs"]), max_size=20)),
+        gear=gear,
+        sources={path: draw(entries) if own else shared for path in paths if not path.startswith(absent)},
+        ratings=draw(st.dictionaries(lines, ratings, max_size=3)),
+        **chosen,
+    )
+
+
+@untimed
+@given(gear_sets())
+def test_a_set_written_and_read_is_equal_bit_for_bit(tmp_path: Path, gear_set: GearSet) -> None:
+    gear_set.save(tmp_path / "set.toml")
+    again = GearSet.read(tmp_path / "set.toml")
+    assert again == gear_set
+    assert repr(again) == repr(gear_set)  # tells -0.0 from 0.0
+    assert repr(again.ratings) == repr(gear_set.ratings)
+
+
+@untimed
+@given(gear_sets())
+def test_every_number_is_written_with_unit_and_source(tmp_path: Path, gear_set: GearSet) -> None:
+    gear_set.save(tmp_path / "set.toml")
+    document = tomllib.loads((tmp_path / "set.toml").read_text(encoding="utf-8"))
+    found = {}
+    for table, content in document.items():
+        for key, entry in content.items() if isinstance(content, dict) and table != "ratings" else ():
+            for one in entry if isinstance(entry, list) else [entry]:
+                if isinstance(one, dict):
+                    assert one.keys() >= {"value", "unit", "source"}
+                    found[table, key] = one
+    owner = {"gear": gear_set.gear, "motor": gear_set.motor, "control": gear_set.control, "load": gear_set.load}
+    for path in gear_set.sources:
+        *_, table, key = path.split("[")[0].split(".")
+        model = owner.get(table) or getattr(gear_set.gear, table)
+        (unit,) = [field["unit"] for field in model.fields if field["name"] == key]
+        assert found[table, key]["unit"] == unit
+
+
+@untimed
+@given(drives, lines)
+def test_a_drive_can_be_saved_with_one_source_for_all(
+    tmp_path: Path, drive: sw.drives.PositionDrive, text: str
+) -> None:
+    save(drive, tmp_path / "drive.toml", name=text, source=text)
+    again = GearSet.read(tmp_path / "drive.toml")
+    assert again.drive == drive
+    assert set(again.sources.values()) == {Entry(text)}
+
+
+def test_writing_that_fails_leaves_the_old_file_and_no_other(folder: Path) -> None:
+    gear_set = GearSet.of(sw.Gear(), name="x", source="x")
+    gear_set.save("my.toml")
+    before = Path("my.toml").read_bytes()
+    with pytest.raises(UnicodeEncodeError):
+        gear_set.replace(note="\ud800").save("my.toml")
+    assert [file.name for file in folder.iterdir()] == ["my.toml"]
+    assert Path("my.toml").read_bytes() == before
+
+
+def test_a_file_is_saved_under_a_name_that_is_read_as_a_path(folder: Path) -> None:
+    with pytest.raises(ValueError, match=exactly("mine: a gear file ends in .toml")):
+        GearSet.read("hfuc-25-100").save("mine")
+
+
+# The catalogue
+
+
+@pytest.mark.parametrize("name", sorted(SHIPPED))
+def test_a_catalogue_set_is_read_number_by_number(name: str, tmp_path: Path) -> None:
+    """Against the file as plain TOML; the files are in SI units."""
+    gear_set = GearSet.read(name)
+    document = tomllib.loads(SHIPPED[name].read_text(encoding="utf-8"))
+    assert load(name) == gear_set.gear
+    assert gear_set.name == document.pop("name")
+    assert gear_set.maker == document.pop("maker")
+    assert gear_set.note == document.pop("note", "")
+    assert {key: asdict(rating) for key, rating in gear_set.ratings.items()} == {
+        key: {"spread": None, "uncertainty": None, **entry} for key, entry in document.pop("ratings", {}).items()
+    }
+    counted = 0
+    for table, content in document.items():
+        model = gear_set.gear if table == "gear" else getattr(gear_set.gear, table)
+        assert content.pop("model", model.name) == model.name
+        for key, entry in content.items():
+            member = getattr(model, key)
+            value = entry if isinstance(entry, str) else entry["value"]
+            assert (list(member) if isinstance(value, list) else member) == value
+            places = [] if isinstance(entry, str) else [""] if not isinstance(value, list) else range(len(value))
+            for place in places:
+                path = f"{'' if table == 'gear' else 'gear.'}{table}.{key}" + (f"[{place}]" if place != "" else "")
+                assert gear_set.sources[path] == Entry(entry["source"], entry.get("spread"))
+                counted += 1
+    assert counted == len(gear_set.sources)
+    gear_set.save(tmp_path / "copy.toml")
+    assert GearSet.read(tmp_path / "copy.toml") == gear_set
+
+
+def test_the_catalogue_lists_what_is_shipped() -> None:
+    assert catalogue() == sorted(SHIPPED)
+    assert len(SHIPPED) == 127
+
+
+@pytest.mark.parametrize("name", ["csg-14-50", "csg-20-160", "hfuc-25-100", "hfuc-58-50", "shg-32-80", "shg-58-160"])
+def test_a_catalogue_gear_turns_its_output_by_its_ratio(name: str) -> None:
+    """Load and motor are matched to the wave generator, and reach their speed with a time constant of 20 ms."""
+    gear = load(name)
+    inertia = gear.input_inertia
+    motor = sw.motor.DC(inertia=inertia, torque_constant=0.1, back_emf=0.1, resistance=0.1**2 * 0.02 / (3 * inertia))
+    disc = sw.loads.Inertia(inertia=inertia * gear.kinematics.ratio**2)
+    drive = sw.drives.PositionDrive(gear=gear, motor=motor, load=disc)
+    run = sw.simulate(drive, sw.scenario.step(amplitude=20.0, duration=0.2))
+    _, _, ratio = name.split("-")
+    assert run["input_angle"][-1] > 2 * math.pi
+    # Errors and windup of some arcmin are less than a hundredth of the way.
+    assert run["output_angle"][-1] == pytest.approx(-run["input_angle"][-1] / int(ratio), rel=1e-2)
+
+
+# The module and its page
+
+
+def test_importing_the_module_imports_no_heavy_one() -> None:
+    code = "import strainwave.gear_set, sys; print({'pydantic', 'pint', 'tomlkit'} & sys.modules.keys())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", DOCUMENT, re.DOTALL)
+
+
+def test_the_example_of_the_page_is_read_as_it_is_meant(folder: Path) -> None:
+    (example,) = blocks("toml")
+    Path("mine.toml").write_text(example, encoding="utf-8")
+    gear_set = GearSet.read("mine.toml")
+    assert gear_set.gear.kinematics.ratio == -20.0
+    assert gear_set.gear.stiffness.a1 == pytest.approx(12.5 * 180 / math.pi, rel=1e-15)
+    assert gear_set.gear.friction_input.breakaway == pytest.approx(0.025, rel=1e-15)
+    assert gear_set.motor.inertia == pytest.approx(5e-6, rel=1e-15)
+    run = sw.simulate(gear_set.drive, sw.scenario.step(amplitude=3.0, duration=0.1))
+    assert run["input_angle"][-1] > 1.0
+
+
+def test_the_code_of_the_page_runs(folder: Path) -> None:
+    (example,) = blocks("toml")
+    Path("mine.toml").write_text(example, encoding="utf-8")
+    names: dict[str, Any] = {}
+    for code in blocks("python"):
+        exec(code, names)
+    assert load("new.toml") == load("mine.toml")
+    assert GearSet.read("copy.toml") == GearSet.read("mine.toml")
+    assert load("changed.toml").friction_input.coulomb == 0.0213
+
+
+def test_the_errors_of_the_page_are_those_one_sees() -> None:
+    (shown,) = blocks("text")
+    seen = set(REFUSED.values()) | {"my.toml cannot be read: No such file or directory"}
+    assert {line for line in shown.splitlines() if "valid TOML" not in line} <= seen
