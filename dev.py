@@ -1,4 +1,4 @@
-"""What a developer does here, on a machine that has only Python 3.11 or later with its headers, git and a C++20 compiler.
+"""What a developer does here, on a machine with Python 3.11 or later and its headers, git and a C++20 compiler.
 
     python3 dev.py demo         run the demonstration; its report is out/demo/report.html
     python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
@@ -67,7 +67,7 @@ def install(groups: Sequence[str], extra: str) -> None:
 
 
 def check_machine() -> None:
-    if sys.version_info < (3, 11):
+    if sys.version_info < (3, 11):  # noqa: UP036 - whatever python3 is here
         sys.exit(f"dev.py: Python 3.11 or later is needed, this is {sys.version.split()[0]}")
     if not Path(sysconfig.get_path("include"), "Python.h").exists():
         sys.exit("dev.py: the headers of Python are missing; on Debian or Ubuntu: apt install python3-dev")

@@ -1,8 +1,8 @@
 """The reference solution of the reference drive: what the errors of all solvers are measured against.
 
 The classical Runge-Kutta method with the return map, at 0.5 us. Halving the step changes the output angle by at most
-5e-13 rad and the torque by 5e-9 N.m; the least accurate solver of interest errs a million times more. The solution is
-computed once and kept in build/benchmarks/, under a name that changes with the drive and the method.
+6e-13 rad and the torque by 5e-9 N.m; the most accurate peer errs a hundred times more. The solution is computed once
+and kept in build/benchmarks/, under a name that changes with the drive and the method.
 
     python benchmarks/reference.py    computes it and compares it with the lines below
 """

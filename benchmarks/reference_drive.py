@@ -6,7 +6,8 @@ bristle of the input friction relaxes at up to 3.8e5 1/s), it has kinks (each Ma
 voltage saturates) and it remembers: the properties that decide which integrator a simulation of such a gear needs.
 
 The equations are written once, over a `Maths`: the functions that floats, Numba, NumPy arrays, CasADi and JAX symbols
-have under different names. All peers therefore solve the same problem, to the last term.
+have under different names. All peers therefore solve the same problem, to the last term. (strainwave brings its own
+equations; for JAX the Maxwell elements are rearranged into a vector.)
 
 States: current [A], input angle [rad], input speed [rad/s], output angle [rad], output speed [rad/s], bristle
 deflection [rad]; then, where the solver has no return map, the displacement of each Maxwell element [rad].

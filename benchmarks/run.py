@@ -67,11 +67,12 @@ def table(results: Sequence[Result]) -> Table:
     """Of each solver the cheapest accurate setting and the tightest; times also over the baseline's cheapest."""
     baseline = cheapest([result for result in results if result.solver == BASELINE])
     caption = f"ratio: time over strainwave's; * misses {WANTED_OUTPUT_ANGLE} rad or {WANTED_TORQUE} N.m"
-    view = Table(title=f"Reference drive, {DURATION:.0f} s", caption=caption, box=SIMPLE_HEAD, pad_edge=False)
+    title = f"Reference drive, {DURATION:.0f} s"
+    view = Table(title=title, caption=caption, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
     for heading in ("solver", "setting"):
         view.add_column(heading, no_wrap=True)
     for heading in ("angle error [rad]", "torque error [N.m]", "wall [ms]", "ratio", "build [s]"):
-        view.add_column(heading, justify="right", min_width=7)
+        view.add_column(heading, justify="right")
     for solver in dict.fromkeys(result.solver for result in results):
         ladder = [result for result in results if result.solver == solver]
         for result in dict.fromkeys((cheapest(ladder) or ladder[-1], ladder[-1])):
@@ -109,11 +110,13 @@ def main() -> None:
     options = parser.parse_args()
     try:
         peers = select(options.peers)
+        reference = reference_solution()[:, [2, 4]]
     except ValueError as error:
         parser.error(str(error))
+    except ModuleNotFoundError as error:
+        parser.error(f"the reference solution needs {error.name}: pip install strainwave[bench]")
 
     console = Console()
-    reference = reference_solution()[:, [2, 4]]
     outcomes: list[Result | Failure] = []
     for peer in peers:
         if missing := [name for name in peer.distributions if not installed(name)]:

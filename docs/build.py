@@ -1,6 +1,6 @@
 """Builds the documentation: the pages of this folder, and a theory page for each family of models from its own words.
 
-    python docs/build.py FOLDER
+python docs/build.py FOLDER
 """
 
 from __future__ import annotations

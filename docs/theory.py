@@ -5,14 +5,14 @@ from __future__ import annotations
 import ast
 import doctest
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import strainwave as sw
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
-import strainwave as sw
 from strainwave import _core
 
 Model = type[Any]
@@ -57,8 +57,7 @@ def block(text: str) -> str:
 
 def escaped(text: str) -> str:
     """Plain words as Markdown shows them; what stands in double backticks stays code."""
-    pieces = re.split(r"(``.*?``)", text)
-    return "".join(piece if piece.startswith("``") else re.sub(r"([\\`*_\[\]<>#|$])", r"\\\1", piece) for piece in pieces)
+    return re.sub(r"(``.*?``)|([\\`*_\[\]<>#|$])", lambda found: found[1] or "\\" + found[2], text)
 
 
 def parameters(model: Model) -> str:
@@ -134,7 +133,7 @@ def tangent(model: Any, axes: Axes) -> None:
 
 def work(model: Any, axes: Axes) -> None:
     turns = 1e-3 * np.array([0.0, 4.0, -4.0, 4.0, 1.0, 3.0, -4.0])
-    path = np.concatenate([np.linspace(a, b, 101) for a, b in zip(turns[:-1], turns[1:], strict=True)])
+    path = np.concatenate([np.linspace(start, end, 101) for start, end in pairwise(turns)])
     axes.plot(1e3 * path, model.trace(path))
     axes.set(xlabel="twist [mrad]", ylabel="torque [N.m]")
 

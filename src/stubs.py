@@ -7,9 +7,8 @@ import re
 import sys
 from pathlib import Path
 
-from nanobind.stubgen import ReplacePattern, StubGen
-
 import strainwave
+from nanobind.stubgen import ReplacePattern, StubGen
 from strainwave import _core
 
 PACKAGE = Path(strainwave.__file__).parent

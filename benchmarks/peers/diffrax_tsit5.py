@@ -1,4 +1,4 @@
-"""Tsit5, diffrax's recommended explicit method, compiled by XLA in double precision.
+"""Tsit5, an explicit method, by diffrax, compiled by XLA in double precision.
 
 Its steps are bounded by stability, so that a tighter tolerance costs little.
 """

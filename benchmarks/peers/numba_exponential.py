@@ -1,6 +1,6 @@
 """Exponential Runge-Kutta of order 4 in Numba: what of strainwave's lead is the algorithm, and what is the program.
 
-Cox and Matthews, Exponential time differencing for stiff systems, J. Comput. Phys. 176 (2002), eqs. (26)-(29), for
+ETD4RK of Cox and Matthews, Exponential time differencing for stiff systems, J. Comput. Phys. 176 (2002) 430-455, for
 the bristle of the input friction, whose rate is linear in it: z' = speed - decay z. The decay is held over a step; what
 it changes within is treated as the non-linear rest. The other states advance by the classical Runge-Kutta method.
 No stage leaves |z| <= breakaway / bristle stiffness, which the true bristle never does.

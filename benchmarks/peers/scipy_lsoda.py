@@ -1,6 +1,6 @@
 """SciPy's `solve_ivp`: LSODA with a compiled right-hand side, and what a user writes first, in plain Python.
 
-The ladder of LSODA ends at 3e-5: at 1e-5 it takes minutes, in millions of steps at the kinks of Maxwell-slip.
+The ladder of LSODA ends at 3e-5: at 1e-5 it takes minutes and 7e7 evaluations.
 """
 
 from __future__ import annotations

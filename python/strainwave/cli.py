@@ -104,7 +104,7 @@ def _write(folder: Path, gear_set: GearSet, report: str) -> None:
     from strainwave.report.page import write
 
     folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / ".gear.toml.part"
+    draft = folder / ".gear.part.toml"
     try:
         gear_set.save(draft)
         write(report, folder / "report.html")

@@ -1,4 +1,4 @@
-"""One trajectory in double, in a pack and in dual numbers; and its derivatives against differences."""
+"""One trajectory in double, in a pack and in dual numbers; and the derivatives against differences."""
 
 from __future__ import annotations
 
@@ -7,20 +7,105 @@ import pytest
 import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from strainwave import _core
+from strainwave.drives import PositionDrive
 from strainwave.simulation import derivatives
 
 from tests.reference_drive import DRIVE, command
 
-DURATION = 0.1  # s: one reversal of the command, and, with dry friction, some stick-slip events
-DT, SAMPLE = 5e-4, 1e-3
+Array = NDArray[np.float64]
 
-dry_input = sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5)
-dry_output = sw.friction.Coulomb(coulomb=3.0, breakaway=4.0, viscous=0.5)
-DRY_INPUT = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=dry_input))
-DRY_OUTPUT = DRIVE.replace(gear=DRIVE.gear.replace(friction_output=dry_output))
-DRY_BOTH = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=dry_input, friction_output=dry_output))
-def runs(name, d, cmd, dt=5e-4, sample=1e-3):
-    r = sw.simulate(d, cmd, dt=dt, sample=sample)
-    print(name, 'stuck in', (r['input_speed']==0).mean(), 'out', (r['output_speed']==0).mean(), 'changes', np.abs(np.diff((r['input_speed']==0).astype(int))).sum(), np.abs(np.diff((r['output_speed']==0).astype(int))).sum(), len(r))
-    return r
+DT, SAMPLE = 2e-4, 1e-3
+COLUMNS = [name for name, _, _ in _core.outputs]
+
+STRIBECK = sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5)
+COULOMB = sw.friction.Coulomb(coulomb=3.0, breakaway=4.0, viscous=0.5)
+SMOOTH = DRIVE.replace(
+    gear=DRIVE.gear.replace(input_inertia=1e-5), control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05)
+)  # no number of it is zero, so that each can be varied by a share of itself
+DRIVES = {
+    "bristle": SMOOTH,
+    "stribeck at the input": SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=STRIBECK)),
+    "coulomb at the output": SMOOTH.replace(gear=SMOOTH.gear.replace(friction_output=COULOMB)),
+    "both": SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=STRIBECK, friction_output=COULOMB)),
+}
+SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for a set-valued side to stick at its turns
+
+every_drive = pytest.mark.parametrize("drive", DRIVES.values(), ids=DRIVES)
+
+
+def numbers(drive: PositionDrive) -> Array:
+    return np.array([number for _, number, *_ in _core.parameters(drive)])
+
+
+def columns(run: sw.Recording) -> Array:
+    return np.stack([run[name] for name in COLUMNS])
+
+
+def scales(drive: PositionDrive, run: sw.Recording) -> Array:
+    """How large the numbers in each column are; a bristle's torque is a difference of terms as large as its damping's."""
+    largest = np.abs(columns(run)).max(axis=1)
+    damping = getattr(drive.gear.friction_input, "bristle_damping", 0.0)
+    row = COLUMNS.index("friction_input")
+    largest[row] = max(largest[row], damping * np.abs(run["input_speed"]).max())
+    return largest[:, None]
+
+
+def scattered(drive: PositionDrive, count: int, seed: int, whole_orders: bool) -> list[PositionDrive]:
+    """Drives that all differ from one another, in every number; in the orders of the error too if those may be broken."""
+    factors = np.random.default_rng(seed).uniform(0.9, 1.1, (count, numbers(drive).size))
+    if whole_orders:
+        factors[:, [".order[" in path for path, *_ in _core.parameters(drive)]] = 1.0
+    return [_core.with_numbers(drive, numbers(drive) * factor) for factor in factors]
+
+
+@every_drive
+@settings(max_examples=8, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), whole_orders=st.booleans(), swing=st.booleans())
+def test_double_pack_and_dual_run_one_trajectory(
+    drive: PositionDrive, seed: int, whole_orders: bool, swing: bool
+) -> None:
+    """Nine drives are one full pack, and one that repeats its last member."""
+    course = SWING if swing else command(0.2)
+    drives = scattered(drive, 9, seed, whole_orders)
+    chosen = np.random.default_rng(seed).choice(numbers(drive).size, 3, replace=False)
+    for each, packed in zip(drives, sw.simulate_many(drives, course, DT, sample=SAMPLE), strict=True):
+        single = sw.simulate(each, course, DT, sample=SAMPLE)
+        assert np.all(np.abs(columns(packed) - columns(single)) <= 1e-12 * scales(each, single))
+    dual, _ = derivatives(each, course, chosen, DT, SAMPLE)
+    assert np.all(np.abs(columns(dual) - columns(single)) <= 1e-12 * scales(each, single))
+
+
+@pytest.mark.parametrize(
+    ("name", "side"), [("stribeck at the input", "input"), ("coulomb at the output", "output"), ("both", "output")]
+)
+def test_the_swing_makes_a_set_valued_side_stick_and_slip(name: str, side: str) -> None:
+    stuck = sw.simulate(DRIVES[name], SWING, DT, sample=SAMPLE)[f"{side}_speed"] == 0.0
+    assert np.count_nonzero(np.diff(stuck)) >= 4
+
+
+@every_drive
+def test_derivatives_are_what_differences_show(drive: PositionDrive) -> None:
+    """By every number, at every sample, stick-slip included: the times of its events move with the numbers.
+
+    Central differences over h and h / 2, extrapolated, are as good as a run's rounding over h, and as their agreement:
+    where a Maxwell element starts to slip within h at one sample and beyond it at the next, they disagree.
+    """
+    base = numbers(drive)
+    run, slopes = derivatives(drive, SWING, range(base.size), DT, SAMPLE)
+
+    def difference(i: int, h: float) -> Array:
+        up, down = base.copy(), base.copy()
+        up[i] += h
+        down[i] -= h
+        pair = (sw.simulate(_core.with_numbers(drive, varied), SWING, DT, sample=SAMPLE) for varied in (up, down))
+        return np.subtract(*map(columns, pair)) / (up[i] - down[i])
+
+    for i, (path, *_) in enumerate(_core.parameters(drive)):
+        h = 1e-5 * abs(base[i])
+        wide, narrow = difference(i, h), difference(i, 0.5 * h)
+        allowed = 1e-6 * np.abs(slopes[i]) + 1e-13 * scales(drive, run) / h + 2.0 * np.abs(wide - narrow)
+        off = np.abs(slopes[i] - (4.0 * narrow - wide) / 3.0) > allowed.max(axis=1, keepdims=True)
+        assert not off.any(), path
+        assert np.median(allowed.max(axis=1)/np.abs(slopes[i]).max(axis=1)) < 1e-3, (path, np.median(allowed.max(axis=1)/np.abs(slopes[i]).max(axis=1)))

@@ -10,7 +10,6 @@ from typing import NamedTuple
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -26,6 +25,13 @@ def examples(page: Path) -> list[Example]:
     return [Example(block[1], text.count("\n", 0, block.start(1))) for block in FENCE.finditer(text)]
 
 
+PAGES = [
+    page
+    for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md")))
+    if examples(page)
+]
+
+
 def write_files(page: Path, folder: Path) -> None:
     """A block whose first line is a comment with the name of a file is that file, there before the examples run."""
     for block in NAMED.finditer(page.read_text()):
@@ -35,8 +41,8 @@ def write_files(page: Path, folder: Path) -> None:
 def run_session(example: Example, names: dict[str, object], page: Path) -> None:
     """Runs a block that shows a session, and compares what it prints."""
     session = doctest.DocTestParser().get_doctest(example.code, names, page.name, str(page), example.line)
-    said: list[str] = []
-    result = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(session, out=said.append, clear_globs=False)
+    runner, said = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE), list[str]()
+    result = runner.run(session, out=said.append, clear_globs=False)
     names.update(session.globs)
     assert result.failed == 0, "".join(said)
 
@@ -45,7 +51,7 @@ def run_program(example: Example, names: dict[str, object], page: Path) -> None:
     exec(compile("\n" * example.line + example.code, page, "exec"), names)
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if examples(page)], ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_examples_of_a_page_run_one_after_the_other(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

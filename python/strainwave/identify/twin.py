@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -160,19 +161,31 @@ def twin(
     evidence: list[Evidence] = []
     if friction is not None:
         progress("friction table")
-        evidence.append(_from_friction(gear, friction, named["friction"]))
+        with _naming(named["friction"]):
+            evidence.append(_from_friction(gear, friction, named["friction"]))
         gear = evidence[-1].fit.gear
     if torsion is not None:
         progress("torsion loop")
-        evidence.append(_from_torsion(gear, torsion, named["torsion"]))
+        with _naming(named["torsion"]):
+            evidence.append(_from_torsion(gear, torsion, named["torsion"]))
         gear = evidence[-1].fit.gear
     if log is not None:
         progress("drive log")
-        evidence.append(_from_log(start.drive.replace(gear=gear), log, named["log"], {e.kind for e in evidence}))
+        with _naming(named["log"]):
+            evidence.append(_from_log(start.drive.replace(gear=gear), log, named["log"], {e.kind for e in evidence}))
         gear = evidence[-1].fit.gear
     verdicts = _verdicts(start, gear, evidence)
     found = replace(start, name=f"{start.name}, twin", gear=gear, sources=_sources(start, verdicts))
     return Twin(start, found, tuple(evidence), tuple(verdicts), tuple(_contradictions(start, evidence)))
+
+
+@contextmanager
+def _naming(source: str) -> Iterator[None]:
+    """Puts the name of the measurement before whatever is wrong with it."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from error
 
 
 def _from_friction(gear: Gear, recording: Recording, source: str) -> Evidence:

@@ -91,7 +91,7 @@ def friction_table(evidence: Evidence) -> str:
     def draw(figure: Figure) -> None:
         torque, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))
         _friction_points(torque, evidence)
-        _friction_law(torque, evidence, evidence.fit.gear.friction_input, color=LIGHT["model"], label="model")
+        _friction_law(torque, evidence, evidence.fit.gear.friction_input, "model", color=LIGHT["model"])
         _residual(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["kept-back"])
         _label(torque, "friction torque", "N.m")
         _label(residual, "measured − predicted from the other speeds", "N.m", "input speed", "rad/s")
@@ -124,8 +124,9 @@ def drive_log(evidence: Evidence, channel: int) -> str:
 
     def draw(figure: Figure) -> None:
         values, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-        _curve(values, log.time, log.measured[channel], color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
-        _curve(values, log.time, fit.predicted[channel], color=LIGHT["model"], linewidth=1.0, label="model")
+        measured, predicted = log.measured[channel], fit.predicted[channel]
+        _curve(values, log.time, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
+        _curve(values, log.time, predicted, color=LIGHT["model"], linewidth=1.0, label="model")
         _residual(residual, log.time, fit.residuals[channel], color=LIGHT["ink"])
         for axes in (values, residual):
             _shade(axes, log.time, ~fit.training)
@@ -141,15 +142,16 @@ def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
-        earlier = twin.start.gear.friction_input
-        _friction_law(axes, evidence, earlier, color=LIGHT["earlier"], linestyle="--", linewidth=2.0, label="starting set")
-        _friction_law(axes, evidence, evidence.fit.gear.friction_input, color=LIGHT["model"], label="fitted to the table")
+        earlier, fitted = twin.start.gear.friction_input, evidence.fit.gear.friction_input
+        _friction_law(axes, evidence, earlier, "starting set", color=LIGHT["earlier"], linestyle="--", linewidth=2.0)
+        _friction_law(axes, evidence, fitted, "fitted to the table", color=LIGHT["model"])
         _friction_points(axes, evidence)
         axes.set_ylim(*_with_zero(axes.get_ylim()))
         _label(axes, "friction torque", "N.m", "input speed", "rad/s")
         _legend(axes)
 
-    return _inline(draw, (6.2, 2.9), "two-laws", f"Friction law of the starting set and {evidence.source}, two data sets")
+    title = f"Two data sets: the friction law of the starting set, and {evidence.source}"
+    return _inline(draw, (6.2, 2.9), "two-laws", title)
 
 
 def experiment(simulated: Experiment, name: str) -> str:
@@ -162,14 +164,15 @@ def experiment(simulated: Experiment, name: str) -> str:
         command = response if comparable else below
         _curve(command, first.time, first[simulated.command], color=LIGHT["ink"], linestyle="--", label="command")
         for number, (label, run) in enumerate(simulated.runs):
-            style = {"color": LIGHT[RUNS[number % len(RUNS)]], "label": f" {label}"}  # a label may begin with anything but _
+            # matplotlib leaves out labels that begin with an underscore
+            style = {"color": LIGHT[RUNS[number % len(RUNS)]], "label": f" {label}"}
             _curve(response, run.time, run[simulated.response], **style)
             if comparable:
                 _curve(below, run.time, run[simulated.response] - run[simulated.command], **style)
         _label(response, output_name(simulated.response), first.unit(simulated.response))
         name_below = "response − command" if comparable else "command"
         _label(below, name_below, first.unit(simulated.command), "time", "s")
-        _legend(response)
+        figure.legend(*response.get_legend_handles_labels(), loc="outside upper left", ncols=2, borderpad=0.0)
 
     return _inline(draw, (6.2, 3.6), name, f"{simulated.name}: command and response over time")
 
@@ -190,17 +193,19 @@ def overview(twin: Twin) -> str:
         _label(loop, "torque", "N.m", "twist at the output", "rad")
         _friction_points(friction, found["friction"])
         law = found["friction"].fit.gear.friction_input
-        _friction_law(friction, found["friction"], law, color=LIGHT["model"], label="model")
+        _friction_law(friction, found["friction"], law, "model", color=LIGHT["model"])
         _label(friction, "friction torque", "N.m", "input speed", "rad/s")
         for axes in (loop, friction):
             _legend(axes)
 
-    return _standalone(draw, (8.4, 3.2), "overview", "Torsion loop and friction of a strain wave gear, measured and modelled")
+    title = "Torsion loop and friction of a strain wave gear, measured and modelled"
+    return _standalone(draw, (8.4, 3.2), "overview", title)
 
 
 def output_name(column: str) -> str:
     """What a column of a simulation is called in words."""
-    return {name: words for name, _, words in _core.outputs}.get(column, column.replace("_", " "))
+    words: dict[str, str] = {name: meaning for name, _, meaning in _core.outputs}
+    return words.get(column, column.replace("_", " "))
 
 
 # ---- Parts of drawings -----------------------------------------------------------------------------------------------
@@ -236,13 +241,14 @@ def _friction_law(axes: Axes, evidence: Evidence, law: Any, label: str, **style:
 def _loop(axes: Axes, evidence: Evidence) -> None:
     loop, fit = evidence.fit.experiment, evidence.fit
     assert isinstance(loop, TorsionLoop)
-    form = ".-" if len(loop.twist) <= MARKED else "-"
-    axes.plot(*envelope(loop.twist, loop.torque, STRETCHES), form, color=LIGHT["measured"], linewidth=0.9, label="measured")
-    label = "kept back"
+    marker = "o" if len(loop.twist) <= MARKED else ""
+    style: dict[str, Any] = {"marker": marker, "markersize": 3.0}
+    _curve(axes, loop.twist, fit.predicted[0], color=LIGHT["model"], label="model", zorder=2.5)
+    _curve(axes, loop.twist, loop.torque, color=LIGHT["measured"], linewidth=0.9, label="measured", **style)
+    style |= {"color": LIGHT["kept-back"], "label": "measured, kept back"}
     for block in _blocks(~fit.training):
-        axes.plot(*envelope(loop.twist[block], loop.torque[block], STRETCHES), form, color=LIGHT["kept-back"], label=label)
-        label = ""
-    axes.plot(*envelope(loop.twist, fit.predicted[0], STRETCHES), color=LIGHT["model"], linewidth=1.1, label="model")
+        _curve(axes, loop.twist[block], loop.torque[block], linewidth=1.8, **style)
+        style["label"] = ""
 
 
 def _curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
@@ -280,17 +286,17 @@ def _with_zero(ends: tuple[float, float]) -> tuple[float, float]:
 
 
 def _label(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> None:
-    """Names the quantities and shows them in the prefix that suits their size; the upright one stands above its axis."""
+    """Names the quantities, in the prefix that suits their size; the upright one stands above its axis."""
     axes.set_title(f"{y}{_scaled(axes.yaxis, y_unit)}")
     if x:
         axes.set_xlabel(f"{x}{_scaled(axes.xaxis, x_unit)}")
 
 
 def _scaled(axis: Axis, unit: str) -> str:
-    """Numbers an axis in the prefix that suits its size, all to the same digit unless it is logarithmic; gives the unit."""
+    """Numbers an axis, all to the same digit unless it is logarithmic; gives the unit with its prefix."""
     power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
 
-    def tick(value: float, _: int | None) -> str:
+    def tick(value: float, _: float) -> str:
         ticks = [typeset.number(float(place) / 10.0**power, 4) for place in (*axis.get_majorticklocs(), value)]
         places = max(len(text.partition(".")[2]) for text in ticks)
         return ticks[-1] if axis.get_scale() == "log" else typeset.fixed(value / 10.0**power, places)
@@ -313,7 +319,8 @@ def _legend(axes: Axes) -> None:
 
 def _inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
     """SVG to stand in a page, whose colours and letters it takes."""
-    return ElementTree.tostring(_svg(draw, size, name, title), encoding="unicode")
+    svg: str = ElementTree.tostring(_svg(draw, size, name, title), encoding="unicode")
+    return svg
 
 
 def _standalone(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
@@ -349,7 +356,8 @@ def _svg(draw: Draw, size: tuple[float, float], name: str, title: str) -> Elemen
 
 def _tidied(drawn: Element, name: str, title: str) -> Element:
     """The drawing without what a page does not need: names of elements, digits beyond a hundredth of a point, fonts."""
-    references = {found for element in drawn.iter() for found in re.findall(r"#([\w-]+)", " ".join(element.attrib.values()))}
+    values = " ".join(value for element in drawn.iter() for value in element.attrib.values())
+    references = set(re.findall(r"#(\w+)", values))
     for element in drawn.iter():
         element.tag = element.tag.partition("}")[2]
         element.attrib = {

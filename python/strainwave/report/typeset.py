@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import re
+from typing import TYPE_CHECKING
 
-__all__ = ["number", "quantity", "uncertain", "unit"]
+if TYPE_CHECKING:
+    from markupsafe import Markup
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
@@ -71,6 +73,17 @@ def quantity(value: float, of: str, digits: int = 3) -> str:
     return f"{number(value / 10.0**power, digits)} {prefixed(of, power)}".strip()
 
 
+def symbols(text: str) -> Markup:
+    """A text as HTML, escaped, with the symbols in it set as such.
+
+    >>> print(symbols("Kinetic friction torque F_c < F_s"))
+    Kinetic friction torque <var>F<sub>c</sub></var> &lt; <var>F<sub>s</sub></var>
+    """
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub(r"\b([A-Za-z]{1,5})_(\w)\b", r"<var>\1<sub>\2</sub></var>", str(escape(text))))
+
+
 def fixed(value: float, places: int) -> str:
     """A number rounded to so many decimal places, or to tens, hundreds … where there are fewer than none.
 
@@ -82,7 +95,8 @@ def fixed(value: float, places: int) -> str:
 
 def prefix_power(largest: float, of: str) -> int:
     """The power of ten, a multiple of three, by whose prefix numbers of this size are best written."""
-    if of == "1" or of.startswith(("k", "1/")) or not math.isfinite(largest) or 0.1 <= abs(largest) < 1e4 or largest == 0.0:
+    takes_none = of == "1" or of.startswith(("k", "1/"))
+    if takes_none or not math.isfinite(largest) or 0.1 <= abs(largest) < 1e4 or largest == 0.0:
         return 0
     return min(max(3 * math.floor(_decade(largest, 3) / 3), -9), 6)
 

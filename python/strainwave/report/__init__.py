@@ -1,0 +1,1 @@
+"""Reports: what was found and what was not, as one self-contained HTML file."""

@@ -1,0 +1,340 @@
+"""The report of a twin: measured against modelled, what is known, what is not, and what contradicts what."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import metadata
+from operator import attrgetter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from strainwave.gear_set import Entry, GearSet
+from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
+from strainwave.identify.twin import Contradiction, Evidence, Twin, Verdict
+from strainwave.report import figures
+from strainwave.report.experiment import Experiment
+from strainwave.report.page import render
+from strainwave.report.typeset import number, quantity, uncertain, unit
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+@dataclass(frozen=True)
+class Provenance:
+    """How a report came to be.
+
+    Attributes:
+        date: when, as the report shows it
+        command: what was called
+        files: SHA-256 of each file that was read, by the name the report shows
+    """
+
+    date: str = ""
+    command: str = ""
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, files: Iterable[str | Path], *, command: str, date: str) -> Provenance:
+        """With the digests of files as they are now.
+
+        Raises:
+            OSError: a file cannot be read
+        """
+        digests = {str(file): hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
+        return cls(date, command, digests)
+
+
+class Parameter(NamedTuple):
+    """A row of a table: a number of the twin and what is known of it, ready to print."""
+
+    path: str
+    name: str
+    unit: str
+    value: str
+    start: str
+    state: str
+    why: str
+
+
+class Part(NamedTuple):
+    """A part of the drive with its law and its parameters."""
+
+    path: str
+    name: str
+    law: str
+    source: str
+    parameters: list[Parameter]
+
+
+def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: Provenance | None = None) -> str:
+    """The report of a twin, as one HTML file that needs nothing else.
+
+    Args:
+        twin: what was found
+        experiments: what was simulated with it
+        provenance: how the report came to be, if that is to be shown
+
+    Returns:
+        HTML; the same for the same arguments
+
+    >>> import numpy as np, strainwave as sw
+    >>> speed = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0])
+    >>> table = sw.Recording({"speed": speed, "torque": 0.02 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
+    >>> html = twin_report(sw.twin(sw.GearSet.read("hfuc-25-100"), friction=table))
+    >>> html.startswith("<!doctype html>")
+    True
+    """
+    parts = list(_parts(twin))
+    return render(
+        "twin.html.jinja",
+        {
+            "twin": twin,
+            "measurements": [_measurement(twin, evidence) for evidence in twin.evidence],
+            "parts": parts,
+            "unknown": list(_unknown(twin, parts)),
+            "known": sum(parameter.state == "identified" for part in parts for parameter in part.parameters),
+            "contradictions": [_contradiction(twin, contradiction) for contradiction in twin.contradictions],
+            "two_laws": _two_laws(twin),
+            "experiments": list(_experiments(experiments)),
+            "sources": _sources(twin.gear_set),
+            "provenance": provenance or Provenance(),
+            "version": metadata.version("strainwave"),
+            "light": figures.variables(figures.LIGHT),
+            "dark": figures.variables(figures.DARK),
+        },
+    )
+
+
+# ---- Measurements ----------------------------------------------------------------------------------------------------
+
+
+def _measurement(twin: Twin, evidence: Evidence) -> dict[str, Any]:
+    experiment = evidence.fit.experiment
+    free = len(evidence.fit.estimates) - len(experiment.nuisances)
+    verdicts = {verdict.path: verdict for verdict in twin.verdicts}
+    rows = []
+    for position, estimate in enumerate(evidence.fit.estimates):
+        path = estimate.path if estimate.path.startswith("gear.") or position >= free else f"gear.{estimate.path}"
+        is_parameter = position < free and path in verdicts
+        rows.append(
+            Parameter(
+                path,
+                _name(twin.gear_set, path) if is_parameter else estimate.path.replace("_", " "),
+                unit(estimate.unit),
+                uncertain(estimate.value, estimate.sigma),
+                number(estimate.start),
+                verdicts[path].state if is_parameter else "of the measurement",
+                "",
+            )
+        )
+    return {
+        "title": {"friction": "Friction table", "torsion": "Torsion loop", "log": "Drive log"}[evidence.kind],
+        "evidence": evidence,
+        "span": _span(evidence),
+        "held_out": _held_out(evidence),
+        "errors": [
+            (figures.output_name(name).capitalize(), quantity(error, of), _share(error, measured))
+            for name, of, error, measured in zip(
+                experiment.channels, experiment.units, evidence.error, experiment.measured, strict=True
+            )
+        ],
+        "estimates": rows,
+        "candidates": [(name, quantity(error, experiment.units[0])) for name, error in evidence.candidates],
+        "plates": list(_plates(evidence)),
+    }
+
+
+def _span(evidence: Evidence) -> str:
+    """What was measured, in a few words."""
+    experiment = evidence.fit.experiment
+    samples = f"{experiment.measured.shape[1]} samples"
+    if isinstance(experiment, FrictionTable):
+        low, high = np.abs(experiment.speed).min(), np.abs(experiment.speed).max()
+        return f"{samples} from {number(low, 3)} to {number(high, 3)} rad/s at the input"
+    if isinstance(experiment, TorsionLoop):
+        torque = quantity(float(np.abs(experiment.torque).max()), "N.m")
+        return f"{samples}, up to {torque}, over {quantity(float(np.ptp(experiment.twist)), 'rad')} at the output"
+    assert isinstance(experiment, DriveLog)
+    return f"{samples} over {quantity(float(np.ptp(experiment.time)), 's')}"
+
+
+def _held_out(evidence: Evidence) -> str:
+    """How the model was put to the test."""
+    training = evidence.fit.training
+    if evidence.kind == "friction":
+        return "each measurement predicted from the others"
+    return f"{int(np.sum(~training))} of {len(training)} samples kept back from the fit"
+
+
+def _share(error: float, measured: figures.Array) -> str:
+    extent = float(np.ptp(measured))
+    return f"{number(100.0 * error / extent, 2)} % of the range measured" if extent > 0.0 else ""
+
+
+def _plates(evidence: Evidence) -> Iterator[tuple[Markup, str]]:
+    """The figures of a measurement, each with its caption."""
+    from markupsafe import Markup
+
+    experiment = evidence.fit.experiment
+    if isinstance(experiment, FrictionTable):
+        yield (
+            Markup(figures.friction_table(evidence)),
+            "Above: measured friction torque and the model fitted to all of it. Below: each measurement less what a fit "
+            "to the others predicts at its speed.",
+        )
+    elif isinstance(experiment, TorsionLoop):
+        yield (
+            Markup(figures.torsion_loop(evidence)),
+            "Above: the measured loop, the parts of it that were kept back, and the model fitted to the rest. "
+            "Below: measured less modelled along the loop; shaded, what was kept back.",
+        )
+    else:
+        for channel, name in enumerate(experiment.channels):
+            words = "measured and modelled, and their difference; shaded, what was kept back."
+            yield Markup(figures.drive_log(evidence, channel)), f"{figures.output_name(name)}, {words}"
+
+
+# ---- Parameters ------------------------------------------------------------------------------------------------------
+
+
+def _parts(twin: Twin) -> Iterator[Part]:
+    """Every part that has numbers, in the order of the gear and then the drive."""
+    gear_set = twin.gear_set
+    verdicts = {verdict.path: verdict for verdict in twin.verdicts}
+    places: dict[str, list[str]] = {part: [] for part in _part_paths(gear_set)}
+    for path in gear_set.sources:
+        places[path.rpartition(".")[0]].append(path)
+    for part, paths in places.items():
+        model = attrgetter(part)(gear_set)
+        if model is not None:
+            law = (type(model).__doc__ or "").partition("\n")[0] if part != "gear" else ""
+            parameters = [_parameter(gear_set, path, verdicts.get(path)) for path in paths]
+            yield Part(part, _words(part), law, model.source, parameters)
+
+
+def _part_paths(gear_set: GearSet) -> list[str]:
+    parts = [f"gear.{member['name']}" for member in gear_set.gear.fields if member["kind"] == "part"]
+    return [*parts, "gear", "motor", "control", "load"]
+
+
+def _parameter(gear_set: GearSet, path: str, verdict: Verdict | None) -> Parameter:
+    entry, member = gear_set.sources[path], _member(gear_set, path)
+    name, of, value = _name(gear_set, path), unit(member["unit"]), _value(gear_set, path)
+    if verdict is None:
+        return Parameter(path, name, of, _known(value, entry), "", "given", entry.source)
+    start = "" if np.isnan(verdict.start) else number(verdict.start)
+    if verdict.state != "kept":
+        return Parameter(path, name, of, uncertain(value, verdict.sigma), start, verdict.state, verdict.why)
+    if value != verdict.start:
+        return Parameter(path, name, of, number(value), start, "follows", verdict.why)
+    return Parameter(path, name, of, _known(value, entry), start, "kept", verdict.why)
+
+
+def _known(value: float, entry: Entry) -> str:
+    """A number that no fit has touched, with what its source says of its uncertainty."""
+    if entry.spread is not None:
+        return f"{number(value)} ± {number(100.0 * entry.spread, 2)} %"
+    return number(value) if entry.uncertainty is None else uncertain(value, entry.uncertainty)
+
+
+def _split(path: str) -> tuple[str, str, int | None]:
+    """Part, name and, of an element, its place."""
+    part, _, name = path.rpartition(".")
+    name, _, place = name.removesuffix("]").partition("[")
+    return part, name, int(place) if place else None
+
+
+def _member(gear_set: GearSet, path: str) -> dict[str, Any]:
+    part, name, _ = _split(path)
+    found: dict[str, Any] = next(m for m in attrgetter(part)(gear_set).fields if m["name"] == name)
+    return found
+
+
+def _value(gear_set: GearSet, path: str) -> float:
+    part, name, place = _split(path)
+    value = getattr(attrgetter(part)(gear_set), name)
+    return float(value if place is None else value[place])
+
+
+def _name(gear_set: GearSet, path: str) -> str:
+    """What a parameter is, in words."""
+    place = _split(path)[2]
+    words: str = _member(gear_set, path)["doc"]
+    return words if place is None else f"{words}, no. {place + 1}"
+
+
+def _words(part: str) -> str:
+    return part.rpartition(".")[2].replace("_", " ").capitalize()
+
+
+# ---- What is not known, and what contradicts what --------------------------------------------------------------------
+
+
+def _unknown(twin: Twin, parts: list[Part]) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """For each part of the gear that is not known in full: its name, and what is not known with the reason."""
+    for part in parts:
+        if not part.path.startswith("gear"):
+            continue
+        reasons: dict[str, list[str]] = {}
+        for parameter in part.parameters:
+            if parameter.state in ("not identified", "kept", "follows"):
+                why = parameter.why if parameter.state != "kept" else "no measurement given speaks of it; kept"
+                reasons.setdefault(why, []).append(parameter.name)
+        if not part.parameters:
+            reasons["the model has none, and no measurement given speaks of it"] = [part.name]
+        if reasons:
+            yield part.name, [(", ".join(names), why) for why, names in reasons.items()]
+
+
+def _contradiction(twin: Twin, found: Contradiction) -> dict[str, str]:
+    entry = twin.start.sources[found.path]
+    return {
+        "name": _name(twin.gear_set, found.path),
+        "part": _words(_split(found.path)[0]),
+        "path": found.path,
+        "unit": unit(found.unit),
+        "earlier": _known(found.earlier, entry),
+        "earlier_source": found.earlier_source,
+        "measured": uncertain(found.measured, found.sigma),
+        "source": found.source,
+        "distance": number(found.distance, 3),
+    }
+
+
+def _two_laws(twin: Twin) -> Markup | None:
+    """Both data sets on one axis, where the friction table contradicts the law of the starting set."""
+    from markupsafe import Markup
+
+    contradicted = any(found.path.startswith("gear.friction_input.") for found in twin.contradictions)
+    tables = [evidence for evidence in twin.evidence if evidence.kind == "friction"]
+    return Markup(figures.two_friction_laws(twin, tables[0])) if contradicted and tables else None
+
+
+# ---- Experiments and sources -----------------------------------------------------------------------------------------
+
+
+def _experiments(experiments: Sequence[Experiment]) -> Iterator[dict[str, Any]]:
+    """Experiments with their figures; a remark that they share stands with the first."""
+    from markupsafe import Markup
+
+    said = ""
+    for position, experiment in enumerate(experiments):
+        yield {
+            "experiment": experiment,
+            "remark": "" if experiment.remark == said else experiment.remark,
+            "figure": Markup(figures.experiment(experiment, f"experiment-{position}")),
+            "caption": f"{figures.output_name(experiment.response)} over time, and how far it is from the command.",
+        }
+        said = experiment.remark
+
+
+def _sources(gear_set: GearSet) -> dict[str, list[str]]:
+    """Every source with the numbers that rest on it."""
+    sources: dict[str, list[str]] = {}
+    for path, entry in gear_set.sources.items():
+        sources.setdefault(entry.source, []).append(path)
+    return sources

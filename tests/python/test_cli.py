@@ -1,0 +1,154 @@
+"""The command as its users meet it: results where asked for; bad input in one line, exit code 2, and nothing written."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+
+GOOD_TABLE = "speed [rad/s],torque [N.m]\n1,0.021\n5,0.024\n10,0.026\n20,0.031\n50,0.046\n100,0.07\n"
+ONE_BRANCH = "twist [rad],torque [N.m]\n" + "".join(f"{1e-5 * i},{0.4 * i}\n" for i in range(40))
+GOOD_LOOP = "twist [mrad],torque [N.m]\n" + "".join(
+    f"{np.cos(a):.6f},{20 * np.cos(a) + 2 * np.sin(a):.6f}\n" for a in np.linspace(0.0, 2.0 * np.pi, 80)
+)
+GOOD_GEAR = """name = "mine"
+[stiffness]
+model = "linear"
+k = { value = 3e4, unit = "N.m/rad", source = "assumed: example" }
+"""
+
+
+def strainwave(*arguments: object, folder: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", "from strainwave.cli import main; main()", *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+
+
+def refused(folder: Path, arguments: Sequence[object], *expected: str) -> None:
+    """The run ends with code 2 and one line that contains what is expected, and leaves no file behind."""
+    before = sorted(folder.rglob("*"))
+    result = strainwave(*arguments, folder=folder)
+    assert result.returncode == 2, result.stderr
+    assert result.stdout == ""
+    lines = result.stderr.strip().splitlines()
+    assert len(lines) == 1, result.stderr
+    for text in expected:
+        assert text in lines[0], f"{text!r} is not in {lines[0]!r}"
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_a_table_and_a_loop_become_a_gear_file_and_a_report(tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text(GOOD_TABLE)
+    (tmp_path / "loop.csv").write_text(GOOD_LOOP)
+    result = strainwave(
+        "twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--torsion", "loop.csv", "--out", "mine", folder=tmp_path
+    )
+    assert result.returncode == 0, result.stderr
+    assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["gear.toml", "report.html"]
+    assert "rms error on data kept back" in result.stdout
+    gear = sw.load(tmp_path / "mine" / "gear.toml")
+    assert gear.friction_input.coulomb == pytest.approx(0.0208, abs=5e-4)
+    assert gear.friction_input.viscous == pytest.approx(4.95e-4, rel=0.03)
+
+
+def test_crooked_columns_are_named_on_the_command_line(tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text("Operator;Drehzahl (rpm);Moment\n" + "".join(f"A;{10 * i};{0.1 + 0.01 * i}\n".replace(".", ",") for i in range(1, 9)))
+    result = strainwave(
+        "twin", "--gear", "hfuc-25-100", "--friction", "table.csv",
+        "--column", "speed=Drehzahl", "--column", "torque=Moment", "--unit", "torque=N.cm", folder=tmp_path,
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    gear = sw.load(tmp_path / "twin" / "gear.toml")
+    assert gear.friction_input.coulomb == pytest.approx(1e-3, rel=1e-6)
+    assert gear.friction_input.viscous == pytest.approx(1e-4 / (10.0 * 2.0 * np.pi / 60.0), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", ("table.csv", "empty")),
+        ("speed [rad/s],torque [N.m]\n", ("table.csv",)),
+        (GOOD_TABLE + "200,abc\n", ("table.csv", "line 8", "torque", '"abc"', "number")),
+        (GOOD_TABLE + "200,nan\n", ("table.csv", "line 8", "torque", "nan", "finite")),
+        (GOOD_TABLE + "200\n", ("table.csv", "line 8")),
+        ("speed,torque [N.m]\n1,2\n2,3\n3,4\n", ("table.csv", '"speed"', "unit")),
+        ("speed [rad/s],torque [rad]\n1,2\n2,3\n3,4\n", ("rad", "N.m")),
+        ("speed [rad/s],torque [furlong]\n1,2\n2,3\n3,4\n", ("table.csv", "furlong")),
+        ("velocity [rad/s],torque [N.m]\n1,2\n2,3\n3,4\n", ("table.csv", "speed and torque", "velocity", "--column")),
+        ("speed [rad/s],torque [N.m]\n1,0.1\n2,0.2\n", ("at least 3 speeds", "2")),
+    ],
+)  # fmt: skip
+def test_a_bad_friction_table_is_refused(tmp_path: Path, text: str, expected: tuple[str, ...]) -> None:
+    (tmp_path / "table.csv").write_text(text)
+    refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv"], *expected)
+
+
+def test_a_loop_with_one_branch_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "loop.csv").write_text(ONE_BRANCH)
+    refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--torsion", "loop.csv"], "loop.csv", "one branch only", "unload")
+
+
+def test_a_truncated_parquet_file_is_refused(tmp_path: Path) -> None:
+    speed = np.arange(1.0, 50.0)
+    whole = sw.Recording({"speed": speed, "torque": 0.1 * speed}, {"speed": "rad/s", "torque": "N.m"})
+    whole.to_parquet(tmp_path / "whole.parquet")
+    data = (tmp_path / "whole.parquet").read_bytes()
+    (tmp_path / "cut.parquet").write_bytes(data[: len(data) // 2])
+    refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--friction", "cut.parquet"], "cut.parquet")
+
+
+def test_time_running_backwards_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text("time [s],command [V],position [rad]\n0,0,0\n0.1,1,0\n0.05,1,0.1\n0.2,1,0.2\n")
+    refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--log", "log.csv"], "log.csv", "line 4", "0.05", "0.1")
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("3e4", "-3e4"), ("mine.toml", "k", "-30000", "N.m/rad", "(0, inf)")),
+        (("3e4", "nan"), ("mine.toml", "k", "nan")),
+        (("3e4", '"stiff"'), ("mine.toml", "k", "stiff")),
+        (("k =", "kk ="), ("mine.toml", "kk")),
+        (("[stiffness]", "[stifness]"), ("mine.toml", "stifness")),
+        (('"linear"', '"quadratic"'), ("mine.toml", "quadratic", "linear, cubic, three_segment")),
+        ((', unit = "N.m/rad"', ""), ("mine.toml", "k", "unit")),
+        (('"N.m/rad"', '"N.m"'), ("mine.toml", "k", "N.m/rad")),
+        (("[stiffness]", "[stiffness"), ("mine.toml", "line 2")),
+        ((GOOD_GEAR, ""), ("mine.toml",)),
+    ],
+)
+def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], expected: tuple[str, ...]) -> None:
+    (tmp_path / "mine.toml").write_text(GOOD_GEAR.replace(*change))
+    (tmp_path / "table.csv").write_text(GOOD_TABLE)
+    refused(tmp_path, ["twin", "--gear", "mine.toml", "--friction", "table.csv"], *expected)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["twin", "--gear", "hfuc-25-101", "--friction", "table.csv"], ("hfuc-25-101", "hfuc-25-100")),
+        (["twin", "--gear", "nowhere.toml", "--friction", "table.csv"], ("nowhere.toml",)),
+        (["twin", "--gear", "hfuc-25-100", "--friction", "nowhere.csv"], ("nowhere.csv",)),
+        (["twin", "--gear", "hfuc-25-100"], ("at least one measurement",)),
+        (["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--column", "speed"], ("--column speed", "name=value")),
+    ],
+)
+def test_a_bad_command_line_is_refused(tmp_path: Path, arguments: list[str], expected: tuple[str, ...]) -> None:
+    (tmp_path / "table.csv").write_text(GOOD_TABLE)
+    refused(tmp_path, arguments, *expected)
+
+
+def test_an_unwritable_folder_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text(GOOD_TABLE)
+    (tmp_path / "out").write_text("in the way")
+    refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--out", "out"], "out")
+
+
+def test_gears_lists_the_catalogue(tmp_path: Path) -> None:
+    result = strainwave("gears", "hfuc-25", folder=tmp_path)
+    assert result.returncode == 0
+    assert "hfuc-25-100" in result.stdout.split()
