@@ -3,6 +3,7 @@
     python3 dev.py demo         run the demonstration; its report is out/demo/report.html
     python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
     python3 dev.py lint         check style, formatting and types
+    python3 dev.py sanitize     run the tests of the compiled core with addresses and undefined behaviour checked
     python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
     python3 dev.py docs         build the documentation; it begins at out/docs/index.html
     python3 dev.py stubs        write the type stubs of the compiled modules anew
@@ -99,8 +100,8 @@ def environment() -> dict[str, str]:
     return {"SSL_CERT_FILE": certificates, "PIP_CERT": certificates, **found} if certificates else found
 
 
-def attempt(*command: str | Path) -> int:
-    return subprocess.run([str(word) for word in command], cwd=ROOT, env=environment()).returncode
+def attempt(*command: str | Path, **variables: str) -> int:
+    return subprocess.run([str(word) for word in command], cwd=ROOT, env=environment() | variables).returncode
 
 
 def call(*command: str | Path) -> None:
@@ -140,6 +141,29 @@ def lint(options: Sequence[str]) -> int:
     return max(attempt(*check, *options) for check in checks)
 
 
+def sanitize(options: Sequence[str]) -> int:
+    prepare(["test"])
+    call(BIN / "cmake", "--preset", "sanitize")
+    call(BIN / "cmake", "--build", "--preset", "sanitize")
+    site = BUILD / "sanitize" / "site"
+    shutil.copytree(ROOT / "python" / "strainwave", site / "strainwave", dirs_exist_ok=True)
+    packages = next(BIN.parent.glob("lib/python*/site-packages"))
+    tests = options or ("tests/laws", "tests/agreement", "tests/published")
+    return attempt(
+        *(PYTHON, "-S", "-m", "pytest"),  # without -S the interpreter would find the editable package first
+        *tests,
+        LD_PRELOAD=f"{library('libasan.so')}:{library('libubsan.so')}",
+        ASAN_OPTIONS="detect_leaks=0",  # the interpreter's own
+        PYTHONPATH=f"{site}:{packages}",
+    )
+
+
+def library(name: str) -> str:
+    """Path of a library that comes with the compiler."""
+    compiler = os.environ.get("CXX", "c++")
+    return subprocess.run([compiler, f"-print-file-name={name}"], capture_output=True, text=True).stdout.strip()
+
+
 def bench(options: Sequence[str]) -> int:
     prepare(extra="bench")
     return attempt(PYTHON, "benchmarks/run.py", *options)
@@ -165,7 +189,7 @@ def pin(options: Sequence[str]) -> int:
 
 
 VERBS: dict[str, Callable[[Sequence[str]], int]] = {
-    verb.__name__: verb for verb in (demo, test, lint, bench, docs, stubs, pin)
+    verb.__name__: verb for verb in (demo, test, lint, sanitize, bench, docs, stubs, pin)
 }
 
 

@@ -25,6 +25,7 @@ from reference import FOLDER, reference_solution
 from reference_drive import DURATION
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 MODULES = (strainwave_drive, numba_exponential, numba_rk4, casadi_cvodes, cvode, diffrax_tsit5, scipy_lsoda)
@@ -72,7 +73,7 @@ def table(results: Sequence[Result]) -> Table:
     for heading in ("solver", "setting"):
         view.add_column(heading, no_wrap=True)
     for heading in ("angle error [rad]", "torque error [N.m]", "wall [ms]", "ratio", "build [s]"):
-        view.add_column(heading, justify="right")
+        view.add_column(escape(heading), justify="right")
     for solver in dict.fromkeys(result.solver for result in results):
         ladder = [result for result in results if result.solver == solver]
         for result in dict.fromkeys((cheapest(ladder) or ladder[-1], ladder[-1])):
@@ -127,7 +128,7 @@ def main() -> None:
     console.print(table([outcome for outcome in outcomes if isinstance(outcome, Result)]))
     for outcome in outcomes:
         if isinstance(outcome, Failure):
-            console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}")
+            console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)
     save(outcomes)
 
 

@@ -30,7 +30,8 @@ def stubs() -> dict[Path, str]:
 def stub(module: str) -> str:
     generator = StubGen(sys.modules[module], patterns=[pattern(*attribute) for attribute in ATTRIBUTES.items()])
     generator.put(sys.modules[module])
-    return generator.get()
+    text: str = generator.get()
+    return text
 
 
 def pattern(name: str, declaration: str) -> ReplacePattern:

@@ -64,14 +64,13 @@ template <class S, class X>
 class Relaxation {
     static constexpr int n = size_of<S, X>;
     using Scalars = Array<S, n>;
-    Scalars decay;
-    Array<Exponential<S>, n> c{};
-    S dt;
+    Scalars decay, half, full, stage, first, middle, last;  // the last four times the step
 
 public:
-    constexpr Relaxation(const X& rates_of_decay, const S& step) : decay(flattened<S>(rates_of_decay)), dt(step) {
+    constexpr Relaxation(const X& rates_of_decay, const S& dt) : decay(flattened<S>(rates_of_decay)) {
+        for (int i = 0; i < n; ++i) set(i, Exponential<S>{}, dt);
         for (int i = 0; i < n; ++i)
-            if (any(decay[i] > S(0.0))) c[i] = Exponential<S>::of(decay[i] * dt);
+            if (any(decay[i] > S(0.0))) set(i, Exponential<S>::of(decay[i] * dt), dt);
     }
     constexpr Scalars forcing(const X& rate, const X& at) const {
         Scalars force = flattened<S>(rate);
@@ -81,19 +80,29 @@ public:
     }
     constexpr X halfway(const X& from, const Scalars& force) const {
         Scalars y = flattened<S>(from);
-        for (int i = 0; i < n; ++i) y[i] = c[i].half * y[i] + dt * c[i].stage * force[i];
+        for (int i = 0; i < n; ++i) y[i] = half[i] * y[i] + stage[i] * force[i];
         return shaped<X>(y);
     }
-    constexpr X onward(const X& middle, const Scalars& force, const Scalars& first) const {
-        Scalars y = flattened<S>(middle);
-        for (int i = 0; i < n; ++i) y[i] = c[i].half * y[i] + dt * c[i].stage * (S(2.0) * force[i] - first[i]);
+    constexpr X onward(const X& halfway, const Scalars& force, const Scalars& at_start) const {
+        Scalars y = flattened<S>(halfway);
+        for (int i = 0; i < n; ++i) y[i] = half[i] * y[i] + stage[i] * (S(2.0) * force[i] - at_start[i]);
         return shaped<X>(y);
     }
     constexpr X complete(const X& from, const Scalars& n1, const Scalars& n2, const Scalars& n3, const Scalars& n4) const {
         Scalars y = flattened<S>(from);
         for (int i = 0; i < n; ++i)
-            y[i] = c[i].full * y[i] + dt * (c[i].first * n1[i] + c[i].middle * (n2[i] + n3[i]) + c[i].last * n4[i]);
+            y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]);
         return shaped<X>(y);
+    }
+
+private:
+    constexpr void set(int i, const Exponential<S>& c, const S& dt) {
+        half[i] = c.half;
+        full[i] = c.full;
+        stage[i] = dt * c.stage;
+        first[i] = dt * c.first;
+        middle[i] = dt * c.middle;
+        last[i] = dt * c.last;
     }
 };
 

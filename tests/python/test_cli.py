@@ -5,11 +5,15 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.cli import main
 
 GOOD_TABLE = "speed [rad/s],torque [N.m]\n1,0.021\n5,0.024\n10,0.026\n20,0.031\n50,0.046\n100,0.07\n"
 ONE_BRANCH = "twist [rad],torque [N.m]\n" + "".join(f"{1e-5 * i},{0.4 * i}\n" for i in range(40))
@@ -17,15 +21,30 @@ GOOD_LOOP = "twist [mrad],torque [N.m]\n" + "".join(
     f"{np.cos(a):.6f},{20 * np.cos(a) + 2 * np.sin(a):.6f}\n" for a in np.linspace(0.0, 2.0 * np.pi, 80)
 )
 GOOD_GEAR = """name = "mine"
+[kinematics]
+model = "plain_ratio"
+reduction = { value = 100, unit = "1", source = "assumed: example" }
 [stiffness]
 model = "linear"
 k = { value = 3e4, unit = "N.m/rad", source = "assumed: example" }
 """
 
 
-def strainwave(*arguments: object, folder: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from strainwave.cli import main; main()", *map(str, arguments)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+@dataclass(frozen=True)
+class Result:
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def strainwave(*arguments: object, folder: Path) -> Result:
+    """The command, run in this process, as in `folder`."""
+    stdout, stderr = StringIO(), StringIO()
+    with chdir(folder), redirect_stdout(stdout), redirect_stderr(stderr), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["strainwave", *map(str, arguments)])
+        with pytest.raises(SystemExit) as end:
+            main()
+    return Result(int(end.value.code or 0), stdout.getvalue(), stderr.getvalue())
 
 
 def refused(folder: Path, arguments: Sequence[object], *expected: str) -> None:
@@ -114,10 +133,10 @@ def test_time_running_backwards_is_refused(tmp_path: Path) -> None:
         (("3e4", '"stiff"'), ("mine.toml", "k", "stiff")),
         (("k =", "kk ="), ("mine.toml", "kk")),
         (("[stiffness]", "[stifness]"), ("mine.toml", "stifness")),
-        (('"linear"', '"quadratic"'), ("mine.toml", "quadratic", "linear, cubic, three_segment")),
+        (('"linear"', '"quadratic"'), ("mine.toml", "quadratic", '"linear" or "cubic" or "three_segment"')),
         ((', unit = "N.m/rad"', ""), ("mine.toml", "k", "unit")),
         (('"N.m/rad"', '"N.m"'), ("mine.toml", "k", "N.m/rad")),
-        (("[stiffness]", "[stiffness"), ("mine.toml", "line 2")),
+        (("[stiffness]", "[stiffness"), ("mine.toml", "line 5")),
         ((GOOD_GEAR, ""), ("mine.toml",)),
     ],
 )
@@ -152,3 +171,11 @@ def test_gears_lists_the_catalogue(tmp_path: Path) -> None:
     result = strainwave("gears", "hfuc-25", folder=tmp_path)
     assert result.returncode == 0
     assert "hfuc-25-100" in result.stdout.split()
+
+
+def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: Path) -> None:
+    command = Path(sys.executable).with_name("strainwave")
+    arguments = [command, "twin", "--gear", "nowhere.toml"]
+    result = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "nowhere.toml" in result.stderr

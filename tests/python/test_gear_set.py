@@ -467,7 +467,8 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
 
 # What survives writing
 
-lines = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() and text.strip() != "")
+printable = st.just(" ") | st.characters(exclude_categories=["C", "Z"])
+lines = st.text(printable, min_size=1, max_size=8).filter(lambda text: text.strip() != "")
 positive = st.floats(0.0, 1e300)
 entries = st.builds(Entry, lines, st.none() | positive, st.none() | positive)
 units = st.sampled_from(["1", "rad", "rpm", "N.m", "arcmin", "degC", "Nm/(rad/s)"])

@@ -58,7 +58,9 @@ struct Fourier {
     /// The same sum, arranged for speed: one sine and cosine, then the whole orders by angle addition.
     struct Compiled {
         static constexpr int highest = 32;
-        Array<S, highest> sine{}, cosine{}, sine_slope{}, cosine_slope{};
+        using Pair = Array<S, 2>;  ///< what multiplies the sine and the cosine of an order: two lanes of the same arithmetic
+
+        Array<Pair, highest> value{}, slope{};
         int top = 0;
         Sequence<S, capacity> order{}, amplitude{}, phase{};
 
@@ -75,23 +77,19 @@ struct Fourier {
         }
 
     private:
-        /// sin(n x) and cos(n x) by the Chebyshev recurrence, whose two sums are independent of each other.
+        /// sin(n x) and cos(n x) by the Chebyshev recurrence f(n + 1) = 2 cos(x) f(n) - f(n - 1).
         constexpr Error<S> whole_orders(const SinCos<S>& base) const {
             const S twice = base.cos + base.cos;
-            S s_before{0.0}, c_before{1.0}, s = base.sin, c = base.cos;
-            Error<S> even{}, odd{};
-            for (int n = 0; n < top; ++n) {
-                even.value = even.value + sine[n] * s;
-                odd.value = odd.value + cosine[n] * c;
-                even.slope = even.slope + sine_slope[n] * c;
-                odd.slope = odd.slope + cosine_slope[n] * s;
-                const S s_next = twice * s - s_before, c_next = twice * c - c_before;
-                s_before = s;
-                c_before = c;
-                s = s_next;
-                c = c_next;
-            }
-            return {even.value + odd.value, even.slope - odd.slope};
+            Pair before{{S(0.0), S(1.0)}}, wave{{base.sin, base.cos}}, values{}, slopes{};
+            for (int n = 0; n < top; ++n)
+                for (int k = 0; k < 2; ++k) {
+                    values[k] = values[k] + value[n][k] * wave[k];
+                    slopes[k] = slopes[k] + slope[n][k] * wave[k];
+                    const S next = twice * wave[k] - before[k];
+                    before[k] = wave[k];
+                    wave[k] = next;
+                }
+            return {values[0] + values[1], slopes[0] + slopes[1]};
         }
     };
 
@@ -101,10 +99,9 @@ struct Fourier {
             const int n = whole(order[h], Compiled::highest);
             if (n > 0) {
                 const SinCos<S> p = sincos(phase[h]);
-                sum.sine[n - 1] = sum.sine[n - 1] + amplitude[h] * p.cos;
-                sum.cosine[n - 1] = sum.cosine[n - 1] + amplitude[h] * p.sin;
-                sum.sine_slope[n - 1] = order[h] * sum.sine[n - 1];
-                sum.cosine_slope[n - 1] = order[h] * sum.cosine[n - 1];
+                auto& value = sum.value[n - 1];
+                value = {{value[0] + amplitude[h] * p.cos, value[1] + amplitude[h] * p.sin}};
+                sum.slope[n - 1] = {{-order[h] * value[1], order[h] * value[0]}};
                 sum.top = sum.top > n ? sum.top : n;
             } else {
                 const int i = sum.order.count++;

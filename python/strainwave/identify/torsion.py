@@ -77,7 +77,9 @@ def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], sprin
     cyclic, virgin = _start(loop, training, spring), _start(loop.virgin(), training, spring)
     start = min(cyclic, virgin, key=lambda s: s.error)
     model = gear.replace(stiffness=start.spring, hysteresis=start.hysteresis)
-    free = [f"stiffness.{field['name']}" for field in start.spring.fields] + ["hysteresis.stiffness", "hysteresis.breakaway"]
+    free = [f"stiffness.{field['name']}" for field in start.spring.fields]
+    if start.hysteresis.stiffness:
+        free += ["hysteresis.stiffness", "hysteresis.breakaway"]
     twist_zero = loop.middle if spring == "linear" else None
     experiment = replace(start.loop, torque_zero=start.torque_zero, twist_zero=twist_zero)
     found = _in_order(fit(model, experiment, free, training=training))

@@ -51,7 +51,7 @@ DARK = {
     "kept-back": "#d3a4ff",
     "earlier": "#e0c15c",
 }
-RUNS = ("model", "measured", "kept-back", "earlier")  # colours of the runs of an experiment, in their order
+RUNS = (("model", "-", 2.0), ("measured", "--", 1.5), ("kept-back", ":", 1.3))  # colours and lines of runs, in turn
 STRETCHES = 300  # of a long record, each drawn by its extremes: about two to a pixel
 MARKED = 150  # samples up to which each is drawn as a point
 WIDE = 100.0  # ratio of speeds beyond which their axis is logarithmic
@@ -162,10 +162,11 @@ def experiment(simulated: Experiment, name: str) -> str:
     def draw(figure: Figure) -> None:
         response, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
         command = response if comparable else below
-        _curve(command, first.time, first[simulated.command], color=LIGHT["ink"], linestyle="--", label="command")
+        _curve(command, first.time, first[simulated.command], color=LIGHT["ink"], linewidth=0.9, label="command")
         for number, (label, run) in enumerate(simulated.runs):
-            # matplotlib leaves out labels that begin with an underscore
-            style = {"color": LIGHT[RUNS[number % len(RUNS)]], "label": f" {label}"}
+            colour, line, width = RUNS[number % len(RUNS)]
+            style: dict[str, Any] = {"color": LIGHT[colour], "linestyle": line, "linewidth": width}
+            style["label"] = f" {label}"  # matplotlib leaves out labels that begin with an underscore
             _curve(response, run.time, run[simulated.response], **style)
             if comparable:
                 _curve(below, run.time, run[simulated.response] - run[simulated.command], **style)
@@ -222,9 +223,13 @@ def _friction_points(axes: Axes, evidence: Evidence) -> None:
     order = np.argsort(table.speed, kind="stable")
     speed, torque = envelope(table.speed[order], table.torque[order], MARKED)
     axes.plot(speed, torque, "o", color=LIGHT["measured"], label="measured", zorder=3)
-    magnitude = np.abs(speed)
-    if np.ptp(np.sign(speed)) == 0.0 and magnitude.max() > WIDE * magnitude.min():
+    slowest, fastest = np.abs(speed[speed != 0.0]).min(), np.abs(speed).max()
+    if fastest > WIDE * slowest and speed[0] > 0.0:
         axes.set_xscale("log")
+    elif fastest > WIDE * slowest:
+        decades = 10.0 ** np.arange(np.ceil(np.log10(slowest)), np.log10(fastest))
+        axes.set_xscale("symlog", linthresh=slowest, linscale=0.3)
+        axes.set_xticks([*-decades[::-1], 0.0, *decades])
 
 
 def _friction_law(axes: Axes, evidence: Evidence, law: Any, label: str, **style: Any) -> None:
@@ -241,13 +246,13 @@ def _friction_law(axes: Axes, evidence: Evidence, law: Any, label: str, **style:
 def _loop(axes: Axes, evidence: Evidence) -> None:
     loop, fit = evidence.fit.experiment, evidence.fit
     assert isinstance(loop, TorsionLoop)
-    marker = "o" if len(loop.twist) <= MARKED else ""
-    style: dict[str, Any] = {"marker": marker, "markersize": 3.0}
-    _curve(axes, loop.twist, fit.predicted[0], color=LIGHT["model"], label="model", zorder=2.5)
-    _curve(axes, loop.twist, loop.torque, color=LIGHT["measured"], linewidth=0.9, label="measured", **style)
+    few = len(loop.twist) <= MARKED
+    style: dict[str, Any] = {"marker": "o", "markersize": 3.0} if few else {"linewidth": 2.6, "alpha": 0.6}
+    _curve(axes, loop.twist, fit.predicted[0], color=LIGHT["model"], linewidth=1.0, label="model", zorder=2.5)
+    _curve(axes, loop.twist, loop.torque, color=LIGHT["measured"], label="measured", **style)
     style |= {"color": LIGHT["kept-back"], "label": "measured, kept back"}
     for block in _blocks(~fit.training):
-        _curve(axes, loop.twist[block], loop.torque[block], linewidth=1.8, **style)
+        _curve(axes, loop.twist[block], loop.torque[block], **style)
         style["label"] = ""
 
 
@@ -293,13 +298,13 @@ def _label(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> N
 
 
 def _scaled(axis: Axis, unit: str) -> str:
-    """Numbers an axis, all to the same digit unless it is logarithmic; gives the unit with its prefix."""
+    """Numbers an axis, all to the same digit if it is linear; gives the unit with its prefix."""
     power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
 
     def tick(value: float, _: float) -> str:
         ticks = [typeset.number(float(place) / 10.0**power, 4) for place in (*axis.get_majorticklocs(), value)]
         places = max(len(text.partition(".")[2]) for text in ticks)
-        return ticks[-1] if axis.get_scale() == "log" else typeset.fixed(value / 10.0**power, places)
+        return ticks[-1] if axis.get_scale() != "linear" else typeset.fixed(value / 10.0**power, places)
 
     axis.set_major_formatter(tick)
     text = typeset.prefixed(unit, power)
@@ -366,6 +371,7 @@ def _tidied(drawn: Element, name: str, title: str) -> Element:
             if key != "id" or value in references
         }
         element.text, element.tail = (element.text or "").strip() if element.tag == "text" else None, None
+    for element in drawn.iter():
         _style_once(element)
     svg = ElementTree.Element("svg", {"viewBox": drawn.attrib["viewBox"], "role": "img", "aria-label": title})
     svg.attrib |= {"stroke-linejoin": "round", "stroke-linecap": "butt"}

@@ -63,7 +63,6 @@ class Parameter(NamedTuple):
 class Part(NamedTuple):
     """A part of the drive with its law and its parameters."""
 
-    path: str
     name: str
     law: str
     source: str
@@ -95,7 +94,8 @@ def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: 
             "twin": twin,
             "measurements": [_measurement(twin, evidence) for evidence in twin.evidence],
             "parts": parts,
-            "unknown": list(_unknown(twin, parts)),
+            "unknown": list(_brief(twin, parts)),
+            "gaps": list(_gaps(twin, parts)),
             "known": sum(parameter.state == "identified" for part in parts for parameter in part.parameters),
             "contradictions": [_contradiction(twin, contradiction) for contradiction in twin.contradictions],
             "two_laws": _two_laws(twin),
@@ -118,19 +118,13 @@ def _measurement(twin: Twin, evidence: Evidence) -> dict[str, Any]:
     verdicts = {verdict.path: verdict for verdict in twin.verdicts}
     rows = []
     for position, estimate in enumerate(evidence.fit.estimates):
-        path = estimate.path if estimate.path.startswith("gear.") or position >= free else f"gear.{estimate.path}"
-        is_parameter = position < free and path in verdicts
-        rows.append(
-            Parameter(
-                path,
-                _name(twin.gear_set, path) if is_parameter else estimate.path.replace("_", " "),
-                unit(estimate.unit),
-                uncertain(estimate.value, estimate.sigma),
-                number(estimate.start),
-                verdicts[path].state if is_parameter else "of the measurement",
-                "",
-            )
-        )
+        path = estimate.path if estimate.path.startswith("gear.") else f"gear.{estimate.path}"
+        value, of = uncertain(estimate.value, estimate.sigma), unit(estimate.unit)
+        if position < free:
+            start, name = _start(verdicts[path]), _name(twin.gear_set, path)
+            rows.append(Parameter(path, name, of, value, start, verdicts[path].state, ""))
+        else:
+            rows.append(Parameter("", estimate.path.replace("_", " "), of, value, "", "of the measurement", ""))
     return {
         "title": {"friction": "Friction table", "torsion": "Torsion loop", "log": "Drive log"}[evidence.kind],
         "evidence": evidence,
@@ -183,8 +177,8 @@ def _plates(evidence: Evidence) -> Iterator[tuple[Markup, str]]:
     if isinstance(experiment, FrictionTable):
         yield (
             Markup(figures.friction_table(evidence)),
-            "Above: measured friction torque and the model fitted to all of it. Below: each measurement less what a fit "
-            "to the others predicts at its speed.",
+            "Above: measured friction torque and the model fitted to all of it. "
+            "Below: each measurement less what a fit to the others predicts at its speed.",
         )
     elif isinstance(experiment, TorsionLoop):
         yield (
@@ -202,7 +196,7 @@ def _plates(evidence: Evidence) -> Iterator[tuple[Markup, str]]:
 
 
 def _parts(twin: Twin) -> Iterator[Part]:
-    """Every part that has numbers, in the order of the gear and then the drive."""
+    """Every part, in the order of the gear and then the drive."""
     gear_set = twin.gear_set
     verdicts = {verdict.path: verdict for verdict in twin.verdicts}
     places: dict[str, list[str]] = {part: [] for part in _part_paths(gear_set)}
@@ -213,7 +207,7 @@ def _parts(twin: Twin) -> Iterator[Part]:
         if model is not None:
             law = (type(model).__doc__ or "").partition("\n")[0] if part != "gear" else ""
             parameters = [_parameter(gear_set, path, verdicts.get(path)) for path in paths]
-            yield Part(part, _words(part), law, model.source, parameters)
+            yield Part(_words(part), law, model.source, parameters or [_absent(gear_set, part)])
 
 
 def _part_paths(gear_set: GearSet) -> list[str]:
@@ -226,12 +220,23 @@ def _parameter(gear_set: GearSet, path: str, verdict: Verdict | None) -> Paramet
     name, of, value = _name(gear_set, path), unit(member["unit"]), _value(gear_set, path)
     if verdict is None:
         return Parameter(path, name, of, _known(value, entry), "", "given", entry.source)
-    start = "" if np.isnan(verdict.start) else number(verdict.start)
+    start = _start(verdict)
     if verdict.state != "kept":
         return Parameter(path, name, of, uncertain(value, verdict.sigma), start, verdict.state, verdict.why)
     if value != verdict.start:
         return Parameter(path, name, of, number(value), start, "follows", verdict.why)
     return Parameter(path, name, of, _known(value, entry), start, "kept", verdict.why)
+
+
+def _absent(gear_set: GearSet, part: str) -> Parameter:
+    """What stands for the numbers of a part that has none."""
+    why = "not in the model; no measurement given speaks of it"
+    return Parameter(part, _name(gear_set, part), "", "", "", "absent", why)
+
+
+def _start(verdict: Verdict) -> str:
+    """The value in the starting set; nothing where that has no such parameter."""
+    return "" if np.isnan(verdict.start) else number(verdict.start)
 
 
 def _known(value: float, entry: Entry) -> str:
@@ -274,27 +279,63 @@ def _words(part: str) -> str:
 # ---- What is not known, and what contradicts what --------------------------------------------------------------------
 
 
-def _unknown(twin: Twin, parts: list[Part]) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """For each part of the gear that is not known in full: its name, and what is not known with the reason."""
+MANY = 3  # parameters of a part that are not listed where all of them share a fate
+UNKNOWN = {
+    "not identified": "Fitted, but not told by the data",
+    "kept": "Not measured, kept from the starting set",
+    "follows": "Not measured, set by a rule from what was fitted",
+    "absent": "Not measured, and not in the model",
+}
+
+
+class Gap(NamedTuple):
+    """What is not known of a part of the gear, for one reason."""
+
+    part: str
+    parameters: str
+    state: str
+    why: str
+
+
+def _gaps(twin: Twin, parts: list[Part]) -> Iterator[Gap]:
+    """What is not known, part by part."""
     for part in parts:
-        if not part.path.startswith("gear"):
-            continue
-        reasons: dict[str, list[str]] = {}
+        reasons: dict[tuple[str, str], list[str]] = {}
         for parameter in part.parameters:
-            if parameter.state in ("not identified", "kept", "follows"):
-                why = parameter.why if parameter.state != "kept" else "no measurement given speaks of it; kept"
-                reasons.setdefault(why, []).append(parameter.name)
-        if not part.parameters:
-            reasons["the model has none, and no measurement given speaks of it"] = [part.name]
-        if reasons:
-            yield part.name, [(", ".join(names), why) for why, names in reasons.items()]
+            if parameter.state in UNKNOWN:
+                reasons.setdefault((parameter.state, parameter.why), []).append(parameter.path)
+        for (state, why), paths in reasons.items():
+            yield Gap(part.name, _names(twin.gear_set, paths), state, why)
+
+
+def _brief(twin: Twin, parts: list[Part]) -> Iterator[tuple[str, list[str]]]:
+    """What is not known, in brief: how it is not known, and the parts with their parameters unless these are many."""
+    for state, words in UNKNOWN.items():
+        found = []
+        for part in parts:
+            paths = [parameter.path for parameter in part.parameters if parameter.state == state]
+            if (state == "absent" and paths) or len(paths) == len(part.parameters) > MANY:
+                found.append(part.name)
+            elif paths:
+                found.append(f"{part.name} ({_names(twin.gear_set, paths)})")
+        if found:
+            yield words, found
+
+
+def _names(gear_set: GearSet, paths: list[str]) -> str:
+    """Parameters in words, the elements of a sequence in one."""
+    elements: dict[str, list[str]] = {}
+    for path in paths:
+        place = _split(path)[2]
+        elements.setdefault(_member(gear_set, path)["doc"], []).extend([] if place is None else [str(place + 1)])
+    return ", ".join(words + (f" (no. {', '.join(which)})" if which else "") for words, which in elements.items())
 
 
 def _contradiction(twin: Twin, found: Contradiction) -> dict[str, str]:
     entry = twin.start.sources[found.path]
+    part, name = _words(_split(found.path)[0]), _name(twin.gear_set, found.path)
     return {
-        "name": _name(twin.gear_set, found.path),
-        "part": _words(_split(found.path)[0]),
+        "title": name if name.startswith(part) else f"{part}: {name}",
         "path": found.path,
         "unit": unit(found.unit),
         "earlier": _known(found.earlier, entry),

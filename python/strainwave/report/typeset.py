@@ -10,8 +10,9 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_GREEK = {"alpha": "α", "phi": "φ"}
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
-_PLAIN = (-4, 5)  # decades of numbers written without a power of ten
+_PLAIN = range(-4, 6)  # decades of numbers written without a power of ten
 _FINEST = 8  # digits; a standard deviation below the last of them is written by itself
 
 
@@ -36,8 +37,8 @@ def uncertain(value: float, sigma: float) -> str:
 
     Not-a-number stands for no standard deviation, infinity for a value that nothing determines.
 
-    >>> uncertain(0.012554, 0.00213), uncertain(31234.0, 870.0), uncertain(5.8e-5, 9.96e-7)
-    ('0.0126 ± 0.0021', '31230 ± 870', '(58.0 ± 1.0) × 10⁻⁶')
+    >>> uncertain(0.012554, 0.00213), uncertain(31234.0, 870.0), uncertain(1.185e-4, 2.13e-6)
+    ('0.0126 ± 0.0021', '31230 ± 870', '(118.5 ± 2.1) × 10⁻⁶')
     >>> uncertain(0.02, float("inf")), uncertain(3e-4, 1e-18)
     ('0.02 ± ∞', '0.0003 ± 1 × 10⁻¹⁸')
     """
@@ -45,7 +46,8 @@ def uncertain(value: float, sigma: float) -> str:
         return number(value)
     if not math.isfinite(sigma) or sigma <= abs(value) * 10.0**-_FINEST:
         return f"{number(value)} ± {number(sigma, 2)}"
-    power = _power(_decade(max(abs(value), sigma), 2))
+    decade = _decade(max(abs(value), sigma), 2)
+    power = 3 * math.floor(decade / 3) if _decade(sigma, 2) < -5 else _power(decade)
     places = 1 - _decade(sigma / 10.0**power, 2)
     pair = " ± ".join(fixed(x / 10.0**power, places) for x in (value, sigma))
     return f"({pair}){_times(power)}" if power else pair
@@ -76,12 +78,13 @@ def quantity(value: float, of: str, digits: int = 3) -> str:
 def symbols(text: str) -> Markup:
     """A text as HTML, escaped, with the symbols in it set as such.
 
-    >>> print(symbols("Kinetic friction torque F_c < F_s"))
-    Kinetic friction torque <var>F<sub>c</sub></var> &lt; <var>F<sub>s</sub></var>
+    >>> print(symbols("Kinetic friction torque F_c < F_s, phase phi_h"))
+    Kinetic friction torque <var>F<sub>c</sub></var> &lt; <var>F<sub>s</sub></var>, phase <var>φ<sub>h</sub></var>
     """
     from markupsafe import Markup, escape
 
-    return Markup(re.sub(r"\b([A-Za-z]{1,5})_(\w)\b", r"<var>\1<sub>\2</sub></var>", str(escape(text))))
+    greek = re.sub(rf"\b(?:{'|'.join(_GREEK)})(?![a-z])", lambda word: _GREEK[word[0]], str(escape(text)))
+    return Markup(re.sub(r"\b([^\W\d_])_(\w)\b", r"<var>\1<sub>\2</sub></var>", greek))
 
 
 def fixed(value: float, places: int) -> str:
@@ -112,7 +115,7 @@ def _decade(value: float, digits: int) -> int:
 
 
 def _power(decade: int) -> int:
-    return 0 if _PLAIN[0] <= decade <= _PLAIN[1] else 3 * math.floor(decade / 3)
+    return 0 if decade in _PLAIN else 3 * math.floor(decade / 3)
 
 
 def _times(power: int) -> str:

@@ -1,0 +1,358 @@
+"""The physics, compiled."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, overload
+
+import numpy
+import numpy.typing
+
+from strainwave import (
+    control as control,
+    drives as drives,
+    friction as friction,
+    hysteresis as hysteresis,
+    kinematic_error as kinematic_error,
+    kinematics as kinematics,
+    loads as loads,
+    motor as motor,
+    stiffness as stiffness
+)
+import strainwave.drives
+import strainwave.friction
+import strainwave.hysteresis
+import strainwave.kinematic_error
+import strainwave.kinematics
+import strainwave.stiffness
+
+
+families: dict[str, dict[str, type[Any]]]
+
+class PassivityWarning(UserWarning):
+    """A set of parameters lets its model create energy."""
+
+class Gear:
+    """
+    One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at both shafts.
+
+    .. math:: \\delta = \\theta_{in}/i - \\theta_{out} - e(\\theta_{in}), \\qquad
+              T = T_{stiffness}(\\delta) + T_{hysteresis}(\\delta, \\text{history}) + c\\,\\dot\\delta
+
+    T acts on the output and, as T (1/i - e'(\\theta_{in})), on the input. The e' term is the reaction of the error on the
+    input: the review derives none (E-R3) and the actuator paper omits it (E-A5), but without it energy is not conserved.
+    Every part is a law of its own; change one with ``gear.replace(hysteresis=...)``.
+
+    >>> import strainwave as sw
+    >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), damping=10.0)
+    >>> gear.stiffness.a1
+    12000.0
+
+    Parameters
+    ----------
+    kinematics: Rigid motion: teeth and fixed member; default StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline')
+    kinematic_error: Pure kinematic error at the output, over the input angle; default Fourier(order=(), amplitude=(), phase=())
+    stiffness: Elastic torque over the twist; default Linear(k=10000.0)
+    hysteresis: Torque that depends on the history of the twist; default MaxwellSlip(stiffness=(), breakaway=())
+    damping: Torque per rate of twist [N.m.s/rad], in [0, inf); default 0.0
+    friction_input: Friction at the wave generator, over the input speed; default Viscous(viscous=0.0)
+    friction_output: Friction at the output, over the output speed; default Viscous(viscous=0.0)
+    input_inertia: Inertia of the wave generator [kg.m2], in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)
+    """
+
+    def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Cubic | strainwave.stiffness.ThreeSegment = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., input_inertia: float = ...) -> None: ...
+
+    def replace(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Cubic | strainwave.stiffness.ThreeSegment = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., input_inertia: float = ...) -> Gear:
+        """The same with the named parameters changed."""
+
+    @property
+    def kinematics(self) -> strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio:
+        """Rigid motion: teeth and fixed member"""
+
+    @property
+    def kinematic_error(self) -> strainwave.kinematic_error.Fourier:
+        """Pure kinematic error at the output, over the input angle"""
+
+    @property
+    def stiffness(self) -> strainwave.stiffness.Linear | strainwave.stiffness.Cubic | strainwave.stiffness.ThreeSegment:
+        """Elastic torque over the twist"""
+
+    @property
+    def hysteresis(self) -> strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory:
+        """Torque that depends on the history of the twist"""
+
+    @property
+    def damping(self) -> float:
+        """Torque per rate of twist [N.m.s/rad]"""
+
+    @property
+    def friction_input(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre:
+        """Friction at the wave generator, over the input speed"""
+
+    @property
+    def friction_output(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre:
+        """Friction at the output, over the output speed"""
+
+    @property
+    def input_inertia(self) -> float:
+        """Inertia of the wave generator [kg.m2]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'gear'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class Motion:
+    """
+    Parameters
+    ----------
+    motor: State of the motor; default (0.0,)
+    control: State of the controller; default (0.0,)
+    input_angle: Input angle within the turn, in [-pi, pi] [rad]; default 0.0
+    input_speed: Input speed [rad/s]; default 0.0
+    transmission_error: theta_in / i - theta_out [rad]; default 0.0
+    output_speed: Output speed [rad/s]; default 0.0
+    friction_input: State of the friction at the input; default (0.0,)
+    friction_output: State of the friction at the output; default (0.0,)
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+    """
+
+    def __init__(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> None: ...
+
+    def replace(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> Motion:
+        """The same with the named parameters changed."""
+
+    @property
+    def motor(self) -> tuple[float, ...]:
+        """State of the motor"""
+
+    @property
+    def control(self) -> tuple[float, ...]:
+        """State of the controller"""
+
+    @property
+    def input_angle(self) -> float:
+        """Input angle within the turn, in [-pi, pi] [rad]"""
+
+    @property
+    def input_speed(self) -> float:
+        """Input speed [rad/s]"""
+
+    @property
+    def transmission_error(self) -> float:
+        """theta_in / i - theta_out [rad]"""
+
+    @property
+    def output_speed(self) -> float:
+        """Output speed [rad/s]"""
+
+    @property
+    def friction_input(self) -> tuple[float, ...]:
+        """State of the friction at the input"""
+
+    @property
+    def friction_output(self) -> tuple[float, ...]:
+        """State of the friction at the output"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'motion'
+
+    fields: tuple[dict[str, Any], ...]
+
+class State:
+    """
+    Parameters
+    ----------
+    motion: What flows continuously; default Motion(motor=(0.0,), control=(0.0,), input_angle=0.0, input_speed=0.0, transmission_error=0.0, output_speed=0.0, friction_input=(0.0,), friction_output=(0.0,))
+    hysteresis: Memory of the hysteresis; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    held_twist: Twist at which the hysteresis was last brought up to date [rad]; default 0.0
+    turns: Whole revolutions of the input; default 0.0
+    sliding_input: Sense of sliding at the input, 0 while it sticks; default 1.0
+    sliding_output: Sense of sliding at the output, 0 while it sticks; default 1.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+    """
+
+    def __init__(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> None: ...
+
+    def replace(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> State:
+        """The same with the named parameters changed."""
+
+    @property
+    def motion(self) -> Motion:
+        """What flows continuously"""
+
+    @property
+    def hysteresis(self) -> tuple[float, ...]:
+        """Memory of the hysteresis"""
+
+    @property
+    def held_twist(self) -> float:
+        """Twist at which the hysteresis was last brought up to date [rad]"""
+
+    @property
+    def turns(self) -> float:
+        """Whole revolutions of the input"""
+
+    @property
+    def sliding_input(self) -> float:
+        """Sense of sliding at the input, 0 while it sticks"""
+
+    @property
+    def sliding_output(self) -> float:
+        """Sense of sliding at the output, 0 while it sticks"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'state'
+
+    fields: tuple[dict[str, Any], ...]
+
+outputs: tuple[tuple[str, str, str], ...]
+
+def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State]:
+    """Outputs, shape (channels, kept), and the state at the end."""
+
+def simulate_packed(drives: Sequence[strainwave.drives.PositionDrive], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], progress: Callable[[int], None] | None = None) -> numpy.typing.NDArray[numpy.float64]:
+    """Outputs from rest, shape (drives, channels, kept)."""
+
+def differentiate(drive: strainwave.drives.PositionDrive, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], parameters: Sequence[int], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Outputs from rest, shape (channels, kept), and derivatives, shape (parameters, channels, kept).
+    """
+
+def now(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """Outputs in `state`, shape (channels, 1)."""
+
+def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Outputs at rest and their derivatives, as `differentiate` gives them for one sample.
+    """
+
+def differentiate_loop(gear: Gear, twist: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape (parameters, n).
+    """
+
+def differentiate_steady(gear: Gear, speed: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).
+    """
+
+@overload
+def parameters(model: Gear) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.drives.PositionDrive) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.Viscous) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.Coulomb) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.Stribeck) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.LuGre) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.stiffness.Linear) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.stiffness.Cubic) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.stiffness.ThreeSegment) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.hysteresis.MaxwellSlip) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.hysteresis.FadingMemory) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.kinematic_error.Fourier) -> list[tuple[str, float, str, str, float, float]]:
+    """
+    Every number of a set of parameters: path, value, unit, doc, lower and upper limit.
+    """
+
+@overload
+def with_numbers(model: Gear, numbers: Sequence[float]) -> Gear: ...
+
+@overload
+def with_numbers(model: strainwave.drives.PositionDrive, numbers: Sequence[float]) -> strainwave.drives.PositionDrive: ...
+
+@overload
+def with_numbers(model: strainwave.friction.Viscous, numbers: Sequence[float]) -> strainwave.friction.Viscous: ...
+
+@overload
+def with_numbers(model: strainwave.friction.Coulomb, numbers: Sequence[float]) -> strainwave.friction.Coulomb: ...
+
+@overload
+def with_numbers(model: strainwave.friction.Stribeck, numbers: Sequence[float]) -> strainwave.friction.Stribeck: ...
+
+@overload
+def with_numbers(model: strainwave.friction.LuGre, numbers: Sequence[float]) -> strainwave.friction.LuGre: ...
+
+@overload
+def with_numbers(model: strainwave.stiffness.Linear, numbers: Sequence[float]) -> strainwave.stiffness.Linear: ...
+
+@overload
+def with_numbers(model: strainwave.stiffness.Cubic, numbers: Sequence[float]) -> strainwave.stiffness.Cubic: ...
+
+@overload
+def with_numbers(model: strainwave.stiffness.ThreeSegment, numbers: Sequence[float]) -> strainwave.stiffness.ThreeSegment: ...
+
+@overload
+def with_numbers(model: strainwave.hysteresis.MaxwellSlip, numbers: Sequence[float]) -> strainwave.hysteresis.MaxwellSlip: ...
+
+@overload
+def with_numbers(model: strainwave.hysteresis.FadingMemory, numbers: Sequence[float]) -> strainwave.hysteresis.FadingMemory: ...
+
+@overload
+def with_numbers(model: strainwave.kinematic_error.Fourier, numbers: Sequence[float]) -> strainwave.kinematic_error.Fourier:
+    """The same models with other numbers, in the order of `parameters`."""

@@ -1,0 +1,65 @@
+"""The headers as they are, compiled for a CUDA target; that takes NVRTC but no GPU."""
+
+from __future__ import annotations
+
+import ctypes
+from importlib import metadata
+
+import pytest
+
+from tests.static_drives import HEADERS, INCLUDE, drives
+
+KERNEL = """
+extern "C" __global__ void run_{number}(const {drive}* drive, {drive}::State* state, const strainwave::Interval<{scalar}>* input,
+                                        int members, int steps, {scalar} dt) {{
+    const int i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i >= members) return;
+    auto x = state[i];
+    for (int k = 0; k < steps; ++k) x = strainwave::step(drive[i], x, input[k], dt);
+    state[i] = x;
+}}
+"""
+OPTIONS = ("--std=c++20", "--device-as-default-execution-space", "--gpu-architecture=compute_90", f"--include-path={INCLUDE}")
+
+
+@pytest.fixture(scope="module")
+def nvrtc() -> ctypes.CDLL:
+    """The library of the package nvidia-cuda-nvrtc."""
+    try:
+        files = metadata.files("nvidia-cuda-nvrtc") or []
+    except metadata.PackageNotFoundError:
+        pytest.skip("the package nvidia-cuda-nvrtc is not installed")
+    return ctypes.CDLL(str(next(file.locate() for file in files if file.name.startswith("libnvrtc.so"))))
+
+
+def compiled(nvrtc: ctypes.CDLL, source: str) -> tuple[int, str, str]:
+    """What NVRTC makes of a source: its result (0 is success), its log, and the PTX."""
+    program, size = ctypes.c_void_p(), ctypes.c_size_t()
+    assert nvrtc.nvrtcCreateProgram(ctypes.byref(program), source.encode(), b"kernels.cu", 0, None, None) == 0
+    try:
+        options = (ctypes.c_char_p * len(OPTIONS))(*(option.encode() for option in OPTIONS))
+        result = nvrtc.nvrtcCompileProgram(program, len(OPTIONS), options)
+        texts = []
+        for kind in ("ProgramLog", "PTX"):
+            nvrtc[f"nvrtcGet{kind}Size"](program, ctypes.byref(size))
+            text = ctypes.create_string_buffer(max(size.value, 1))
+            nvrtc[f"nvrtcGet{kind}"](program, text)
+            texts.append(text.value.decode())
+        return result, *texts
+    finally:
+        nvrtc.nvrtcDestroyProgram(ctypes.byref(program))
+
+
+@pytest.mark.parametrize("scalar", ["double", "float"])
+def test_every_model_steps_in_a_cuda_kernel(nvrtc: ctypes.CDLL, scalar: str) -> None:
+    chosen = drives(scalar)
+    kernels = [KERNEL.format(number=i, drive=drive, scalar=scalar) for i, drive in enumerate(chosen)]
+    result, log, ptx = compiled(nvrtc, HEADERS + "".join(kernels))
+    assert result == 0, log
+    assert [f".entry run_{i}(" in ptx for i in range(len(chosen))] == [True] * len(chosen)
+
+
+def test_what_does_not_compile_is_told(nvrtc: ctypes.CDLL) -> None:
+    result, log, _ = compiled(nvrtc, HEADERS + "strainwave::Unheard of;")
+    assert result != 0
+    assert "Unheard" in log
