@@ -42,9 +42,10 @@ constexpr S detached(const S& x) {
 }
 
 /// The whole number that `x` is, if it lies in [1, highest]; else 0.
-constexpr int whole(double x, int highest) {
+template <class S>
+constexpr int whole(const S& x, int highest) {
     for (int n = 1; n <= highest; ++n)
-        if (x == n) return n;
+        if (x == S(n)) return n;
     return 0;
 }
 

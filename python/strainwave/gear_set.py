@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar, get_type_
 from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
-from strainwave.recording import _replacing
+from strainwave.files import replacing
 from strainwave.units import check as check_unit
 from strainwave.units import convert
 
@@ -237,7 +237,7 @@ class GearSet:
         if Path(path).suffix != ".toml":
             raise ValueError(f"{path}: a gear file ends in .toml")
         text = _text(self)
-        with _replacing(path) as temporary:
+        with replacing(path) as temporary:
             temporary.write_text(text, encoding="utf-8", newline="\n")
 
 

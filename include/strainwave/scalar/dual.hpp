@@ -6,6 +6,14 @@ namespace strainwave {
 /// A number with its derivatives with respect to n parameters: forward-mode differentiation, exact to rounding.
 template <int n>
 struct Dual {
+    /// Whether a comparison holds. Not a bool, for which `&` looks like a slip of the pen to a compiler.
+    struct Mask {
+        bool holds;
+        constexpr operator bool() const { return holds; }
+        friend constexpr Mask operator&(Mask a, Mask b) { return {a.holds && b.holds}; }
+        friend constexpr Mask operator!(Mask a) { return {!a.holds}; }
+    };
+
     double value{0.0};
     double slope[n]{};
 
@@ -45,10 +53,10 @@ struct Dual {
         for (int i = 0; i < n; ++i) y.slope[i] = (a.slope[i] - quotient * b.slope[i]) * inverse;
         return y;
     }
-    friend constexpr bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
-    friend constexpr bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
-    friend constexpr bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
-    friend constexpr bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+    friend constexpr Mask operator<(const Dual& a, const Dual& b) { return {a.value < b.value}; }
+    friend constexpr Mask operator>(const Dual& a, const Dual& b) { return {a.value > b.value}; }
+    friend constexpr Mask operator>=(const Dual& a, const Dual& b) { return {a.value >= b.value}; }
+    friend constexpr Mask operator==(const Dual& a, const Dual& b) { return {a.value == b.value}; }
 
     friend constexpr Dual select(bool mask, const Dual& a, const Dual& b) { return mask ? a : b; }
     friend constexpr Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }

@@ -246,11 +246,12 @@ def _friction_law(axes: Axes, evidence: Evidence, law: Any, label: str, **style:
 def _loop(axes: Axes, evidence: Evidence) -> None:
     loop, fit = evidence.fit.experiment, evidence.fit
     assert isinstance(loop, TorsionLoop)
-    few = len(loop.twist) <= MARKED
-    style: dict[str, Any] = {"marker": "o", "markersize": 3.0} if few else {"linewidth": 2.6, "alpha": 0.6}
+    style: dict[str, Any] = {"linewidth": 1.8, "alpha": 0.6}
+    if len(loop.twist) <= MARKED:
+        style = {"linewidth": 0.9, "marker": "o", "markersize": 3.0}
     _curve(axes, loop.twist, fit.predicted[0], color=LIGHT["model"], linewidth=1.0, label="model", zorder=2.5)
     _curve(axes, loop.twist, loop.torque, color=LIGHT["measured"], label="measured", **style)
-    style |= {"color": LIGHT["kept-back"], "label": "measured, kept back"}
+    style |= {"color": LIGHT["kept-back"], "label": "kept back"}
     for block in _blocks(~fit.training):
         _curve(axes, loop.twist[block], loop.torque[block], **style)
         style["label"] = ""

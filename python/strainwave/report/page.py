@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from strainwave.recording import _replacing
+from strainwave.files import replacing
 from strainwave.report import typeset
 
 
@@ -42,5 +42,5 @@ def write(html: str, path: str | Path) -> None:
     ...     Path(f"{folder}/report.html").read_text()
     '<!doctype html>'
     """
-    with _replacing(path) as temporary:
+    with replacing(path) as temporary:
         temporary.write_text(html, encoding="utf-8", newline="\n")

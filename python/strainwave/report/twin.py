@@ -23,6 +23,7 @@ from strainwave.report.typeset import number, quantity, uncertain, unit
 if TYPE_CHECKING:
     from markupsafe import Markup
 
+
 @dataclass(frozen=True)
 class Provenance:
     """How a report came to be.

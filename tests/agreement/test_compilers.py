@@ -1,0 +1,67 @@
+"""The headers as they are, under two compilers with their warnings as errors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import nanobind
+import pytest
+import sysconfig
+
+from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, compilation, compiler, drives
+
+both = pytest.mark.parametrize("name", ["g++", "clang++"])
+
+RUN_TIME_CHOICE = """
+#include <strainwave/any.hpp>
+#include <strainwave/integrate.hpp>
+#include <strainwave/scalar/dual.hpp>
+#include <strainwave/scalar/pack.hpp>
+"""
+
+
+def stepped(scalar: str, drive: str) -> str:
+    """Makes the compiler write out the step of a drive."""
+    return f"template {drive}::State strainwave::step<{scalar}>(const {drive}&, const {drive}::State&, const strainwave::Interval<{scalar}>&, const {scalar}&);\n"
+
+
+@both
+def test_every_header_stands_on_its_own(name: str, tmp_path: Path) -> None:
+    headers = [header.relative_to(INCLUDE).as_posix() for header in INCLUDE.rglob("*.hpp")]
+    assert len(headers) > 25
+    sources = {f"{header.replace('/', '.')}.cpp": f"#include <{header}>\n" for header in headers}
+    assert compilation(compiler(name), tmp_path, sources, *STRICT) == (0, "")
+
+
+@both
+def test_every_model_steps_in_a_drive_of_static_type(name: str, tmp_path: Path) -> None:
+    steps = [stepped(scalar, drive) for scalar in ("double", "float") for drive in drives(scalar)]
+    assert compilation(compiler(name), tmp_path, {"static.cpp": HEADERS + "".join(steps)}, *STRICT) == (0, "")
+
+
+@both
+def test_models_chosen_at_run_time_step_in_every_scalar(name: str, tmp_path: Path) -> None:
+    scalars = ("double", "strainwave::Dual<4>", "strainwave::Pack<8>")
+    steps = [stepped(scalar, f"strainwave::AnyPositionDrive<{scalar}>") for scalar in scalars]
+    assert compilation(compiler(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}, *STRICT) == (0, "")
+
+
+DESCRIBED = """
+#include "bind.hpp"
+#define MEMBERS(name) \\
+    template <class S> struct name { S first{1.0}; S second{2.0}; \\
+    template <class Self, class Visit> static constexpr void fields(Self& m, Visit&& visit) { visit(SW_FIELD(m, first, "1", "First"));
+MEMBERS(Complete) visit(SW_FIELD(m, second, "1", "Second")); } };
+MEMBERS(Forgetful) } };
+MEMBERS(Repeating) visit(SW_FIELD(m, first, "1", "First")); } };
+
+static_assert(strainwave::fully_described<Complete<double>>);
+void bind(nanobind::module_& scope) {
+    strainwave::host::bind<Complete<double>>(scope, "Complete", "complete");
+"""
+
+
+@pytest.mark.parametrize("model", ["Complete", "Forgetful", "Repeating"])
+def test_a_member_that_is_not_described_does_not_compile(model: str, tmp_path: Path) -> None:
+    """Nor is a member described twice taken for another that is not described."""
+    bound = f'strainwave::host::bind<{model}<double>>(scope, "{model}", "model");\n}}\n'
