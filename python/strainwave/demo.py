@@ -31,8 +31,9 @@ TABLE_4 = {
     "pulse train": (0.0015, 0.0038, 0.998),
 }
 REMARK = (
-    "Amplitudes and controller are assumed, as document P gives none. The figures compare the response with the command; those "
-    "of document P compare its simulation with measurements that were not published. They are shown to compare with, not as reproduced."
+    "Amplitudes and controller are assumed, as document P gives none. The figures compare the response with the command; "
+    "those of document P compare its simulation with measurements that were not published. They are shown to compare with, "
+    "not as reproduced."
 )
 
 

@@ -141,8 +141,9 @@ class Recording:
         True
         """
         import pyarrow
-        from strainwave.tables import TITLE
         from pyarrow.csv import write_csv
+
+        from strainwave.tables import TITLE
 
         table = pyarrow.table({f"{name} [{unit}]": self[name] for name, unit in self.units.items()})
         with replacing(path) as temporary, temporary.open("wb") as file:
@@ -169,9 +170,7 @@ class Recording:
             )
 
     @staticmethod
-    def read(
-        path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
-    ) -> Recording:
+    def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> Recording:
         """Read a file by its suffix: .csv, .txt, .tsv (see `from_csv`) or .parquet (see `from_parquet`)."""
         suffix = Path(path).suffix.lower()
         if suffix in (".csv", ".txt", ".tsv"):

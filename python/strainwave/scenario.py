@@ -384,9 +384,7 @@ def _from(start: float, duration: float, level: float, slope: float) -> Scenario
     return Scenario(duration, starts, levels, slopes)
 
 
-def _check(
-    name: str, number: float, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf
-) -> None:
+def _check(name: str, number: float, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> None:
     """Refuse a number outside the interval from low to high, whose ends belong to it where the bracket is square."""
     if not isinstance(number, Real):
         raise TypeError(f"{name} must be a number, not {number!r}")

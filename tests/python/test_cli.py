@@ -64,7 +64,16 @@ def test_a_table_and_a_loop_become_a_gear_file_and_a_report(tmp_path: Path) -> N
     (tmp_path / "table.csv").write_text(GOOD_TABLE)
     (tmp_path / "loop.csv").write_text(GOOD_LOOP)
     result = strainwave(
-        "twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--torsion", "loop.csv", "--out", "mine", folder=tmp_path
+        "twin",
+        "--gear",
+        "hfuc-25-100",
+        "--friction",
+        "table.csv",
+        "--torsion",
+        "loop.csv",
+        "--out",
+        "mine",
+        folder=tmp_path,
     )
     assert result.returncode == 0, result.stderr
     assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["gear.toml", "report.html"]
@@ -75,7 +84,9 @@ def test_a_table_and_a_loop_become_a_gear_file_and_a_report(tmp_path: Path) -> N
 
 
 def test_crooked_columns_are_named_on_the_command_line(tmp_path: Path) -> None:
-    (tmp_path / "table.csv").write_text("Operator;Drehzahl (rpm);Moment\n" + "".join(f"A;{10 * i};{0.1 + 0.01 * i}\n".replace(".", ",") for i in range(1, 9)))
+    (tmp_path / "table.csv").write_text(
+        "Operator;Drehzahl (rpm);Moment\n" + "".join(f"A;{10 * i};{0.1 + 0.01 * i}\n".replace(".", ",") for i in range(1, 9))
+    )
     result = strainwave(
         "twin", "--gear", "hfuc-25-100", "--friction", "table.csv",
         "--column", "speed=Drehzahl", "--column", "torque=Moment", "--unit", "torque=N.cm", folder=tmp_path,
@@ -153,7 +164,10 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
         (["twin", "--gear", "nowhere.toml", "--friction", "table.csv"], ("nowhere.toml",)),
         (["twin", "--gear", "hfuc-25-100", "--friction", "nowhere.csv"], ("nowhere.csv",)),
         (["twin", "--gear", "hfuc-25-100"], ("at least one measurement",)),
-        (["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--column", "speed"], ("--column speed", "name=value")),
+        (
+            ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--column", "speed"],
+            ("--column speed", "name=value"),
+        ),
     ],
 )
 def test_a_bad_command_line_is_refused(tmp_path: Path, arguments: list[str], expected: tuple[str, ...]) -> None:

@@ -366,14 +366,10 @@ def every_parameter() -> list[Any]:
 
 
 @pytest.mark.parametrize(("family", "model", "parameter"), every_parameter())
-def test_no_parameter_of_any_model_may_be_left_out(
-    folder: Path, family: str, model: Any, parameter: dict[str, Any]
-) -> None:
+def test_no_parameter_of_any_model_may_be_left_out(folder: Path, family: str, model: Any, parameter: dict[str, Any]) -> None:
     drive = sw.drives.PositionDrive()
     in_gear = hasattr(drive.gear, family)
-    drive = (
-        drive.replace(gear=drive.gear.replace(**{family: model()})) if in_gear else drive.replace(**{family: model()})
-    )
+    drive = drive.replace(gear=drive.gear.replace(**{family: model()})) if in_gear else drive.replace(**{family: model()})
     save(drive, "my.toml", name="x", source="x")
     lines = Path("my.toml").read_text().splitlines()
     table = lines.index(f"[{family}]")
@@ -450,9 +446,7 @@ def test_a_wrong_value_is_refused(make: Any, error: type[Exception], message: st
 
 def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() -> None:
     bare = GearSet.of(sw.Gear(), name="bare", source="x")
-    with pytest.raises(
-        ValueError, match=exactly("bare has no [motor] and no [load]; a drive needs a motor and a load")
-    ):
+    with pytest.raises(ValueError, match=exactly("bare has no [motor] and no [load]; a drive needs a motor and a load")):
         _ = bare.drive
     motor, load = sw.motor.DC(resistance=2.0), sw.loads.Inertia(inertia=3.0)
     drive = sw.drives.PositionDrive(gear=sw.Gear(damping=7.0), motor=motor, load=load)
@@ -531,9 +525,7 @@ def test_every_number_is_written_with_unit_and_source(tmp_path: Path, gear_set: 
 
 @untimed
 @given(drives, lines)
-def test_a_drive_can_be_saved_with_one_source_for_all(
-    tmp_path: Path, drive: sw.drives.PositionDrive, text: str
-) -> None:
+def test_a_drive_can_be_saved_with_one_source_for_all(tmp_path: Path, drive: sw.drives.PositionDrive, text: str) -> None:
     save(drive, tmp_path / "drive.toml", name=text, source=text)
     again = GearSet.read(tmp_path / "drive.toml")
     assert again.drive == drive

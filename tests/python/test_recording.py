@@ -196,9 +196,7 @@ def test_what_is_no_recording_is_refused(columns: dict[str, list[float]], units:
         Recording(columns, units)
 
 
-@pytest.mark.parametrize(
-    ("values", "kind"), [(["1.5"], "<U3"), ([True], "bool"), ([1j], "complex128"), ([None], "object")]
-)
+@pytest.mark.parametrize(("values", "kind"), [(["1.5"], "<U3"), ([True], "bool"), ([1j], "complex128"), ([None], "object")])
 def test_what_is_no_number_is_refused(values: list[object], kind: str) -> None:
     with pytest.raises(TypeError, match=exactly(f'column "a" must hold numbers, not {kind}')):
         Recording({"a": values}, {"a": "1"})  # type: ignore[dict-item]
@@ -301,9 +299,7 @@ def test_a_write_that_fails_leaves_the_old_file(
 def test_one_table_in_many_dialects(tmp_path: Path, text: str) -> None:
     path = tmp_path / "table.csv"
     path.write_bytes(text.encode())
-    assert Recording.from_csv(path) == Recording(
-        {"time": [0.0, 1.0], "torque": [1.5, -0.002]}, {"time": "s", "torque": "N.m"}
-    )
+    assert Recording.from_csv(path) == Recording({"time": [0.0, 1.0], "torque": [1.5, -0.002]}, {"time": "s", "torque": "N.m"})
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".CSV", ".txt", ".tsv"])
@@ -460,9 +456,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
 
 def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.xlsx"
-    with pytest.raises(
-        ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use .csv, .txt, .tsv or .parquet')
-    ):
+    with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use .csv, .txt, .tsv or .parquet')):
         Recording.read(path)
 
 
@@ -475,9 +469,7 @@ def write_parquet(path: Path, **columns: object) -> None:
 
 def test_parquet_without_metadata_is_read_by_its_names(tmp_path: Path) -> None:
     path = tmp_path / "run.parquet"
-    write_parquet(
-        path, **{"t [s]": pa.array([0, 1]), "motor.speed": pa.array([1.5, 2.5], pa.float32()), "note": ["a", "b"]}
-    )
+    write_parquet(path, **{"t [s]": pa.array([0, 1]), "motor.speed": pa.array([1.5, 2.5], pa.float32()), "note": ["a", "b"]})
     recording = Recording.read(path, {"speed": "motor.speed", "time": "t"}, {"speed": "rpm"})
     assert recording == Recording({"speed": [1.5, 2.5], "time": [0.0, 1.0]}, {"speed": "rpm", "time": "s"})
 

@@ -37,9 +37,7 @@ def measured(name: str) -> TorsionLoop:
 
 
 @pytest.mark.parametrize("name", LOOPS)
-def test_a_measured_loop_is_predicted_where_it_was_kept_back(
-    name: str, record_property: Callable[[str, object], None]
-) -> None:
+def test_a_measured_loop_is_predicted_where_it_was_kept_back(name: str, record_property: Callable[[str, object], None]) -> None:
     loop = measured(name)
     span = float(np.ptp(loop.torque))
     best = fit_loop(loop, sw.Gear(), kept_back(len(loop.twist)))[0]

@@ -91,18 +91,14 @@ def relative(residual: Array, measured: Array) -> float:
 
 def test_identifies_the_published_values_within_one_percent(drive: RigidDrive, report: Report) -> None:
     errors = drive.parameters / PUBLISHED - 1
-    for name, value, deviation, error in zip(
-        PARAMETERS, drive.parameters, drive.standard_deviation, errors, strict=True
-    ):
+    for name, value, deviation, error in zip(PARAMETERS, drive.parameters, drive.standard_deviation, errors, strict=True):
         report(name, f"{value:.4f} ± {deviation:.3f} ({100 * error:+.3f} % off the published value)")
     report("cutoff", f"{drive.cutoff:g} Hz, {drive.samples} samples, residual {drive.residual_rms:.3f} N rms")
     assert np.all(np.abs(errors) < 0.01)
 
 
 @pytest.mark.parametrize("cutoff", [30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 125.0, 150.0, 200.0, 250.0])
-def test_the_choice_of_the_cutoff_does_not_decide_the_result(
-    identification: Log, cutoff: float, report: Report
-) -> None:
+def test_the_choice_of_the_cutoff_does_not_decide_the_result(identification: Log, cutoff: float, report: Report) -> None:
     drive = rigid_drive(identification.position, identification.force, identification.time, cutoff=cutoff)
     errors = drive.parameters / PUBLISHED - 1
     report(f"error in % at {cutoff:g} Hz", np.array2string(100 * errors, precision=2))
@@ -143,9 +139,7 @@ def controller_voltage(log: Log) -> Array:
     return log.speed_gain * (log.position_gain * (log.reference - log.position) - speed)
 
 
-def test_pulses_are_a_voltage_added_to_the_controller_output(
-    identification: Log, validation: Log, report: Report
-) -> None:
+def test_pulses_are_a_voltage_added_to_the_controller_output(identification: Log, validation: Log, report: Report) -> None:
     """The record calls them newtons; the controller's own equation says what they are.
 
     It reproduces the first record to 4 mV. On the second the difference is 1.014 V per unit of the pulses, 178 N at the

@@ -9,7 +9,6 @@ from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
 from strainwave import _core, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
@@ -122,9 +121,7 @@ class TorsionLoop:
         """
         if "input_torque" in recording:
             ratio = gear.kinematics.ratio
-            return cls(
-                recording.values("input_angle", "rad") / ratio, ratio * recording.values("input_torque", "N.m")
-            )
+            return cls(recording.values("input_angle", "rad") / ratio, ratio * recording.values("input_torque", "N.m"))
         return cls(recording.values("twist", "rad").copy(), recording.values("torque", "N.m").copy())
 
     def __post_init__(self) -> None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-
 from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
@@ -74,7 +73,8 @@ class Fit:
         """Correlation of the estimates, shape (p, p); not-a-number where the data do not tell."""
         sigma = np.sqrt(np.diag(self.covariance))
         with np.errstate(invalid="ignore"):
-            return self.covariance / np.outer(sigma, sigma)
+            correlation: Array = self.covariance / np.outer(sigma, sigma)
+        return correlation
 
     @property
     def residuals(self) -> Array:
@@ -84,7 +84,9 @@ class Fit:
     def rms(self, *, held_out: bool = False) -> Array:
         """Root mean square residual of each channel over the samples that took part, or over those that did not."""
         chosen = ~self.training if held_out else self.training
-        return np.sqrt(np.mean(self.residuals[:, chosen] ** 2, axis=1)) if chosen.any() else np.full(len(self.residuals), np.nan)
+        return (
+            np.sqrt(np.mean(self.residuals[:, chosen] ** 2, axis=1)) if chosen.any() else np.full(len(self.residuals), np.nan)
+        )
 
     def summary(self) -> str:
         """A table of the estimates and the residuals, to print."""
@@ -108,7 +110,7 @@ def fit(
     channels: Sequence[str] | None = None,
     dt: float | None = None,
     training: NDArray[np.bool_] | None = None,
-    loss: str = "linear",
+    loss: Literal["linear", "soft_l1"] = "linear",
 ) -> Fit:
     """Fits free parameters of a model to a measurement by least squares.
 
@@ -215,7 +217,11 @@ class _Problem:
     """Least squares in numbers scaled to their size."""
 
     def __init__(
-        self, model: Gear | PositionDrive, experiment: Experiment, places: list[_Place], training: NDArray[np.bool_] | None
+        self,
+        model: Gear | PositionDrive,
+        experiment: Experiment,
+        places: list[_Place],
+        training: NDArray[np.bool_] | None,
     ) -> None:
         self.model, self.experiment, self.places = model, experiment, places
         n = experiment.measured.shape[1]
@@ -247,7 +253,7 @@ class _Problem:
             self._last = key, self.experiment.predict(self.model_with(x), numbers, nuisances)
         return self._last[1]
 
-    def solve(self, start: Array, weights: Array, loss: str) -> Array:
+    def solve(self, start: Array, weights: Array, loss: Literal["linear", "soft_l1"]) -> Array:
         if len(start) == 0:
             return start
         from scipy.optimize import least_squares
@@ -265,7 +271,15 @@ class _Problem:
 
         inside = np.clip(start, low, high)
         solution = least_squares(
-            residuals, inside, jac=jacobian, bounds=(low, high), x_scale="jac", loss=loss, xtol=1e-12, ftol=1e-12, gtol=1e-12
+            residuals,
+            inside,
+            jac=jacobian,
+            bounds=(low, high),
+            x_scale="jac",
+            loss=loss,
+            xtol=1e-12,
+            ftol=1e-12,
+            gtol=1e-12,
         )
         return np.asarray(solution.x)
 
@@ -283,7 +297,15 @@ class _Problem:
             Estimate(nuisance.name, nuisance.unit, nuisance.start, float(v), float(s), False)
             for nuisance, v, s in zip(self.experiment.nuisances, x[len(self.places) :], sigma[len(self.places) :], strict=True)
         ]
-        return Fit(self.model_with(x), self.experiment, tuple(estimates), covariance, predicted, self.training, self.evaluations)
+        return Fit(
+            self.model_with(x),
+            self.experiment,
+            tuple(estimates),
+            covariance,
+            predicted,
+            self.training,
+            self.evaluations,
+        )
 
 
 def _covariance(jacobian: Array, residual: Array) -> Array:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
 from strainwave import friction
 from strainwave._core import Gear
 from strainwave.identify.experiment import FrictionTable
@@ -36,6 +35,16 @@ class Candidate:
     held_out: Array
     error: float
 
+    @property
+    def coulomb(self) -> float:
+        """Coulomb torque found [N.m]."""
+        return self.fit.estimates[0].value
+
+    @property
+    def viscous(self) -> float:
+        """Viscous friction found [N.m.s/rad]."""
+        return self.fit.estimates[-1].value
+
 
 def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     """Fits the input friction of a gear to a table, with and without a fall of torque at low speed.
@@ -61,7 +70,8 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     law = gear.friction_input
     candidates = [_straight(table, gear)]
     if isinstance(law, friction.Stribeck | friction.LuGre) and speeds > len(FALLING) + 1:
-        candidates.append(_falling(table, gear, candidates[0].fit.gear.friction_input))
+        straight = law.replace(coulomb=candidates[0].coulomb, viscous=candidates[0].viscous)
+        candidates.append(_falling(table, gear, straight))
     best = min(candidate.error for candidate in candidates)
     return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates)))
 
@@ -72,11 +82,9 @@ def _straight(table: FrictionTable, gear: Gear) -> Candidate:
     coulomb, viscous = max(float(line[0]), 1e-3 * float(np.abs(table.torque).max())), max(float(line[1]), 0.0)
     start = gear.replace(friction_input=friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=viscous))
     candidate = _candidate("Coulomb and viscous", table, start, KINETIC)
-    found, law = candidate.fit.gear.friction_input, gear.friction_input
-    if isinstance(law, friction.Viscous):
-        law = friction.Coulomb()
+    law = friction.Coulomb() if isinstance(gear.friction_input, friction.Viscous) else gear.friction_input
     ratio = law.breakaway / law.coulomb if isinstance(law, friction.Coulomb) and law.coulomb > 0.0 else 1.0
-    written = law.replace(coulomb=found.coulomb, breakaway=ratio * found.coulomb, viscous=found.viscous)
+    written = law.replace(coulomb=candidate.coulomb, breakaway=ratio * candidate.coulomb, viscous=candidate.viscous)
     return replace(candidate, fit=replace(candidate.fit, model=gear.replace(friction_input=written)))
 
 

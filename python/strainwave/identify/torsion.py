@@ -13,7 +13,6 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
-
 from strainwave import hysteresis, stiffness
 from strainwave._core import Gear
 from strainwave.identify.experiment import TorsionLoop
@@ -49,7 +48,8 @@ def kept_back(n: int, blocks: int = 20, every: int = 4) -> NDArray[np.bool_]:
     Whole blocks, because neighbours on a loop resemble each other too much to test one by the other.
     """
     block = np.arange(n) * blocks // n
-    return block % every != every - 1
+    training: NDArray[np.bool_] = block % every != every - 1
+    return training
 
 
 def fit_loop(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None) -> list[Candidate]:
@@ -125,14 +125,18 @@ def _start(loop: TorsionLoop, training: NDArray[np.bool_], spring: str) -> _Star
         except RuntimeError:  # the active set cycles; other knees remain
             continue
         if best is None or error < best[0]:
-            best = error, weights, knees
+            best = float(error), weights, knees
     if best is None:
         raise ValueError("no spring with Maxwell elements fits this loop")
-    error, weights, knees = best
+    least, weights, knees = best
     count = columns.shape[1] - len(slips) - 2
     torque_zero = float(np.abs(loop.torque).max() * (weights[-2] - weights[-1]))
     return _Start(
-        loop, _spring(spring, weights[:count], half, knees), _elements(weights[count:-2], slips), torque_zero, float(error)
+        loop,
+        _spring(spring, weights[:count], half, knees),
+        _elements(weights[count:-2], slips),
+        torque_zero,
+        float(error),
     )
 
 
@@ -177,7 +181,7 @@ def _elements(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
     """The elements that carry torque; neighbours on the grid are one element that slips between them."""
     elements: list[tuple[float, float]] = []
     last = -2
-    for i in np.flatnonzero(weights * slips > 1e-3 * np.sum(weights * slips)):
+    for i in np.flatnonzero(weights * slips > 1e-3 * np.sum(weights * slips)).tolist():
         k, torque = float(weights[i]), float(weights[i] * slips[i])
         if i == last + 1:
             elements[-1] = elements[-1][0] + k, elements[-1][1] + torque

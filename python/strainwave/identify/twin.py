@@ -9,7 +9,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-
 from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
@@ -205,7 +204,9 @@ def _from_friction(gear: Gear, recording: Recording, source: str) -> Evidence:
 def _from_torsion(gear: Gear, recording: Recording, source: str) -> Evidence:
     loop = TorsionLoop.of(recording, gear)
     best, *others = fit_loop(loop, gear, kept_back(len(loop.twist)))
-    remarks = [f"valid up to {np.abs(loop.torque).max():.4g} N.m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"]
+    remarks = [
+        f"valid up to {np.abs(loop.torque).max():.4g} N.m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
+    ]
     if "input_torque" in recording:
         remarks.append("measured at the input with the output locked: friction of the wave generator is inside the loop")
     return Evidence(
@@ -286,7 +287,9 @@ def _why_not(evidence: Evidence, index: int, estimate: Estimate) -> str:
 
 
 def _sources(start: GearSet, verdicts: Sequence[Verdict]) -> dict[str, Entry]:
-    numbers = _parameters(start.gear)  # the rest of the drive, and counts of teeth, are no numbers of the gear that a fit can touch
+    numbers = _parameters(
+        start.gear
+    )  # the rest of the drive, and counts of teeth, are no numbers of the gear that a fit can touch
     sources = {path: entry for path, entry in start.sources.items() if path not in numbers}
     for verdict in verdicts:
         if verdict.state == "kept" and verdict.path in start.sources:

@@ -67,18 +67,14 @@ def test_one_sigma_covers_two_thirds_and_three_sigma_nearly_all() -> None:
     for seed in range(200):
         noise = 1e-3 * np.random.default_rng(seed).normal(size=len(SPEED))
         found = fit(gear(), friction_table(noise), FREE)
-        distances += [
-            abs(e.value - truth) / e.sigma for e, truth in zip(found.estimates, (0.03, 4e-4), strict=True)
-        ]
+        distances += [abs(e.value - truth) / e.sigma for e, truth in zip(found.estimates, (0.03, 4e-4), strict=True)]
     assert 0.62 < np.mean(np.array(distances) < 1.0) < 0.80  # a normal law has 0.68, correlation lengths above 1 add a little
     assert np.mean(np.array(distances) < 3.0) > 0.985
 
 
 def test_a_drive_log_gives_friction_and_stiffness_back_whatever_the_zeros_of_its_encoders() -> None:
     start = drive(a1=1.2e4, coulomb=0.02, viscous=1e-4)
-    found = sw.fit(
-        start, drive_log(), ["gear.friction_input.coulomb", "gear.friction_input.viscous", "gear.stiffness.a1"]
-    )
+    found = sw.fit(start, drive_log(), ["gear.friction_input.coulomb", "gear.friction_input.viscous", "gear.stiffness.a1"])
     values = {e.path: e.value for e in found.estimates}
     assert values["gear.friction_input.coulomb"] == pytest.approx(0.03, rel=1e-6)
     assert values["gear.friction_input.viscous"] == pytest.approx(4e-4, rel=1e-6)

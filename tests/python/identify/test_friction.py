@@ -58,7 +58,9 @@ def test_error_is_that_of_speeds_left_out() -> None:
 
 
 def test_magnitudes_over_speeds_of_both_signs_are_understood() -> None:
-    recording = sw.Recording({"speed": [-2.0, -1.0, 1.0, 2.0], "torque": [0.2, 0.1, 0.1, 0.2]}, {"speed": "rad/s", "torque": "N.m"})
+    recording = sw.Recording(
+        {"speed": [-2.0, -1.0, 1.0, 2.0], "torque": [0.2, 0.1, 0.1, 0.2]}, {"speed": "rad/s", "torque": "N.m"}
+    )
     assert FrictionTable.of(recording).torque == pytest.approx([-0.2, -0.1, 0.1, 0.2])
 
 

@@ -1,0 +1,458 @@
+"""The report of a twin: complete, honest about contradictions, self-contained, readable in both schemes, reproducible."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from html.parser import HTMLParser
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.demo import published_twin
+from strainwave.gear_set import Entry, GearSet
+from strainwave.report import figures
+from strainwave.report.experiment import Experiment, Figure
+from strainwave.report.page import write
+from strainwave.report.twin import Provenance, twin_report
+
+HOSTILE = '<script>alert("x")</script> & <b>table</b>.csv'
+SPEED = np.concatenate((-np.geomspace(0.5, 150.0, 15)[::-1], np.geomspace(0.5, 150.0, 15)))
+LAW = sw.friction.LuGre(
+    coulomb=0.06, breakaway=0.11, stribeck_speed=3.0, bristle_stiffness=90.0, bristle_damping=0.004, viscous=7e-4
+)
+
+
+# ---- Twins of synthetic measurements ---------------------------------------------------------------------------------
+
+
+def friction_table() -> sw.Recording:
+    torque = LAW.steady(SPEED) * (1.0 + 0.01 * np.random.default_rng(1).normal(size=len(SPEED)))
+    return sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}, title="a < b")
+
+
+def torsion_loop() -> sw.Recording:
+    quarter = np.linspace(0.0, 1e-3, 60)
+    path = np.concatenate((quarter[::-1], -quarter[1:], -quarter[-2::-1], quarter[1:]))
+    elements = sw.hysteresis.MaxwellSlip(stiffness=[8e3, 4e3], breakaway=[0.8, 1.2])
+    torque = elements.trace(np.concatenate((path, path)))[-len(path) :] + 3e4 * path
+    torque += 0.01 * np.random.default_rng(2).normal(size=len(path))
+    return sw.Recording({"twist": path, "torque": torque}, {"twist": "rad", "torque": "N.m"})
+
+
+def with_drive(start: GearSet) -> GearSet:
+    """The set with a small motor, a controller and a load, given by a maker."""
+    rest = {
+        "motor": sw.motor.DC(resistance=2.0, inductance=1e-3, torque_constant=0.05, back_emf=0.05, inertia=5e-5),
+        "control": sw.control.PID(proportional=10.0, derivative=0.1, limit=24.0),
+        "load": sw.loads.Inertia(inertia=0.2),
+    }
+    numbers = {
+        f"{part}.{member['name']}": Entry("data sheet", uncertainty=0.0)
+        for part, model in rest.items()
+        for member in model.fields
+    }
+    return replace(start, sources={**start.sources, **numbers}, **rest)
+
+
+def drive_log(start: GearSet) -> sw.Recording:
+    command = sw.scenario.sine(amplitude=0.1, frequency=1.0, duration=1.5, phase=-np.pi / 2, offset=0.1)
+    truth = start.drive.replace(gear=start.gear.replace(friction_input=LAW))
+    run, random = sw.simulate(truth, command, sample=5e-3), np.random.default_rng(3)
+    noise = {"input_angle": 1e-4, "output_angle": 2e-6, "current": 5e-3}
+    columns = {name: run[name] + sigma * random.normal(size=len(run)) for name, sigma in noise.items()}
+    names = ("time", "command")
+    units = {name: run.unit(name) for name in (*names, *noise)}
+    return sw.Recording({name: run[name] for name in names} | columns, units)
+
+
+@pytest.fixture(scope="module")
+def start() -> GearSet:
+    return GearSet.read("hfuc-25-100")
+
+
+@pytest.fixture(scope="module")
+def from_friction(start: GearSet) -> sw.Twin:
+    return sw.twin(start, friction=friction_table(), sources={"friction": HOSTILE})
+
+
+@pytest.fixture(scope="module")
+def from_torsion(start: GearSet) -> sw.Twin:
+    return sw.twin(start, torsion=torsion_loop())
+
+
+@pytest.fixture(scope="module")
+def from_log(start: GearSet) -> sw.Twin:
+    full = with_drive(start)
+    return sw.twin(full, log=drive_log(full))
+
+
+@pytest.fixture(scope="module")
+def contradicted(start: GearSet) -> sw.Twin:
+    """A set whose friction was measured before, and now is another."""
+    earlier = Entry("test report 7 <of 2019>", uncertainty=1e-3)
+    sources = {**start.sources, "gear.friction_input.coulomb": earlier, "gear.friction_input.viscous": earlier}
+    return sw.twin(replace(start, sources=sources), friction=friction_table(), sources={"friction": "table of today"})
+
+
+@pytest.fixture(scope="module", params=["from_friction", "from_torsion", "from_log", "contradicted"])
+def each(request: pytest.FixtureRequest) -> sw.Twin:
+    found: sw.Twin = request.getfixturevalue(request.param)
+    return found
+
+
+# ---- Reading a page --------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Node:
+    """An element of a page."""
+
+    tag: str
+    attributes: dict[str, str]
+    children: list[Node | str] = field(default_factory=list)
+
+    def walk(self) -> Iterator[Node]:
+        yield self
+        for child in self.children:
+            if isinstance(child, Node):
+                yield from child.walk()
+
+    def find(self, tag: str, **attributes: str) -> list[Node]:
+        return [n for n in self.walk() if n.tag == tag and attributes.items() <= n.attributes.items()]
+
+    @property
+    def text(self) -> str:
+        parts = [child if isinstance(child, str) else child.text for child in self.children if child_is_read(child)]
+        return " ".join("".join(parts).split())
+
+
+def child_is_read(child: Node | str) -> bool:
+    return isinstance(child, str) or child.tag not in ("style", "svg")
+
+
+class Page(HTMLParser):
+    """Builds the tree of a page and refuses one whose elements are not closed in order."""
+
+    VOID = frozenset({"meta", "col", "br", "link", "img", "hr", "input"})
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.open = [Node("page", {})]
+        self.feed(html)
+        self.close()
+        assert len(self.open) == 1, f"<{self.open[-1].tag}> is not closed"
+
+    @property
+    def root(self) -> Node:
+        return self.open[0]
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        node = Node(tag, {name: value or "" for name, value in attrs})
+        self.open[-1].children.append(node)
+        if tag not in self.VOID:
+            self.open.append(node)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.open[-1].children.append(Node(tag, {name: value or "" for name, value in attrs}))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open[-1].tag == tag, f"</{tag}> closes <{self.open[-1].tag}>"
+        self.open.pop()
+
+    def handle_data(self, data: str) -> None:
+        self.open[-1].children.append(data)
+
+
+def section(html: str, name: str) -> Node:
+    found = Page(html).root.find("section", id=name)
+    assert len(found) == 1
+    return found[0]
+
+
+def printed(text: str) -> tuple[float, float]:
+    """A printed number, and half a unit of its last place; its uncertainty is left aside."""
+    match = re.fullmatch(r"\(?(−?[\d.]+)(?: ± [^)]*?)?\)?(?: × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?: %)?", text.partition(" ± ∞")[0])
+    assert match, text
+    power = int((match[2] or "⁰").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
+    digits = match[1].replace("−", "-")
+    places = len(digits.partition(".")[2]) - power
+    return float(f"{digits}e{power}"), 0.5 * 10.0**-places
+
+
+# ---- What a report says ----------------------------------------------------------------------------------------------
+
+
+def test_every_parameter_of_the_twin_stands_in_the_table_with_its_value(each: sw.Twin) -> None:
+    rows = {}
+    for row in section(twin_report(each), "parameters").find("tr"):
+        codes = row.find("code")
+        if codes:
+            rows[codes[0].text] = [cell.text for cell in row.find("td")]
+    numbers = {verdict.path: verdict.value for verdict in each.verdicts}
+    assert rows.keys() >= each.gear_set.sources.keys() | numbers.keys()
+    for path, value in numbers.items():
+        start, shown, _, state, why = rows[path]
+        number, half = printed(shown)
+        digits = 5e-6 * abs(value) if "±" not in shown else 50.0 * half  # tens and hundreds may be rounded away
+        assert abs(number - value) <= max(half, digits), path
+        assert state and why
+        assert bool(start) == any(v.path == path and not np.isnan(v.start) for v in each.verdicts)
+
+
+def test_the_state_of_every_parameter_is_the_verdict(each: sw.Twin) -> None:
+    page = section(twin_report(each), "parameters")
+    shown = {row.find("code")[0].text: row.find("span")[0].text for row in page.find("tr") if row.find("code")}
+    for verdict in each.verdicts:
+        moved = verdict.state == "kept" and verdict.value != verdict.start
+        assert shown[verdict.path] == ("follows" if moved else verdict.state)
+
+
+def test_whatever_is_not_identified_is_listed_with_its_reason(each: sw.Twin) -> None:
+    page = section(twin_report(each), "unknown").text
+    for verdict in each.verdicts:
+        if verdict.state != "identified":
+            assert re.sub(r"_(?=\w\b)", "", verdict.why) in page or verdict.why in page
+
+
+def test_a_part_that_the_model_lacks_is_said_to_be_absent() -> None:
+    found = published_twin()
+    assert not any("kinematic_error" in path for path in found.gear_set.sources)
+    assert "Kinematic error" in section(twin_report(found), "summary").text
+    assert "not in the model" in section(twin_report(found), "unknown").text
+
+
+def test_the_error_on_data_kept_back_stands_in_the_summary(from_torsion: sw.Twin) -> None:
+    summary = section(twin_report(from_torsion), "summary")
+    error = from_torsion.evidence[0].error[0]
+    measured = from_torsion.evidence[0].fit.experiment.measured
+    assert summary.find("p", **{"class": "headline"})[0].text == f"{1e3 * error:.3g} mN·m"
+    assert f"{100.0 * error / np.ptp(measured):.2g} % of the range measured" in summary.text
+
+
+def test_every_channel_of_a_log_has_its_error_and_its_figure(from_log: sw.Twin) -> None:
+    html = twin_report(from_log)
+    assert [term.text for term in section(html, "summary").find("dt")][:3] == [
+        "Input angle", "Output angle", "Motor current",
+    ]  # fmt: skip
+    assert len(section(html, "log").find("figure")) == 3
+
+
+def test_a_contradiction_shows_both_values_and_both_sources_and_no_average(contradicted: sw.Twin) -> None:
+    html = twin_report(contradicted)
+    assert {found.path for found in contradicted.contradictions} == {"gear.friction_input.coulomb"}
+    for name in ("summary", "contradictions"):
+        page = section(html, name)
+        assert page.find("div", **{"class": "box contradiction"})
+        for text in ("0.0867 ± 0.0010", "0.06", "test report 7 <of 2019>", "table of today"):
+            assert text in page.text
+        assert "0.073" not in page.text, "the mean of 0.0867 and 0.060"
+        assert "0.074" not in page.text
+
+
+def test_a_contradiction_of_friction_is_drawn_as_two_data_sets(contradicted: sw.Twin, from_friction: sw.Twin) -> None:
+    assert len(section(twin_report(contradicted), "contradictions").find("svg")) == 1
+    labels = [text.text for text in section(twin_report(contradicted), "contradictions").find("text")]
+    assert {"starting set", "measured", "fitted to the table"} <= set(labels)
+    assert 'id="contradictions"' not in twin_report(from_friction)
+    assert "No contradiction found" in twin_report(from_friction)
+
+
+# ---- Experiments -----------------------------------------------------------------------------------------------------
+
+
+def swing(samples: int, amplitude: float = 0.1) -> sw.Recording:
+    time = np.linspace(0.0, 2.0, samples)
+    command = amplitude * np.sin(2.0 * np.pi * time)
+    columns = {"time": time, "command": command, "output_angle": 0.9 * command}
+    return sw.Recording(columns, {"time": "s", "command": "rad", "output_angle": "rad"})
+
+
+def test_experiments_show_every_run_and_every_figure_beside_the_published_one(from_torsion: sw.Twin) -> None:
+    error = Figure("largest error", "rad", (0.0123, 0.0456), published=0.0042)
+    experiment = Experiment(
+        "sine", (("_twin", swing(50)), (HOSTILE, swing(60))), (error,), remark="amplitude assumed", source="Table 4"
+    )
+    page = section(twin_report(from_torsion, [experiment]), "experiments")
+    assert [cell.text for cell in page.find("tr")[1].children if isinstance(cell, Node)] == [
+        "largest error", "0.0123", "0.0456", "0.0042", "rad",
+    ]  # fmt: skip
+    assert "compared, not reproduced" in page.text
+    assert "amplitude assumed" in page.text
+    labels = [text.text for text in page.find("text")]
+    assert {"command", "_twin", " ".join(HOSTILE.split())} <= set(labels)
+
+
+def test_an_open_loop_experiment_draws_the_command_by_itself() -> None:
+    run = sw.Recording(
+        {"time": [0.0, 1.0], "command": [0.0, 5.0], "output_angle": [0.0, 0.1]},
+        {"time": "s", "command": "V", "output_angle": "rad"},
+    )
+    labels = [text.text for text in Page(figures.experiment(Experiment("step", (("twin", run),)), "e")).root.find("text")]
+    assert "command [V]" in labels
+    assert not any("response" in label for label in labels)
+
+
+def test_an_experiment_refuses_what_it_cannot_show() -> None:
+    with pytest.raises(ValueError, match='^experiment "e" has no run$'):
+        Experiment("e", ())
+    with pytest.raises(ValueError, match='^experiment "e": run "a" has no column "torque"$'):
+        Experiment("e", (("a", swing(9)),), response="torque")
+    with pytest.raises(ValueError, match='^experiment "e": rms has 2 values for 1 runs$'):
+        Experiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))
+
+
+# ---- The page as a file ----------------------------------------------------------------------------------------------
+
+
+def test_the_page_is_well_formed_and_no_name_stands_twice(each: sw.Twin) -> None:
+    html = twin_report(each, [Experiment("sine", (("twin", swing(50)),))] * 2)
+    names = [node.attributes["id"] for node in Page(html).root.walk() if "id" in node.attributes]
+    assert len(names) == len(set(names))
+    references = re.findall(r"(?:href=\"|url\()#([^\")]+)", html)
+    assert references
+    assert set(references) <= set(names)
+
+
+def test_the_page_refers_to_nothing_outside_itself(each: sw.Twin) -> None:
+    html = twin_report(each, provenance=Provenance("2026-01-01", "strainwave twin", {HOSTILE: "0" * 64}))
+    assert not re.search(r"https?:|//\w|@import|<link|<img|<iframe|<script", html)
+    for reference in re.findall(r"(?:href|src)=\"([^\"]*)|url\(([^)]*)", html):
+        assert "".join(reference).startswith(("#", "data:"))
+
+
+def test_markup_in_names_is_shown_and_not_obeyed(from_friction: sw.Twin) -> None:
+    html = twin_report(from_friction, provenance=Provenance(command=HOSTILE, files={HOSTILE: "0" * 64}))
+    assert "<script" not in html
+    assert "<b>table" not in html
+    page = Page(html).root
+    assert HOSTILE in page.find("header")[0].text
+    assert [code.text for code in page.find("footer")[0].find("code")][0] == HOSTILE
+    assert any(HOSTILE in svg.attributes["aria-label"] for svg in page.find("svg"))
+    assert "a < b" in section(html, "friction").text, "the title of the recording"
+
+
+def test_the_same_twin_gives_the_same_bytes_and_the_date_is_the_one_given(from_friction: sw.Twin) -> None:
+    provenance = Provenance("2026-01-01", "strainwave twin", {})
+    assert twin_report(from_friction, (), provenance) == twin_report(from_friction, (), provenance)
+    assert "2026-01-01" in twin_report(from_friction, (), provenance)
+    assert not re.search(r"20\d\d-\d\d-\d\d", twin_report(from_friction))
+
+
+def test_the_preferences_of_a_machine_do_not_change_the_report(from_friction: sw.Twin) -> None:
+    import matplotlib as mpl
+
+    expected = twin_report(from_friction)
+    with mpl.rc_context({"font.size": 20.0, "axes.grid": False, "text.usetex": False, "lines.linewidth": 9.0}):
+        assert twin_report(from_friction) == expected
+        assert mpl.rcParams["font.size"] == 20.0
+
+
+def test_drawing_leaves_no_figure_open(from_friction: sw.Twin) -> None:
+    import sys
+
+    twin_report(from_friction)
+    assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
+
+
+def test_a_long_record_stays_small_and_keeps_its_peak() -> None:
+    run = swing(400_000)
+    noisy = run["output_angle"] + 1e-3 * np.random.default_rng(1).normal(size=len(run))
+    noisy[123_456] = 0.4
+    svg = figures.experiment(Experiment("long", (("twin", run.with_column("output_angle", noisy, "rad")),)), "long")
+    assert len(svg) < 80_000
+    lines = [points(path) for path in Page(svg).root.find("path") if "--model" in path.attributes.get("style", "")]
+    response, error = (line for line in lines if len(line) > 100)
+    assert response[:, 1].min() < np.quantile(response[:, 1], 0.01) - 20.0, "the peak towers, upright is negative"
+    assert np.argmin(response[:, 1]) / len(response) == pytest.approx(123_456 / 400_000, abs=0.02)
+    assert len(error) == pytest.approx(len(response), rel=0.1)
+
+
+def test_provenance_holds_the_digest_of_each_file(tmp_path: Path) -> None:
+    file = tmp_path / "loop.csv"
+    file.write_bytes(b"abc")
+    provenance = Provenance.of([file], command="strainwave twin", date="2026-01-01")
+    # FIPS 180-2, appendix B.1
+    assert provenance.files == {str(file): "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"}
+
+
+def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path: Path) -> None:
+    write("old", tmp_path / "report.html")
+    with pytest.raises(UnicodeEncodeError):
+        write("\ud800", tmp_path / "report.html")
+    assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
+    assert (tmp_path / "report.html").read_text() == "old"
+
+
+# ---- Figures ---------------------------------------------------------------------------------------------------------
+
+
+def points(path: Node) -> np.ndarray:
+    numbers = [float(number) for number in re.findall(r"-?[\d.]+", path.attributes["d"])]
+    return np.reshape(numbers, (-1, 2))
+
+
+def test_points_are_drawn_where_they_were_measured() -> None:
+    found = published_twin()
+    drawn = Page(figures.friction_table(found.evidence[0])).root
+    groups = [group for group in drawn.find("g") if "--measured" in group.attributes.get("style", "")]
+    places = np.array([(float(use.attributes["x"]), float(use.attributes["y"])) for use in groups[0].find("use")])
+    recording = found.evidence[0].recording
+    for column, name in enumerate(("speed", "torque")):
+        line = np.polynomial.Polynomial.fit(recording[name], places[:, column], 1)
+        assert np.abs(line(recording[name]) - places[:, column]).max() < 0.01, "SVG is written to hundredths"
+
+
+def test_residuals_are_drawn_over_their_samples(from_torsion: sw.Twin) -> None:
+    evidence = from_torsion.evidence[0]
+    drawn = Page(figures.torsion_loop(evidence)).root
+    curves = [points(path) for path in drawn.find("path") if "--ink" in path.attributes.get("style", "")]
+    curve = max(curves, key=len)
+    residual = evidence.fit.residuals[0]
+    assert len(curve) == len(residual)
+    assert np.corrcoef(curve[:, 1], residual)[0, 1] == pytest.approx(-1.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("scheme", [figures.LIGHT, figures.DARK])
+def test_every_colour_can_be_told_from_the_paper(scheme: dict[str, str], from_friction: sw.Twin) -> None:
+    """Contrast by WCAG 2.2: 4.5 for text, 3 for graphics; the rules of the grid are meant to be faint."""
+    paper = re.findall(r"--paper: (#\w{6})", twin_report(from_friction))[scheme is figures.DARK]
+    for name, colour in scheme.items():
+        assert contrast(colour, paper) > {"ink": 7.0, "rule": 1.2}.get(name, 4.5)
+
+
+def contrast(one: str, other: str) -> float:
+    light, dark = sorted((luminance(one), luminance(other)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+def luminance(colour: str) -> float:
+    channels = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
+    return float(linear @ (0.2126, 0.7152, 0.0722))
+
+
+def test_no_colour_is_fixed_so_that_figures_follow_the_scheme(each: sw.Twin) -> None:
+    figures_of_page = Page(twin_report(each)).root.find("svg")
+    assert figures_of_page
+    for node in (node for svg in figures_of_page for node in svg.walk()):
+        for value in node.attributes.values():
+            assert not re.search(r"#[0-9a-f]{6}\b", re.sub(r"var\(--[\w-]+, #\w{6}\)", "", value))
+
+
+def test_the_overview_stands_by_itself() -> None:
+    picture = figures.overview(published_twin())
+    assert len(picture) < 60_000
+    root = ElementTree.fromstring(picture)
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    style = root[0].text or ""
+    for colours in (figures.LIGHT, figures.DARK):
+        assert all(f"--{name}: {colour};" in style for name, colour in colours.items())
+
+
+def test_the_overview_needs_both_measurements(from_torsion: sw.Twin) -> None:
+    with pytest.raises(ValueError, match="^the twin has no evidence of kind friction; the picture shows torsion and friction$"):
+        figures.overview(from_torsion)
