@@ -4,7 +4,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -20,8 +19,8 @@ namespace nb = nanobind;
 using Values = nb::ndarray<nb::numpy, double, nb::c_contig>;
 
 inline std::string shortest(double x) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, x).ptr};
+    const std::unique_ptr<char, void (*)(void*)> text(PyOS_double_to_string(x, 'r', 0, 0, nullptr), PyMem_Free);
+    return text.get();
 }
 
 inline std::string with_unit(double x, const char* unit) {

@@ -39,7 +39,7 @@ def signed(magnitudes: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
     return st.tuples(st.sampled_from([1.0, -1.0]), magnitudes).map(lambda drawn: drawn[0] * drawn[1])
 
 
-def refusal(model: type, field: Field, value: object) -> str:
+def refusal(model: Any, field: Field, value: object) -> str:
     """What a model says to one value of a field; nothing if it takes it."""
     try:
         model(**{field["name"]: [value] if field["kind"] == "sequence" else value})
@@ -48,12 +48,12 @@ def refusal(model: type, field: Field, value: object) -> str:
     return ""
 
 
-def options(model: type, field: Field) -> list[str]:
+def options(model: Any, field: Field) -> list[str]:
     """What a field that is a choice can be, as the model tells who asks for something else."""
     return re.findall(r"'(\w+)'", refusal(model, field, None))
 
 
-def numbers(model: type, field: Field) -> st.SearchStrategy[float]:
+def numbers(model: Any, field: Field) -> st.SearchStrategy[float]:
     """What a number may be: zero too where that is allowed, negative too where nothing forbids it."""
     magnitudes = log_uniform(*TYPICAL.get(field["unit"], AROUND_ONE))
     if field["min"] is None:
@@ -62,7 +62,7 @@ def numbers(model: type, field: Field) -> st.SearchStrategy[float]:
     return magnitudes if positive else st.one_of(st.just(0.0), *5 * [magnitudes])
 
 
-def values(model: type, field: Field) -> st.SearchStrategy[Any]:
+def values(model: Any, field: Field) -> st.SearchStrategy[Any]:
     """What a field may be. The sequences of one model are equally long."""
     match field["kind"]:
         case "part":
@@ -78,7 +78,7 @@ def values(model: type, field: Field) -> st.SearchStrategy[Any]:
             return numbers(model, field)
 
 
-def built(model: type) -> st.SearchStrategy[Any]:
+def built(model: Any) -> st.SearchStrategy[Any]:
     """A model with every field drawn."""
 
     def make(drawn: dict[str, Any]) -> Any:

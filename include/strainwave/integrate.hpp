@@ -50,11 +50,15 @@ struct Exponential {
 
 private:
     static constexpr double series_below = 0.5;
-    static constexpr S series(const S& z) {  // sum z^k / (k + 3)!
-        S sum{0.0};
-        double factorial = 1307674368000.0;  // 15!
-        for (int k = 12; k >= 0; factorial /= k + 3, --k) sum = sum * z + S(1.0 / factorial);
-        return sum;
+    /// The sum of z^j / (j + 3)!, nested: 1/6 (1 + z/4 (1 + z/5 (...))). A template, so that 1/k is a constant of the scalar's kind.
+    template <int k = 4>
+    static constexpr S series(const S& z) {
+        if constexpr (k == 4)
+            return S(1.0 / 6.0) * (S(1.0) + z * S(1.0 / k) * series<k + 1>(z));
+        else if constexpr (k < 16)
+            return S(1.0) + z * S(1.0 / k) * series<k + 1>(z);
+        else
+            return S(1.0);
     }
 };
 
@@ -176,9 +180,8 @@ constexpr typename Drive::State step(const Drive& drive, const typename Drive::S
         x = drive.settled(reach(moment), u.part(S(0.0), moment, dt).end, margin < S(0.0));
         done = moment;
     }
-    auto failed = x;
-    failed.motion.input_speed = (failed.motion.input_speed - failed.motion.input_speed) / S(0.0);
-    return failed;
+    x.motion.input_speed = sqrt(S(-1.0));
+    return x;
 }
 
 }  // namespace strainwave

@@ -55,7 +55,7 @@ struct StrainWave {
     /// Input angle per output angle, signed.
     constexpr S ratio() const {
         const int teeth = fixed == Fixed::circular_spline ? -flexspline_teeth : circular_spline_teeth;
-        return S(double(teeth)) / S(double(circular_spline_teeth - flexspline_teeth));
+        return S(teeth) / S(circular_spline_teeth - flexspline_teeth);
     }
     constexpr S inverse_ratio() const { return S(1.0) / ratio(); }
     constexpr Reduction<S> compile() const { return {ratio(), inverse_ratio()}; }

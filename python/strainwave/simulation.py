@@ -43,7 +43,10 @@ class Course:
         is_sample = np.isin(order, np.arange(len(order) - len(breaks) - len(sampled), len(order) - len(breaks)))
         first = np.concatenate(([True], np.diff(instants) > tolerance))
         merged = np.logical_or.reduceat(is_sample, np.flatnonzero(first))
-        return cls(instants[first], merged.astype(np.uint8))
+        steps = instants[first]
+        is_break = order >= len(order) - len(breaks)  # a step that ends there ends exactly there: the inputs jump
+        steps[(np.cumsum(first) - 1)[is_break]] = instants[is_break]
+        return cls(steps, merged.astype(np.uint8))
 
     def chunks(self) -> Iterator[Course]:
         """The same course in pieces that follow each other."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sysconfig
 from pathlib import Path
 
+import nanobind
 import pytest
 
-from tests.cplusplus import HEADERS, INCLUDE, STRICT, compilation, compiler, drives
+from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, compilation, compiler, drives
 
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
 

@@ -11,7 +11,8 @@ import pytest
 from tests.cplusplus import HEADERS, INCLUDE, compilation, compiler, drives, zig
 
 STEP = """
-extern "C" void step_{number}(const {drive}* drive, {drive}::State* state, const strainwave::Interval<float>* input, float dt) {{
+extern "C" void step_{number}(const {drive}* drive, {drive}::State* state,
+                              const strainwave::Interval<float>* input, float dt) {{
     *state = strainwave::step(*drive, *state, *input, dt);
 }}
 """

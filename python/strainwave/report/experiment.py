@@ -26,7 +26,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Experiment:
-    """A simulated experiment.
+    """A simulated experiment: one command, run through one or more models.
 
     Attributes:
         name: what is done, as "sine, 1 Hz"
@@ -68,3 +68,9 @@ class Experiment:
                 raise ValueError(
                     f'experiment "{self.name}": {figure.name} has {len(figure.values)} values for {len(self.runs)} runs'
                 )
+
+    @property
+    def comparable(self) -> bool:
+        """Whether command and response are of one unit, so that their difference is an error."""
+        first = self.runs[0][1]
+        return first.unit(self.command) == first.unit(self.response)

@@ -156,8 +156,8 @@ def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
 
 def experiment(simulated: Experiment, name: str) -> str:
     """Command, response and, where both are of one unit, their difference over time."""
-    first = simulated.runs[0][1]
-    comparable = first.unit(simulated.command) == first.unit(simulated.response)
+    first, comparable = simulated.runs[0][1], simulated.comparable
+    command_unit, response_unit = first.unit(simulated.command), first.unit(simulated.response)
 
     def draw(figure: Figure) -> None:
         response, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
@@ -167,12 +167,12 @@ def experiment(simulated: Experiment, name: str) -> str:
             colour, line, width = RUNS[number % len(RUNS)]
             style: dict[str, Any] = {"color": LIGHT[colour], "linestyle": line, "linewidth": width}
             style["label"] = f" {label}"  # matplotlib leaves out labels that begin with an underscore
-            _curve(response, run.time, run[simulated.response], **style)
+            answer = run.values(simulated.response, response_unit)
+            _curve(response, run.time, answer, **style)
             if comparable:
-                _curve(below, run.time, run[simulated.response] - run[simulated.command], **style)
-        _label(response, output_name(simulated.response), first.unit(simulated.response))
-        name_below = "response − command" if comparable else "command"
-        _label(below, name_below, first.unit(simulated.command), "time", "s")
+                _curve(below, run.time, answer - run.values(simulated.command, command_unit), **style)
+        _label(response, output_name(simulated.response), response_unit)
+        _label(below, "response − command" if comparable else "command", command_unit, "time", "s")
         figure.legend(*response.get_legend_handles_labels(), loc="outside upper left", ncols=2, borderpad=0.0)
 
     return _inline(draw, (6.2, 3.6), name, f"{simulated.name}: command and response over time")
@@ -186,7 +186,7 @@ def overview(twin: Twin) -> str:
     """
     found = {evidence.kind: evidence for evidence in twin.evidence}
     if missing := {"torsion", "friction"} - found.keys():
-        raise ValueError(f"the twin has no evidence of kind {min(missing)}; the picture shows torsion and friction")
+        raise ValueError(f"the twin has no evidence of kind {min(missing)}; the picture shows both")
 
     def draw(figure: Figure) -> None:
         loop, friction = figure.subplots(1, 2)

@@ -365,11 +365,12 @@ def _experiments(experiments: Sequence[Experiment]) -> Iterator[dict[str, Any]]:
 
     said = ""
     for position, experiment in enumerate(experiments):
+        below = "how far it is from the command" if experiment.comparable else "the command"
         yield {
             "experiment": experiment,
             "remark": "" if experiment.remark == said else experiment.remark,
             "figure": Markup(figures.experiment(experiment, f"experiment-{position}")),
-            "caption": f"{figures.output_name(experiment.response)} over time, and how far it is from the command.",
+            "caption": f"{figures.output_name(experiment.response)} over time, and {below}.",
         }
         said = experiment.remark
 

@@ -1,0 +1,236 @@
+"""Courses through time, and what the runs along them promise."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import given
+from hypothesis import strategies as st
+from strainwave import _core, simulation
+from strainwave.simulation import Course, derivatives
+
+from tests.reference_drive import DRIVE, command
+
+DT = 2.0**-12  # s: its multiples are exact, so that the steps of a run and of a part of it are the same
+HELD = sw.scenario.constant(0.02, 0.25)
+COLUMNS = [name for name, _, _ in _core.outputs]
+STICKING = DRIVE.replace(gear=DRIVE.gear.replace(friction_output=sw.friction.Coulomb(coulomb=3.0, breakaway=4.0, viscous=0.5)))
+drives = pytest.mark.parametrize("drive", [DRIVE, STICKING], ids=["smooth", "set-valued"])
+
+durations = st.floats(0.01, 1.0)
+steps = st.sampled_from([1e-3, 2e-3, 3e-3, 7e-3, 0.01, 1 / 30])
+
+
+def same(one: sw.Recording, other: sw.Recording) -> bool:
+    return one.names == other.names and all(np.array_equal(one[name], other[name]) for name in one.names)
+
+
+# Courses
+
+
+@given(durations, steps, steps, st.lists(st.floats(0.0, 1.0, exclude_min=True, exclude_max=True), max_size=5))
+def test_steps_end_at_samples_and_breaks_and_are_no_longer_than_asked(
+    duration: float, dt: float, sample: float, shares: list[float]
+) -> None:
+    breaks = duration * np.array(shares)
+    course = Course.through(duration, dt, sample, breaks)
+    one = 1e-9 * min(dt, sample)  # instants this close are one
+    assert course.instants[[0, -1]] == pytest.approx([0.0, duration], rel=0.0, abs=one)
+    assert np.diff(course.instants).min() > 0.0
+    assert np.diff(course.instants).max() <= dt + 2.0 * one
+    assert np.isin(breaks, course.instants).all() or np.diff(np.sort(breaks)).min() <= one
+    samples = course.instants[course.samples == 1]
+    assert samples[:-1] == pytest.approx(sample * np.arange(len(samples) - 1), rel=0.0, abs=one)
+    assert samples[-1] == pytest.approx(duration, rel=0.0, abs=one)
+    assert len(samples) - 1 == pytest.approx(duration / sample, abs=1.0)
+
+
+def test_steps_are_as_long_as_asked_where_nothing_asks_for_more() -> None:
+    course = Course.through(1.0, 0.25, 0.5, np.empty(0))
+    assert course.instants.tolist() == [0.0, 0.25, 0.5, 0.75, 1.0]
+    assert course.samples.tolist() == [1, 0, 1, 0, 1]
+
+
+@pytest.mark.parametrize(("dt", "multiple"), [(2e-4, 3), (3e-4, 5), (6e-4, 5), (7e-4, 17), (1e-3, 7), (0.3, 3)])
+def test_a_jump_between_two_steps_is_seen_by_the_second_alone(dt: float, multiple: int) -> None:
+    """Also where floating point puts the jump, written in decimals, beside the multiple: 5 * 3e-4 < 0.0015."""
+    jump = round(dt * multiple, 12)
+    course = sw.scenario.step(1.0, duration=jump + 2.0 * dt, start=jump)
+    inputs = Course.through(course.duration, dt, dt, course.breaks).inputs(course, None)[:, :, 0]
+    assert inputs.tolist() == multiple * [[0.0] * 3] + 2 * [[1.0] * 3]
+
+
+def test_inputs_are_the_left_limits_at_the_end_of_a_step() -> None:
+    load = sw.scenario.step(5.0, duration=0.4, start=0.2)
+    course = Course.through(0.4, 0.1, 0.1, load.breaks)
+    inputs = course.inputs(sw.scenario.ramp(2.0, duration=0.4), load)
+    assert inputs[:, :, 0] == pytest.approx(2.0 * np.array([[0, 5, 10], [10, 15, 20], [20, 25, 30], [30, 35, 40]]) / 100)
+    assert inputs[:, :, 1] == pytest.approx(np.full((4, 3), 2.0))
+    assert inputs[:, :, 2].tolist() == [[0.0] * 3, [0.0] * 3, [5.0] * 3, [5.0] * 3]
+
+
+# Runs
+
+
+def test_the_first_sample_is_the_start_and_the_last_the_end() -> None:
+    run = sw.simulate(DRIVE, command(0.0105), dt=1e-3, sample=2e-3)
+    assert run["time"] == pytest.approx([0.0, 2e-3, 4e-3, 6e-3, 8e-3, 0.01, 0.0105], rel=1e-14)
+    assert run["output_angle"][0] == -DRIVE.gear.kinematic_error.error(0.0)
+    assert run["twist"][0] == run["input_speed"][0] == 0.0
+    assert run["command"] == pytest.approx(command(0.0105).value(run["time"]), rel=1e-12)
+
+
+def test_columns_have_their_units_and_the_command_that_of_the_controller() -> None:
+    run = sw.simulate(DRIVE, command(0.01))
+    assert {name: run.unit(name) for name in COLUMNS if name != "command"} == {
+        name: unit for name, unit, _ in _core.outputs if name != "command"
+    }
+    assert run.unit("command") == "rad"
+    assert sw.simulate(DRIVE.replace(control=sw.control.OpenLoop()), command(0.01)).unit("command") == "V"
+
+
+def test_the_load_torque_holds_the_output_back() -> None:
+    """A free drive is accelerated by -T over all its inertia as the output feels it."""
+    rigid = sw.drives.PositionDrive(
+        gear=sw.Gear(
+            kinematics=sw.kinematics.StrainWave(), stiffness=sw.stiffness.Linear(k=1e5), damping=50.0, input_inertia=2e-5
+        ),
+        motor=sw.motor.DC(torque_constant=0.0, inertia=3e-5),
+        load=sw.loads.Inertia(inertia=0.5),
+    )
+    run = sw.simulate(rigid, sw.scenario.constant(0.0, 1.0), dt=1e-4, load_torque=sw.scenario.constant(2.0, 1.0), sample=0.5)
+    acceleration = -2.0 / (0.5 + 100.0**2 * 5e-5)
+    assert np.diff(run["output_speed"][1:]) == pytest.approx(0.5 * acceleration, rel=1e-9)
+    assert run["input_speed"][-1] == pytest.approx(-100.0 * run["output_speed"][-1], rel=1e-9)
+
+
+@drives
+def test_a_run_laid_out_in_pieces_is_one_run(drive: sw.drives.PositionDrive, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = sw.simulate(drive, command(0.2), dt=1e-3, sample=2e-3)
+    monkeypatch.setattr(simulation, "CHUNK", 7)
+    assert same(sw.simulate(drive, command(0.2), dt=1e-3, sample=2e-3), whole)
+
+
+@drives
+def test_a_run_goes_on_where_another_ended_to_the_last_bit(drive: sw.drives.PositionDrive) -> None:
+    course = Course.through(0.25, DT, DT, HELD.breaks)
+    half = len(course.instants) // 2
+    first, middle = _core.simulate(
+        drive, drive.rest(), course.instants[: half + 1], course.inputs(HELD, None)[:half], course.samples[1 : half + 1]
+    )
+    rest = sw.scenario.constant(0.02, 0.25 - course.instants[half])
+    whole, second = sw.simulate(drive, HELD, DT), sw.simulate(drive, rest, DT, start=middle)
+    for row, name in enumerate(COLUMNS):
+        assert np.array_equal(np.append(whole[name][0], first[row]), whole[name][: half + 1]), name
+        assert np.array_equal(second[name], whole[name][half:]), name
+
+
+def test_steps_by_hand_are_the_steps_of_a_run() -> None:
+    state = STICKING.rest()
+    for _ in range(200):
+        state = STICKING.step(state, command=0.02, dt=DT)
+    by_hand = _core.now(STICKING, state, np.array([0.02, 0.0, 0.0]))[:, 0]
+    run = sw.simulate(STICKING, sw.scenario.constant(0.02, 200 * DT), DT)
+    assert by_hand == pytest.approx([run[name][-1] for name in COLUMNS], rel=1e-12)
+
+
+def test_many_drives_come_back_in_their_order() -> None:
+    inertias = [0.5, 0.3, 0.7, 0.4, 0.6, 0.2, 0.9, 0.8, 1.0, 0.1, 0.55]
+    members = [DRIVE.replace(load=DRIVE.load.replace(inertia=inertia)) for inertia in inertias]
+    runs = sw.simulate_many(members, command(0.02))
+    speeds = [run["output_speed"][-1] for run in runs]
+    assert speeds == pytest.approx([sw.simulate(member, command(0.02))["output_speed"][-1] for member in members], rel=1e-12)
+    assert len(set(speeds)) == len(inertias)
+    assert sw.simulate_many([], command(0.02)) == []
+
+
+# Refusals
+
+
+@pytest.mark.parametrize("name", ["dt", "sample"])
+@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf")])
+def test_a_step_or_a_sample_that_is_not_positive_is_refused(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=rf"^{name} = {value} s must lie in \(0, inf\)$"):
+        sw.simulate(DRIVE, command(0.1), **{name: value})
+    with pytest.raises(ValueError, match=rf"^{name} = {value} s must lie in \(0, inf\)$"):
+        sw.simulate_many([DRIVE], command(0.1), **{name: value})
+
+
+def test_a_load_torque_of_another_length_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^load_torque lasts 0\.2 s, command 0\.1 s; both must last equally long$"):
+        sw.simulate(DRIVE, command(0.1), load_torque=sw.scenario.constant(1.0, 0.2))
+
+
+def test_drives_of_different_models_do_not_run_side_by_side() -> None:
+    with pytest.raises(ValueError, match=r"^drives run side by side must choose the same models"):
+        sw.simulate_many([DRIVE, STICKING], command(0.1))
+
+
+DIVERGED = r"left the finite numbers at t = [\d.]+ s \(.*\); take a smaller dt \(now 0\.05 s\)"
+
+
+def diverging(drive: sw.drives.PositionDrive) -> Iterator[Callable[[], object]]:
+    """The same too coarse run, each way there is."""
+    yield lambda: sw.simulate(drive, command(5.0), dt=0.05)
+    yield lambda: sw.simulate_many([drive], command(5.0), dt=0.05)
+    yield lambda: derivatives(drive, command(5.0), [0], 0.05, 0.05)
+
+
+@drives
+def test_a_run_that_diverges_says_when_and_returns_nothing(drive: sw.drives.PositionDrive) -> None:
+    for run in diverging(drive):
+        with pytest.raises(
+            FloatingPointError, match=r"left the finite numbers at t = [\d.]+ s \(.*\); take a smaller dt \(now 0\.05 s\)"
+        ):
+            run()
+
+
+# Long runs
+
+
+def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
+    course = Course.through(10.0, DT, 1.0, np.empty(0))
+    arguments = (DRIVE, DRIVE.rest(), course.instants, course.inputs(command(10.0), None), course.samples[1:])
+    counted: list[int] = []
+    _core.simulate(*arguments, counted.append)
+    assert counted == sorted(set(counted))
+    assert counted[0] == 0
+    assert counted[-1] < len(course.instants)
+
+    def stop(done: int) -> None:
+        raise RuntimeError(f"stopped after {done}")
+
+    with pytest.raises(RuntimeError, match="stopped after 0"):
+        _core.simulate(*arguments, stop)
+
+
+def test_a_progress_bar_changes_nothing() -> None:
+    assert same(sw.simulate(DRIVE, command(0.1), progress=True), sw.simulate(DRIVE, command(0.1)))
+
+
+def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    course = Course.through(300.0, DT, 10.0, np.empty(0))
+    inputs = course.inputs(sw.scenario.constant(0.1, 300.0), None)
+    pressed: list[float] = []
+
+    def press() -> None:
+        pressed.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    try:
+        key = threading.Timer(0.1, press)
+        key.start()
+        with pytest.raises(KeyboardInterrupt):
+            _core.simulate(DRIVE, DRIVE.rest(), course.instants, inputs, course.samples[1:])
+        assert time.monotonic() - pressed[0] < 1.0
+    finally:
+        key.join()
+        signal.signal(signal.SIGINT, before)
