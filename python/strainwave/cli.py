@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from strainwave.gear_set import GearSet
     from strainwave.identify.measurement import Kind
     from strainwave.identify.twin import Twin
+    from strainwave.report.twin import Provenance
 
 REFUSED = 2  # exit code for input that cannot be used
 
@@ -22,6 +25,7 @@ app = typer.Typer(
     help="Strain wave gears: measurements in, a validated model of that gear out.",
     no_args_is_help=True,
     add_completion=False,
+    rich_markup_mode=None,  # plain help: rich alone takes longer to import than the help may take to appear
     pretty_exceptions_enable=False,
 )
 
@@ -62,14 +66,14 @@ def twin(
         recordings = {kind: read_measurement(kind, path, columns, units) for kind, path in files.items()}
         found = identify(start, **recordings, sources={kind: path.name for kind, path in files.items()}, progress=stage)
         stage("report")
-        _write(out, found.gear_set, twin_report(found))
+        _write(out, found.gear_set, twin_report(found, provenance=_provenance(files.values())))
     _summarise(found, out)
 
 
 @app.command()
 def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/demo")) -> None:
     """Identify a gear from published measurements, and simulate published experiments with it."""
-    from strainwave.demo import experiments, published_twin
+    from strainwave.demo import PUBLISHED, experiments, published_twin
     from strainwave.report.twin import twin_report
 
     with _stages() as stage:
@@ -77,7 +81,7 @@ def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Pa
         stage("experiments")
         runs = experiments(found)
         stage("report")
-        _write(out, found.gear_set, twin_report(found, runs))
+        _write(out, found.gear_set, twin_report(found, runs, _provenance(PUBLISHED.iterdir())))
     _summarise(found, out)
 
 
@@ -97,6 +101,13 @@ def _pairs(option: str, values: list[str] | None) -> dict[str, str]:
             raise ValueError(f"{option} {value}: write it as {option} name=value")
         pairs[name] = given
     return pairs
+
+
+def _provenance(files: Iterable[Path]) -> Provenance:
+    from strainwave.report.twin import Provenance
+
+    now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+    return Provenance.of(sorted(files), command=shlex.join(["strainwave", *sys.argv[1:]]), date=now)
 
 
 def _write(folder: Path, gear_set: GearSet, report: str) -> None:

@@ -52,7 +52,10 @@ def published_twin(progress: Callable[[str], None] = lambda stage: None) -> Twin
         GearSet.read(PUBLISHED / "position-control.toml"),
         friction=read_measurement("friction", PUBLISHED / "position-control-friction.csv"),
         torsion=read_measurement("torsion", PUBLISHED / "torsional-stiffness-loop.csv"),
-        sources={"friction": "document P, Table 2 (measured)", "torsion": "document T, Table 2, row 0°"},
+        sources={
+            "friction": "document P, Table 2 (measured)",
+            "torsion": "document T, Table 2, row 0° (another gear; points reconstructed, E-T4)",
+        },
         progress=progress,
     )
 

@@ -21,8 +21,8 @@ class StrainWave:
 
     Parameters
     ----------
-    flexspline_teeth: Teeth of the flexspline z_f, in [2, 1e+05]; default 200
-    circular_spline_teeth: Teeth of the circular spline z_c, in [3, 1e+05]; default 202
+    flexspline_teeth: Teeth of the flexspline z_f, in [2, 100000]; default 200
+    circular_spline_teeth: Teeth of the circular spline z_c, in [3, 100000]; default 202
     fixed: The member that does not turn; the other spline is the output, one of ('circular_spline', 'flexspline'); default 'circular_spline'
 
     Raises

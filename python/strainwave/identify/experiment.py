@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import _core, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive

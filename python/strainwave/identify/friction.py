@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import friction
 from strainwave._core import Gear
 from strainwave.identify.experiment import FrictionTable

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import friction, kinematic_error
 from strainwave.drives import PositionDrive
 from strainwave.identify.experiment import DriveLog

@@ -13,6 +13,7 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import hysteresis, stiffness
 from strainwave._core import Gear
 from strainwave.identify.experiment import TorsionLoop
@@ -74,18 +75,55 @@ def fit_loop(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None =
 
 
 def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str) -> Candidate:
-    cyclic, virgin = _start(loop, training, spring), _start(loop.virgin(), training, spring)
-    start = min(cyclic, virgin, key=lambda s: s.error)
-    model = gear.replace(stiffness=start.spring, hysteresis=start.hysteresis)
-    free = [f"stiffness.{field['name']}" for field in start.spring.fields]
-    if start.hysteresis.stiffness:
-        free += ["hysteresis.stiffness", "hysteresis.breakaway"]
+    starts = [_start(gear, each, training, spring) for each in (loop, loop.virgin())]
+    start = min(starts, key=lambda s: s.error)
     twist_zero = loop.middle if spring == "linear" else None
     experiment = replace(start.loop, torque_zero=start.torque_zero, twist_zero=twist_zero)
-    found = _in_order(fit(model, experiment, free, training=training))
+    found = _refined(start, experiment, training)
     held_out = found.rms(held_out=True)[0]
-    name = f"{spring} spring with {len(start.hysteresis.stiffness)} Maxwell elements"
-    return Candidate(name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+    return Candidate(_name(spring, found.gear), found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+
+
+def _refined(start: _Start, loop: TorsionLoop, training: NDArray[np.bool_]) -> Fit:
+    """The fit, without elements that the loop cannot tell from the spring or from nothing.
+
+    An element that never slips within the loop is a linear spring, and one that holds no torque is none.
+    """
+    spring, elements = start.spring, start.hysteresis
+    half, span = 0.5 * float(np.ptp(loop.twist)), float(np.ptp(loop.torque))
+    while True:
+        free = [f"stiffness.{field['name']}" for field in spring.fields]
+        free += ["hysteresis.stiffness", "hysteresis.breakaway"] if elements.stiffness else []
+        found = _in_order(fit(start.gear.replace(stiffness=spring, hysteresis=elements), loop, free, training=training))
+        fitted = _pairs(found.gear)
+        slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < 0.99 * half * k]
+        if len(slipping) == len(fitted):
+            return found
+        spring = _stiffened(found.gear.stiffness, sum(k for k, f in fitted if f >= 0.99 * half * k))
+        elements = hysteresis.MaxwellSlip(stiffness=[k for k, _ in slipping], breakaway=[f for _, f in slipping])
+
+
+def _pairs(gear: Gear) -> list[tuple[float, float]]:
+    """Stiffness and breakaway of each Maxwell element of a gear."""
+    elements = gear.hysteresis
+    assert isinstance(elements, hysteresis.MaxwellSlip)
+    return list(zip(elements.stiffness, elements.breakaway, strict=True))
+
+
+def _stiffened(spring: Spring, k: float) -> Spring:
+    """A spring in parallel with a linear one of stiffness k."""
+    if isinstance(spring, stiffness.Linear):
+        return spring.replace(k=spring.k + k)
+    if isinstance(spring, stiffness.Cubic):
+        return spring.replace(a1=spring.a1 + k)
+    knees = spring.twist(np.array([spring.t1, spring.t2]))
+    t1, t2 = spring.t1 + k * float(knees[0]), spring.t2 + k * float(knees[1])
+    return stiffness.ThreeSegment(k1=spring.k1 + k, k2=spring.k2 + k, k3=spring.k3 + k, t1=t1, t2=t2)
+
+
+def _name(spring: str, gear: Gear) -> str:
+    count = len(_pairs(gear))
+    return f"{spring.replace('_', '-')} spring with {count} Maxwell element{'s' if count != 1 else ''}"
 
 
 def _in_order(found: Fit) -> Fit:
@@ -104,6 +142,7 @@ Spring = stiffness.Linear | stiffness.Cubic | stiffness.ThreeSegment
 class _Start:
     """Where the refinement starts: the convex problem's answer."""
 
+    gear: Gear
     loop: TorsionLoop
     spring: Spring
     hysteresis: hysteresis.MaxwellSlip
@@ -111,7 +150,7 @@ class _Start:
     error: float
 
 
-def _start(loop: TorsionLoop, training: NDArray[np.bool_], spring: str) -> _Start:
+def _start(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: str) -> _Start:
     from scipy.optimize import nnls
 
     half = 0.5 * float(np.ptp(loop.twist))
@@ -121,22 +160,23 @@ def _start(loop: TorsionLoop, training: NDArray[np.bool_], spring: str) -> _Star
     for knees in _knees(spring, half):
         columns = np.column_stack((_spring_columns(spring, loop.twist - loop.middle, half, knees), plays, _zero_columns(loop)))
         try:
-            weights, error = nnls(columns[training], loop.torque[training])
+            weights, residual = nnls(columns[training], loop.torque[training])
         except RuntimeError:  # the active set cycles; other knees remain
             continue
-        if best is None or error < best[0]:
-            best = float(error), weights, knees
+        if best is None or residual < best[0]:
+            best = float(residual), weights, knees
     if best is None:
         raise ValueError("no spring with Maxwell elements fits this loop")
-    least, weights, knees = best
+    error, weights, knees = best
     count = columns.shape[1] - len(slips) - 2
     torque_zero = float(np.abs(loop.torque).max() * (weights[-2] - weights[-1]))
     return _Start(
+        gear,
         loop,
         _spring(spring, weights[:count], half, knees),
         _elements(weights[count:-2], slips),
         torque_zero,
-        float(error),
+        error,
     )
 
 

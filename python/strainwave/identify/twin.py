@@ -9,10 +9,11 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
-from strainwave.gear_set import Entry, GearSet
+from strainwave.gear_set import NOT_GIVEN, Entry, GearSet
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
 from strainwave.identify.fit import Estimate, Fit
 from strainwave.identify.friction import fit_friction
@@ -205,7 +206,7 @@ def _from_torsion(gear: Gear, recording: Recording, source: str) -> Evidence:
     loop = TorsionLoop.of(recording, gear)
     best, *others = fit_loop(loop, gear, kept_back(len(loop.twist)))
     remarks = [
-        f"valid up to {np.abs(loop.torque).max():.4g} N.m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
+        f"valid up to {np.abs(loop.torque).max():.4g} N·m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
     ]
     if "input_torque" in recording:
         remarks.append("measured at the input with the output locked: friction of the wave generator is inside the loop")
@@ -221,7 +222,10 @@ def _from_log(drive: PositionDrive, recording: Recording, source: str, known: se
     free = free_parameters(log, drive, friction_known="friction" in known, torsion_known="torsion" in known)
     found = fit_log(log, drive, free)
     both = {"input_angle", "output_angle"} <= set(log.channels)
-    remarks = ["validated on the last 30 % of the record"]
+    remarks = [
+        "validated on the last 30 % of the record",
+        "standard deviations take the parameters kept as right; where these are wrong, those fitted here are off by more",
+    ]
     if not both:
         remarks.append("one encoder only: kinematic error and stiffness are not seen")
     name = ", ".join(path.removeprefix("gear.") for path in free) or "nothing free"
@@ -253,7 +257,9 @@ def _verdicts(start: GearSet, gear: Gear, evidence: Sequence[Evidence]) -> list[
     before, estimates = _parameters(start.gear), _estimates(evidence)
     verdicts = []
     for path, (value, unit) in _parameters(gear).items():
-        earlier = before.get(path, (np.nan, unit))[0]
+        # the elements of a fitted sequence are new ones: their places say nothing of the old
+        known = path in before and not ("[" in path and path in estimates)
+        earlier = before[path][0] if known else np.nan
         if path in estimates:
             e, index, estimate = estimates[path]
             reason = _why_not(e, index, estimate)
@@ -262,7 +268,9 @@ def _verdicts(start: GearSet, gear: Gear, evidence: Sequence[Evidence]) -> list[
         else:
             entry = start.sources.get(path)
             why = "no measurement given speaks of it" + (f"; {entry.source}" if entry is not None else "")
-            if value != earlier and not np.isnan(earlier):
+            if path not in before:
+                why = "set by the method of the fit beside it"
+            elif value != earlier:
                 why = "follows from the parameters fitted beside it; no measurement given speaks of it"
             verdicts.append(Verdict(path, unit, earlier, value, np.nan, "kept", why))
     return verdicts
@@ -274,9 +282,11 @@ def _why_not(evidence: Evidence, index: int, estimate: Estimate) -> str:
         return f"{evidence.source} stays the same when it changes"
     if estimate.at_limit:
         return f"ended at the limit of what it may be; {evidence.source} pulls it beyond"
-    if estimate.value == 0.0 or estimate.sigma > UNTOLD * abs(estimate.value):
-        share = np.inf if estimate.value == 0.0 else estimate.sigma / abs(estimate.value)
-        return f"standard deviation is {100 * share:.0f} % of the value"
+    if ".phase[" in estimate.path:
+        if estimate.sigma > UNTOLD:
+            return f"standard deviation is {estimate.sigma:.2g} rad"
+    elif estimate.sigma > UNTOLD * abs(estimate.value):
+        return "standard deviation exceeds half the value"
     correlation = np.abs(evidence.fit.correlation[index])
     correlation[index] = 0.0
     partner = int(np.nanargmax(correlation)) if np.isfinite(correlation).any() else index
@@ -292,7 +302,7 @@ def _sources(start: GearSet, verdicts: Sequence[Verdict]) -> dict[str, Entry]:
     )  # the rest of the drive, and counts of teeth, are no numbers of the gear that a fit can touch
     sources = {path: entry for path, entry in start.sources.items() if path not in numbers}
     for verdict in verdicts:
-        if verdict.state == "kept" and verdict.path in start.sources:
+        if verdict.state == "kept" and verdict.value == verdict.start and verdict.path in start.sources:
             sources[verdict.path] = start.sources[verdict.path]
         elif verdict.state == "kept":
             sources[verdict.path] = Entry(source=f"assumed: {verdict.why}")
@@ -307,14 +317,28 @@ def _contradictions(start: GearSet, evidence: Sequence[Evidence]) -> list[Contra
     """Identified parameters that a measured or published starting value excludes. Assumed values contradict nothing."""
     before, found = _parameters(start.gear), []
     for path, (e, index, estimate) in _estimates(evidence).items():
-        entry = start.sources.get(path)
-        if entry is None or path not in before or entry.source.startswith("assumed") or _why_not(e, index, estimate):
-            continue
-        earlier, unit = before[path]
-        doubt = np.hypot(estimate.sigma, np.hypot((entry.spread or 0.0) * earlier, entry.uncertainty or 0.0))
-        distance = abs(estimate.value - earlier) / doubt if doubt > 0.0 else np.inf
-        if distance > CONTRADICTION:
-            found.append(
-                Contradiction(path, unit, earlier, entry.source, estimate.value, estimate.sigma, float(distance), e.source)
-            )
-    return found
+        if path in before and "[" not in path and not _why_not(e, index, estimate):
+            found.append(_compared(path, *before[path], start.sources[path], estimate, e))
+        elif path.startswith("gear.stiffness.") and index == 0 and path not in before:
+            found.append(_compared_springs(start, estimate, e))
+    return [contradiction for contradiction in found if contradiction is not None]
+
+
+def _compared(
+    path: str, earlier: float, unit: str, entry: Entry, estimate: Estimate, evidence: Evidence
+) -> Contradiction | None:
+    """The contradiction between an earlier value and an estimate, if there is one."""
+    if entry.source.startswith("assumed") or entry.source == NOT_GIVEN:
+        return None
+    doubt = np.hypot(estimate.sigma, np.hypot((entry.spread or 0.0) * earlier, entry.uncertainty or 0.0))
+    distance = abs(estimate.value - earlier) / doubt if doubt > 0.0 else np.inf
+    if distance <= CONTRADICTION:
+        return None
+    return Contradiction(path, unit, earlier, entry.source, estimate.value, estimate.sigma, float(distance), evidence.source)
+
+
+def _compared_springs(start: GearSet, estimate: Estimate, evidence: Evidence) -> Contradiction | None:
+    """Springs of different kinds, compared by their stiffness at zero twist, which is the first parameter of each."""
+    first = f"gear.stiffness.{start.gear.stiffness.fields[0]['name']}"
+    earlier = start.gear.stiffness.tangent(0.0)
+    return _compared(f"gear.{estimate.path}", earlier, estimate.unit, start.sources[first], estimate, evidence)

@@ -45,7 +45,7 @@ class Provenance:
         Raises:
             OSError: a file cannot be read
         """
-        digests = {str(file): hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
+        digests = {Path(file).name: hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
         return cls(date, command, digests)
 
 

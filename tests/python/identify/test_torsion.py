@@ -34,7 +34,7 @@ def loop(spring: object, twist: Array, *, virgin: bool = False) -> TorsionLoop:
 def test_each_spring_is_recognised_by_data_kept_back(kind: str) -> None:
     measured = loop(SPRINGS[kind], cycle())
     best = fit_loop(measured, sw.Gear(), kept_back(len(measured.twist)))[0]
-    assert best.name.startswith(kind)
+    assert best.name.startswith(kind.replace("_", "-"))
     assert best.error < 2e-3 * np.ptp(measured.torque)
 
 
@@ -85,3 +85,15 @@ def test_what_is_kept_back_comes_in_blocks_over_the_whole_loop() -> None:
     training = kept_back(400)
     assert training.sum() == 300
     assert np.count_nonzero(np.diff(training.astype(int))) == 9  # five blocks, the last one at the end
+
+
+def test_no_element_that_cannot_slip_within_the_loop_is_left_in_the_model() -> None:
+    noise = 0.02 * np.random.default_rng(11).normal(size=197)
+    for kind, spring in SPRINGS.items():
+        measured = loop(spring, cycle())
+        noisy = TorsionLoop(measured.twist, measured.torque + noise[: len(measured.torque)])
+        for candidate in fit_loop(noisy, sw.Gear()):
+            elements = candidate.fit.gear.hysteresis
+            slips = np.array(elements.breakaway) / np.array(elements.stiffness)
+            assert np.all(slips < 0.5 * np.ptp(measured.twist)), kind
+            assert all(np.isfinite(e.sigma) for e in candidate.fit.estimates if e.path.startswith("hysteresis")), kind

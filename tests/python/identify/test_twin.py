@@ -120,3 +120,20 @@ def test_a_log_needs_motor_and_load() -> None:
     )
     with pytest.raises(ValueError, match="motor"):
         sw.twin(sw.GearSet.read("hfuc-25-100"), log=log)
+
+
+def test_springs_of_different_kinds_are_compared_by_their_stiffness_at_zero_twist() -> None:
+    soft = loop()
+    torque = soft["torque"] - 2.7e4 * soft["twist"]  # a spring of 3000 N.m/rad where the catalogue has 31 000
+    recording = sw.Recording({"twist": soft["twist"], "torque": torque}, {"twist": "rad", "torque": "N.m"})
+    found = sw.twin(sw.GearSet.read("hfuc-25-100"), torsion=recording)
+    (contradiction,) = (c for c in found.contradictions if "stiffness" in c.path)
+    assert contradiction.earlier == 31e3
+    assert contradiction.measured == pytest.approx(3e3, rel=0.05)
+
+
+def test_a_value_that_follows_from_a_fit_does_not_keep_its_old_source(found: sw.Twin) -> None:
+    path = "gear.friction_input.breakaway"
+    assert found.gear_set.gear.friction_input.breakaway != found.start.gear.friction_input.breakaway
+    assert found.gear_set.sources[path].source != found.start.sources[path].source
+    assert "follows from the parameters fitted" in found.gear_set.sources[path].source

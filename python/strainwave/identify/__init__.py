@@ -1,0 +1,1 @@
+"""Identification: what measurements say of a gear, and how sure they are."""
