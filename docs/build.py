@@ -29,7 +29,8 @@ def gather() -> None:
 def main(out: str) -> int:
     gather()
     shutil.rmtree(out, ignore_errors=True)
-    return sphinx(["--quiet", "--fail-on-warning", "--keep-going", "-d", str(SOURCE) + ".doctrees", str(SOURCE), out])
+    code: int = sphinx(["--quiet", "--fail-on-warning", "--keep-going", "-d", str(SOURCE) + ".doctrees", str(SOURCE), out])
+    return code
 
 
 if __name__ == "__main__":

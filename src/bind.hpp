@@ -30,8 +30,10 @@ inline std::string with_unit(double x, const char* unit) {
 /// "[0, inf)": what a field may be.
 inline std::string limits(const Field& field) {
     const bool open_low = field.min <= -unbounded, open_high = field.max >= unbounded, positive = field.min == smallest;
-    return (open_low ? "(-inf" : positive ? "(0" : "[" + shortest(field.min)) + ", " +
-           (open_high ? "inf)" : shortest(field.max) + "]");
+    return (open_low   ? "(-inf"
+            : positive ? "(0"
+                       : "[" + shortest(field.min)) +
+           ", " + (open_high ? "inf)" : shortest(field.max) + "]");
 }
 
 inline std::string text_of(nb::handle value) { return nb::cast<std::string>(nb::repr(value)); }
@@ -48,7 +50,8 @@ struct Reader {
         if (nb::isinstance<nb::bool_>(value) || nb::isinstance<nb::str>(value) || !nb::try_cast<double>(value, x))
             refuse_type(field, "a number", value);
         if (!(x >= field.min && x <= field.max) || std::isinf(x))
-            throw nb::value_error((owner + "." + name + " = " + with_unit(x, field.unit) + " must lie in " + limits(field)).c_str());
+            throw nb::value_error(
+                (owner + "." + name + " = " + with_unit(x, field.unit) + " must lie in " + limits(field)).c_str());
         return x;
     }
 
@@ -60,7 +63,8 @@ struct Reader {
             return {sequence<decltype(T{}.slot)>(value, field)};
         } else if constexpr (Described<T>) {
             T part{};
-            if (!nb::try_cast<T>(value, part)) refuse_type(field, "a " + nb::cast<std::string>(nb::type<T>().attr("__name__")), value);
+            if (!nb::try_cast<T>(value, part))
+                refuse_type(field, "a " + nb::cast<std::string>(nb::type<T>().attr("__name__")), value);
             return part;
         } else if constexpr (is_sequence<T> || is_array<T>) {
             return sequence<T>(value, field);
@@ -193,7 +197,9 @@ std::string documentation() {
         text += "; default " + text_of(to_python(member)) + "\n";
     };
     M::fields(model, describe);
-    text += "\nRaises\n------\nTypeError: an unknown parameter, or one of the wrong kind\nValueError: a number that is not finite or out of its range\n";
+    text +=
+        "\nRaises\n------\nTypeError: an unknown parameter, or one of the wrong kind\nValueError: a number that is not finite or "
+        "out of its range\n";
     if constexpr (requires { M::source; }) text += std::string("\nSource\n------\n") + M::source + "\n";
     return text;
 }
@@ -262,10 +268,10 @@ nb::tuple schema() {
         entry["min"] = field.min <= -unbounded ? nb::none() : nb::object(nb::float_(field.min == smallest ? 0.0 : field.min));
         entry["max"] = field.max >= unbounded ? nb::none() : nb::object(nb::float_(field.max));
         entry["kind"] = is_sequence<T> || is_array<T> || is_slots<T> ? "sequence"
-                        : is_choice<T> || Described<T>              ? "part"
-                        : std::is_enum_v<T>                         ? "choice"
-                        : std::is_same_v<T, int>                    ? "count"
-                                                                    : "number";
+                        : is_choice<T> || Described<T>               ? "part"
+                        : std::is_enum_v<T>                          ? "choice"
+                        : std::is_same_v<T, int>                     ? "count"
+                                                                     : "number";
         list.append(entry);
     });
     return nb::tuple(list);
@@ -276,28 +282,37 @@ template <class M>
 nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string& name) {
     static_assert(fully_described<M>, "every member needs a Field");
     auto c = nb::class_<M>(scope, python_name, kept(documentation<M>()));
-    c.def("__init__", [name](M* self, const nb::kwargs& values) { new (self) M(replaced(M{}, values, name)); },
-          nb::sig(kept(signature<M>("__init__", "None"))));
-    c.def("replace", [name](const M& self, const nb::kwargs& values) { return replaced(self, values, name); },
-          nb::sig(kept(signature<M>("replace", python_type<M>(false)))), "The same with the named parameters changed.");
+    c.def(
+        "__init__", [name](M* self, const nb::kwargs& values) { new (self) M(replaced(M{}, values, name)); },
+        nb::sig(kept(signature<M>("__init__", "None"))));
+    c.def(
+        "replace", [name](const M& self, const nb::kwargs& values) { return replaced(self, values, name); },
+        nb::sig(kept(signature<M>("replace", python_type<M>(false)))), "The same with the named parameters changed.");
     const M defaults{};
     M::fields(defaults, [&]<class T>(const T& member, const Field& field) {
         const auto offset = reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&defaults);
         const std::string unit = *field.unit && std::strcmp(field.unit, "1") != 0 ? std::string(" [") + field.unit + "]" : "";
         c.def_prop_ro(
             field.name,
-            [offset](const M& self) { return to_python(*reinterpret_cast<const T*>(reinterpret_cast<const char*>(&self) + offset)); },
+            [offset](const M& self) {
+                return to_python(*reinterpret_cast<const T*>(reinterpret_cast<const char*>(&self) + offset));
+            },
             nb::sig(kept(std::string("def ") + field.name + "(self) -> " + python_type<T>(false))), kept(field.doc + unit));
     });
     c.def("__repr__", [python_name](const M& self) { return represented(self, python_name); });
-    c.def("__eq__", [](const M& self, nb::handle other) {
-        M right{};
-        return nb::isinstance<M>(other) && nb::try_cast<M>(other, right) && parts_of(self) == parts_of(right);
-    }, nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"));
+    c.def(
+        "__eq__",
+        [](const M& self, nb::handle other) {
+            M right{};
+            return nb::isinstance<M>(other) && nb::try_cast<M>(other, right) && parts_of(self) == parts_of(right);
+        },
+        nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"));
     c.def("__hash__", [](const M& self) { return nb::hash(nb::tuple(members(self).values())); });
     c.def("__getstate__", [](const M& self) { return members(self); }, nb::sig("def __getstate__(self) -> dict[str, object]"));
-    c.def("__setstate__", [name](M* self, const nb::dict& state) { new (self) M(replaced(M{}, nb::borrow<nb::kwargs>(state), name)); },
-          nb::sig("def __setstate__(self, state: dict[str, object], /) -> None"));
+    c.def(
+        "__setstate__",
+        [name](M* self, const nb::dict& state) { new (self) M(replaced(M{}, nb::borrow<nb::kwargs>(state), name)); },
+        nb::sig("def __setstate__(self, state: dict[str, object], /) -> None"));
     c.attr("name") = name;
     if constexpr (requires { M::source; }) c.attr("source") = M::source;
     c.attr("fields") = schema<M>();

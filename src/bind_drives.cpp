@@ -68,7 +68,8 @@ Values run_many(const std::vector<Drive>& drives, const Numbers& instants, const
 nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Numbers& inputs, const Flags& keep,
                           const std::vector<int>& parameters, const nb::object& progress) {
     const Request request(instants, inputs, keep);
-    Values out = array({std::size_t(channels), request.kept}), slopes = array({parameters.size(), std::size_t(channels), request.kept});
+    Values out = array({std::size_t(channels), request.kept}),
+           slopes = array({parameters.size(), std::size_t(channels), request.kept});
     const Pause pause = pausing(progress);
     {
         nb::gil_scoped_release free;
@@ -105,20 +106,29 @@ nb::tuple curve(const AnyGear<double>& gear, const Numbers& path, const std::vec
 template <class M>
 void bind_numbers(nb::module_& core) {
     const std::string type = python_type<M>(false);
-    core.def("parameters", [](const M& model) {
-        nb::list list;
-        for (const Parameter& p : parameters_of(model))
-            list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc, p.field.min <= -unbounded ? -HUGE_VAL : p.field.min,
-                                       p.field.max >= unbounded ? HUGE_VAL : p.field.max));
-        return list;
-    }, nb::arg("model"), nb::sig(kept("def parameters(model: " + type + ") -> list[tuple[str, float, str, str, float, float]]")),
-    "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
-    core.def("with_numbers", [](const M& model, const std::vector<double>& numbers) {
-        const Parts parts = parts_of(model);
-        if (numbers.size() != parts.numbers.size()) throw nb::value_error("as many numbers as the model has parameters are needed");
-        return assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
-    }, nb::arg("model"), nb::arg("numbers"), nb::sig(kept("def with_numbers(model: " + type + ", numbers: collections.abc.Sequence[float]) -> " + type)),
-    "The same models with other numbers, in the order of `parameters`.");
+    core.def(
+        "parameters",
+        [](const M& model) {
+            nb::list list;
+            for (const Parameter& p : parameters_of(model))
+                list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc,
+                                           p.field.min <= -unbounded ? -HUGE_VAL : p.field.min,
+                                           p.field.max >= unbounded ? HUGE_VAL : p.field.max));
+            return list;
+        },
+        nb::arg("model"), nb::sig(kept("def parameters(model: " + type + ") -> list[tuple[str, float, str, str, float, float]]")),
+        "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
+    core.def(
+        "with_numbers",
+        [](const M& model, const std::vector<double>& numbers) {
+            const Parts parts = parts_of(model);
+            if (numbers.size() != parts.numbers.size())
+                throw nb::value_error("as many numbers as the model has parameters are needed");
+            return assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
+        },
+        nb::arg("model"), nb::arg("numbers"),
+        nb::sig(kept("def with_numbers(model: " + type + ", numbers: collections.abc.Sequence[float]) -> " + type)),
+        "The same models with other numbers, in the order of `parameters`.");
 }
 
 template <template <class> class... Law>
@@ -138,47 +148,57 @@ void bind_drives(nb::module_& core) {
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
     bind<Drive::Motion>(core, "Motion", "motion");
     bind<Drive::State>(core, "State", "state");
-    drive.def("rest", [](const Drive& self) { return self.rest(); },
-              "The state at rest, untwisted and without history, input angle 0.");
-    drive.def("step",
-              [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque, double dt) {
-                  const Input<double> u{command, command_rate, load_torque}, middle{command + 0.5 * dt * command_rate, command_rate, load_torque},
-                      end{command + dt * command_rate, command_rate, load_torque};
-                  return step<double>(self, state, Interval<double>{u, middle, end}, dt);
-              },
-              nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0, nb::arg("dt"),
-              "The state `dt` [s] later, the command moving at `command_rate`.");
+    drive.def(
+        "rest", [](const Drive& self) { return self.rest(); }, "The state at rest, untwisted and without history, input angle 0.");
+    drive.def(
+        "step",
+        [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque, double dt) {
+            const Input<double> u{command, command_rate, load_torque},
+                middle{command + 0.5 * dt * command_rate, command_rate, load_torque},
+                end{command + dt * command_rate, command_rate, load_torque};
+            return step<double>(self, state, Interval<double>{u, middle, end}, dt);
+        },
+        nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
+        nb::arg("dt"), "The state `dt` [s] later, the command moving at `command_rate`.");
 
     nb::list outputs;
     const Output<double> output{};
-    Output<double>::fields(output, [&](const double&, const Field& field) { outputs.append(nb::make_tuple(field.name, field.unit, field.doc)); });
+    Output<double>::fields(
+        output, [&](const double&, const Field& field) { outputs.append(nb::make_tuple(field.name, field.unit, field.doc)); });
     core.attr("outputs") = nb::tuple(outputs);
 
 #define SW_COURSE "instants: " SW_ARRAY ", inputs: " SW_ARRAY ", keep: numpy.typing.NDArray[numpy.uint8]"
 #define SW_PROGRESS ", progress: collections.abc.Callable[[int], None] | None = None"
     core.def("simulate", &run_one, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE SW_PROGRESS ") -> tuple[" SW_ARRAY ", State]"),
+             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE SW_PROGRESS
+                     ") -> tuple[" SW_ARRAY ", State]"),
              "Outputs, shape (channels, kept), and the state at the end.");
     core.def("simulate_packed", &run_many, nb::arg("drives"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate_packed(drives: collections.abc.Sequence[strainwave.drives.PositionDrive], " SW_COURSE SW_PROGRESS ") -> " SW_ARRAY),
+             nb::sig("def simulate_packed(drives: collections.abc.Sequence[strainwave.drives.PositionDrive], " SW_COURSE SW_PROGRESS
+                     ") -> " SW_ARRAY),
              "Outputs from rest, shape (drives, channels, kept).");
     core.def("differentiate", &run_derivatives, nb::arg("drive"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("parameters"), nb::arg("progress").none() = nb::none(),
-             nb::sig("def differentiate(drive: strainwave.drives.PositionDrive, " SW_COURSE ", parameters: collections.abc.Sequence[int]" SW_PROGRESS ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             nb::sig("def differentiate(drive: strainwave.drives.PositionDrive, " SW_COURSE
+                     ", parameters: collections.abc.Sequence[int]" SW_PROGRESS ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Outputs from rest, shape (channels, kept), and derivatives, shape (parameters, channels, kept).");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
              nb::sig("def now(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> " SW_ARRAY),
              "Outputs in `state`, shape (channels, 1).");
     core.def("now_derivatives", &now_derivatives, nb::arg("drive"), nb::arg("inputs"), nb::arg("parameters"),
-             nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY
+                     ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Outputs at rest and their derivatives, as `differentiate` gives them for one sample.");
     core.def("differentiate_loop", &curve<differentiate_loop>, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
-             nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
-             "Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape (parameters, n).");
+             nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY
+                     ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             "Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape "
+             "(parameters, n).");
     core.def("differentiate_steady", &curve<differentiate_steady>, nb::arg("gear"), nb::arg("speed"), nb::arg("parameters"),
-             nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY
+                     ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).");
     bind_numbers<Gear>(core);
     bind_numbers<Drive>(core);

@@ -22,7 +22,8 @@ M seeded(const Parts& parts, const std::vector<int>& parameters, std::size_t fir
 }
 
 /// Writes sample k of `kept`: values, and derivatives by the parameters number `first` and following.
-void write(const Output<Slope>& output, std::size_t first, std::size_t count, std::size_t k, std::size_t kept, double* out, double* slopes) {
+void write(const Output<Slope>& output, std::size_t first, std::size_t count, std::size_t k, std::size_t kept, double* out,
+           double* slopes) {
     const auto values = flattened<Slope>(output);
     for (int c = 0; c < channels; ++c) {
         out[c * kept + k] = values[c].value;
@@ -45,16 +46,18 @@ void differentiate(const Drive& drive, const Course& course, const std::vector<i
     }
 }
 
-void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out, double* slopes) {
+void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
+                         double* slopes) {
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
-        write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque)}), first, parameters.size(), 0, 1, out, slopes);
+        write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque)}), first, parameters.size(),
+              0, 1, out, slopes);
     }
 }
 
-void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters, double* out,
-                        double* slopes) {
+void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
+                        double* out, double* slopes) {
     const Parts parts = parts_of(gear);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyGear<Slope>>(parts, parameters, first);
@@ -63,20 +66,22 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
             if (i > 0) held = dual.hysteresis.advance(held, Slope(twist[i] - twist[i - 1]));
             const Slope torque = dual.stiffness.torque(Slope(twist[i])) + dual.hysteresis.torque(held, Slope(0.0));
             out[i] = torque.value;
-            for (std::size_t p = first; p < first + width && p < parameters.size(); ++p) slopes[p * n + i] = torque.slope[p - first];
+            for (std::size_t p = first; p < first + width && p < parameters.size(); ++p)
+                slopes[p * n + i] = torque.slope[p - first];
         }
     }
 }
 
-void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters, double* out,
-                          double* slopes) {
+void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters,
+                          double* out, double* slopes) {
     const Parts parts = parts_of(gear);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyGear<Slope>>(parts, parameters, first);
         for (std::size_t i = 0; i < n; ++i) {
             const Slope torque = dual.friction_input.visit([&](const auto& law) { return friction::steady(law, Slope(speed[i])); });
             out[i] = torque.value;
-            for (std::size_t p = first; p < first + width && p < parameters.size(); ++p) slopes[p * n + i] = torque.slope[p - first];
+            for (std::size_t p = first; p < first + width && p < parameters.size(); ++p)
+                slopes[p * n + i] = torque.slope[p - first];
         }
     }
 }

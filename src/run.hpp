@@ -11,7 +11,7 @@ namespace strainwave::host {
 /// The command over `steps` steps: instants[0..steps], and per step the inputs at its start, middle and end.
 struct Course {
     const double* instants;
-    const double* inputs;  ///< (steps, 3, 3): command, command_rate, load_torque
+    const double* inputs;      ///< (steps, 3, 3): command, command_rate, load_torque
     const std::uint8_t* keep;  ///< (steps): whether to record the end of the step
     std::size_t steps;
 };

@@ -27,7 +27,8 @@ void simulate_packed(const std::vector<Drive>& drives, const Course& course, dou
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
 
 /// The outputs of a drive at rest, and their derivatives as `differentiate` gives them, for one sample.
-void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out, double* slopes);
+void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
+                         double* slopes);
 
 /// One trajectory from rest and its derivatives with respect to the numbered parameters of the drive.
 /// Writes values to out[c * kept + k], derivatives to slopes[(p * channels + c) * kept + k].
@@ -35,11 +36,11 @@ void differentiate(const Drive& drive, const Course& course, const std::vector<i
                    std::size_t kept, const Pause& pause);
 
 /// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i].
-void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters, double* out,
-                        double* slopes);
+void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
+                        double* out, double* slopes);
 
 /// Steady friction torque at the input; derivatives in slopes[p * n + i].
-void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters, double* out,
-                          double* slopes);
+void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters,
+                          double* out, double* slopes);
 
 }  // namespace strainwave::host

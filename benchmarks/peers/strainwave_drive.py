@@ -21,9 +21,7 @@ def prepare(step: float) -> Callable[[], Array]:
     phase = [p + math.pi for p in reference.ERROR_PHASE]
     gear = sw.Gear(
         kinematics=sw.kinematics.PlainRatio(reduction=reference.RATIO),
-        kinematic_error=sw.kinematic_error.Fourier(
-            order=list(orders), amplitude=list(reference.ERROR_AMPLITUDE), phase=phase
-        ),
+        kinematic_error=sw.kinematic_error.Fourier(order=list(orders), amplitude=list(reference.ERROR_AMPLITUDE), phase=phase),
         stiffness=sw.stiffness.Cubic(a1=reference.STIFFNESS_LINEAR, a3=reference.STIFFNESS_CUBIC),
         hysteresis=sw.hysteresis.MaxwellSlip(
             stiffness=[reference.ELEMENT_STIFFNESS] * reference.ELEMENTS,

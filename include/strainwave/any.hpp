@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <variant>
 
-/// Host only: a model chosen at run time that is itself a model. Physics sees one more static type, so code grows with the sum of the
-/// models, not with their product.
+/// Host only: a model chosen at run time that is itself a model. Physics sees one more static type, so code grows with the sum of
+/// the models, not with their product.
 namespace strainwave {
 
 /// The state of whichever model was chosen.
@@ -54,17 +54,18 @@ struct Choice {
     /// The same choice, of laws rearranged for speed; no choice any more where all of them come out alike.
     constexpr auto compile() const {
         using First = decltype(compiled(std::get<0>(model)));
-        if constexpr (!requires { typename First::State; } && (std::is_same_v<First, decltype(compiled(std::declval<Law>()))> && ...))
+        if constexpr (!requires { typename First::State; } &&
+                      (std::is_same_v<First, decltype(compiled(std::declval<Law>()))> && ...))
             return visit([](const auto& law) { return compiled(law); });
         else
             return visit([](const auto& law) { return Choice<S, decltype(compiled(std::declval<Law>()))...>{compiled(law)}; });
     }
 
 // Calls the verb of the model chosen, with its own state in place of the slots.
-#define SW_VERB(verb)                                                                                        \
-    template <class... Arguments>                                                                            \
-    constexpr auto verb(const Arguments&... arguments) const {                                               \
-        return visit([&](const auto& law) { return stored(law, law.verb(own(law, arguments)...)); });        \
+#define SW_VERB(verb)                                                                                 \
+    template <class... Arguments>                                                                     \
+    constexpr auto verb(const Arguments&... arguments) const {                                        \
+        return visit([&](const auto& law) { return stored(law, law.verb(own(law, arguments)...)); }); \
     }
     SW_VERB(ratio)
     SW_VERB(inverse_ratio)
@@ -166,7 +167,6 @@ using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::
                      AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>, AnyOf<S, friction::Models>>;
 
 template <class S>
-using AnyPositionDrive =
-    PositionDrive<S, AnyGear<S>, AnyOf<S, motor::Models>, AnyOf<S, control::Models>, AnyOf<S, load::Models>>;
+using AnyPositionDrive = PositionDrive<S, AnyGear<S>, AnyOf<S, motor::Models>, AnyOf<S, control::Models>, AnyOf<S, load::Models>>;
 
 }  // namespace strainwave

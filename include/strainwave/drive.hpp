@@ -131,7 +131,8 @@ struct PositionDrive {
     }
 
     constexpr auto compile() const {
-        return PositionDrive<S, decltype(gear.compile()), decltype(compiled(motor)), Control, Load>{gear.compile(), compiled(motor), control, load};
+        return PositionDrive<S, decltype(gear.compile()), decltype(compiled(motor)), Control, Load>{gear.compile(), compiled(motor),
+                                                                                                    control, load};
     }
 
     using FrictionInput = decltype(Gear{}.friction_input);
@@ -181,7 +182,8 @@ struct PositionDrive {
         rate.output_speed =
             moving(output, flow.output_balance - gear.friction_output.torque(y.friction_output, output)) / inertia_of(load);
         if constexpr (friction::Bristle<FrictionInput>) rate.friction_input = gear.friction_input.rate(y.friction_input, input);
-        if constexpr (friction::Bristle<FrictionOutput>) rate.friction_output = gear.friction_output.rate(y.friction_output, output);
+        if constexpr (friction::Bristle<FrictionOutput>)
+            rate.friction_output = gear.friction_output.rate(y.friction_output, output);
         return flow;
     }
 
@@ -189,8 +191,10 @@ struct PositionDrive {
     constexpr Motion decay(const State& x) const {
         Motion rates{};
         rates.motor = motor.decay();
-        if constexpr (friction::Bristle<FrictionInput>) rates.friction_input = gear.friction_input.decay(contact_input(x, x.motion));
-        if constexpr (friction::Bristle<FrictionOutput>) rates.friction_output = gear.friction_output.decay(contact_output(x, x.motion));
+        if constexpr (friction::Bristle<FrictionInput>)
+            rates.friction_input = gear.friction_input.decay(contact_input(x, x.motion));
+        if constexpr (friction::Bristle<FrictionOutput>)
+            rates.friction_output = gear.friction_output.decay(contact_output(x, x.motion));
         return rates;
     }
 
@@ -251,7 +255,9 @@ struct PositionDrive {
     }
 
     constexpr friction::Contact<S> contact_input(const State& x, const Motion& y) const { return {y.input_speed, x.sliding_input}; }
-    constexpr friction::Contact<S> contact_output(const State& x, const Motion& y) const { return {y.output_speed, x.sliding_output}; }
+    constexpr friction::Contact<S> contact_output(const State& x, const Motion& y) const {
+        return {y.output_speed, x.sliding_output};
+    }
 
     constexpr auto mesh(const State& x, const Motion& y) const {
         return gear.mesh({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed, x.hysteresis, x.held_twist);
@@ -264,10 +270,20 @@ struct PositionDrive {
         const S voltage = control.voltage(y.control, reference(x, y, u));
         const S output_angle = this->output_angle(x, y);
         const S load_torque = load.torque(output_angle) + u.load_torque;
-        return {u.command, input_angle(x, y), y.input_speed, output_angle, y.output_speed, mesh.twist, mesh.error,
-                y.transmission_error, mesh.torque, motor.current(y.motor, voltage, y.input_speed), voltage,
+        return {u.command,
+                input_angle(x, y),
+                y.input_speed,
+                output_angle,
+                y.output_speed,
+                mesh.twist,
+                mesh.error,
+                y.transmission_error,
+                mesh.torque,
+                motor.current(y.motor, voltage, y.input_speed),
+                voltage,
                 holding(contact_input(x, y), flow.input_balance, gear.friction_input.torque(y.friction_input, contact_input(x, y))),
-                holding(contact_output(x, y), flow.output_balance, gear.friction_output.torque(y.friction_output, contact_output(x, y))),
+                holding(contact_output(x, y), flow.output_balance,
+                        gear.friction_output.torque(y.friction_output, contact_output(x, y))),
                 load_torque};
     }
 

@@ -85,9 +85,13 @@ struct Counter {
     int count = 0;
     constexpr void operator()(const S&, const Field&) { ++count; }
     template <int n>
-    constexpr void operator()(const Array<S, n>&, const Field&) { count += n; }
+    constexpr void operator()(const Array<S, n>&, const Field&) {
+        count += n;
+    }
     template <Described T>
-    constexpr void operator()(const T& part, const Field&) { T::fields(part, *this); }
+    constexpr void operator()(const T& part, const Field&) {
+        T::fields(part, *this);
+    }
 };
 
 /// Collects the addresses of scalars.

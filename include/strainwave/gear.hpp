@@ -14,7 +14,8 @@ constexpr auto compiled(const Law& law) {
         return law;
 }
 
-template <class S, class Kinematics, class KinematicError, class Stiffness, class Hysteresis, class FrictionInput, class FrictionOutput>
+template <class S, class Kinematics, class KinematicError, class Stiffness, class Hysteresis, class FrictionInput,
+          class FrictionOutput>
 struct Gear {
     Kinematics kinematics{};
     KinematicError kinematic_error{};
@@ -26,14 +27,15 @@ struct Gear {
     S input_inertia{0.0};
 
     static constexpr auto name = "gear";
-    static constexpr auto source = "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)";
+    static constexpr auto source =
+        "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)";
     static constexpr auto doc = R"(
         One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at both shafts.
 
         .. math:: \delta = \theta_{in}/i - \theta_{out} - e(\theta_{in}), \qquad
                   T = T_{stiffness}(\delta) + T_{hysteresis}(\delta, \text{history}) + c\,\dot\delta
 
-        T acts on the output and, as T (1/i - e'(\theta_{in})), on the input. The e' term is the reaction of the error on the
+        T acts on the output and, as T (1/i - e'(theta_in)), on the input. The e' term is the reaction of the error on the
         input: the review derives none (E-R3) and the actuator paper omits it (E-A5), but without it energy is not conserved.
         Every part is a law of its own; change one with ``gear.replace(hysteresis=...)``.
 
@@ -55,16 +57,17 @@ struct Gear {
     }
 
     constexpr auto compile() const {
-        return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), Stiffness, Hysteresis, FrictionInput, FrictionOutput>{
-            compiled(kinematics), compiled(kinematic_error), stiffness, hysteresis, damping, friction_input, friction_output, input_inertia};
+        return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), Stiffness, Hysteresis, FrictionInput,
+                    FrictionOutput>{compiled(kinematics), compiled(kinematic_error), stiffness,    hysteresis, damping,
+                                    friction_input,       friction_output,           input_inertia};
     }
 
     /// How the two shafts stand to each other.
     struct Mesh {
-        S error;          ///< Kinematic error e, rad
-        S per_input;      ///< Twist per input angle: 1/i - e', rad/rad
-        S twist;          ///< rad
-        S torque;         ///< Transmitted torque T at the output, N.m
+        S error;      ///< Kinematic error e, rad
+        S per_input;  ///< Twist per input angle: 1/i - e', rad/rad
+        S twist;      ///< rad
+        S torque;     ///< Transmitted torque T at the output, N.m
     };
 
     /// `transmission_error` is theta_in / i - theta_out; the hysteresis was last brought up to date at `held_twist`.

@@ -44,13 +44,18 @@ struct Exponential {
         const S direct = (S(0.5) - (S(1.0) - (S(1.0) - full) / c) / c) / c;
         const S phi3 = select(x > S(series_below), direct, series(-min(x, S(series_below))));
         const S phi2 = S(0.5) - x * phi3, phi1 = S(1.0) - x * phi2;
-        return {half, full, phi1 / (half + S(1.0)), phi1 - S(3.0) * phi2 + S(4.0) * phi3, S(2.0) * phi2 - S(4.0) * phi3,
+        return {half,
+                full,
+                phi1 / (half + S(1.0)),
+                phi1 - S(3.0) * phi2 + S(4.0) * phi3,
+                S(2.0) * phi2 - S(4.0) * phi3,
                 S(4.0) * phi3 - phi2};
     }
 
 private:
     static constexpr double series_below = 0.5;
-    /// The sum of z^j / (j + 3)!, nested: 1/6 (1 + z/4 (1 + z/5 (...))). A template, so that 1/k is a constant of the scalar's kind.
+    /// The sum of z^j / (j + 3)!, nested: 1/6 (1 + z/4 (1 + z/5 (...))). A template, so that 1/k is a constant of the scalar's
+    /// kind.
     template <int k = 4>
     static constexpr S series(const S& z) {
         if constexpr (k == 4)
@@ -94,8 +99,7 @@ public:
     }
     constexpr X complete(const X& from, const Scalars& n1, const Scalars& n2, const Scalars& n3, const Scalars& n4) const {
         Scalars y = flattened<S>(from);
-        for (int i = 0; i < n; ++i)
-            y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]);
+        for (int i = 0; i < n; ++i) y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]);
         return shaped<X>(y);
     }
 
@@ -112,7 +116,8 @@ private:
 
 /// One step without events.
 template <class S, class Drive>
-constexpr typename Drive::State smooth_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u, const S& dt) {
+constexpr typename Drive::State smooth_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
+                                            const S& dt) {
     const auto y1 = before.motion;
     const auto now = drive.flow(before, y1, u.start);
     auto x = drive.remembered(before, now.twist);

@@ -37,7 +37,7 @@ class Gear:
     .. math:: \\delta = \\theta_{in}/i - \\theta_{out} - e(\\theta_{in}), \\qquad
               T = T_{stiffness}(\\delta) + T_{hysteresis}(\\delta, \\text{history}) + c\\,\\dot\\delta
 
-    T acts on the output and, as T (1/i - e'(\\theta_{in})), on the input. The e' term is the reaction of the error on the
+    T acts on the output and, as T (1/i - e'(theta_in)), on the input. The e' term is the reaction of the error on the
     input: the review derives none (E-R3) and the actuator paper omits it (E-A5), but without it energy is not conserved.
     Every part is a law of its own; change one with ``gear.replace(hysteresis=...)``.
 

@@ -61,7 +61,7 @@ def scattered(drive: PositionDrive, count: int, seed: int, whole_orders: bool) -
 
 
 @every_drive
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(seed=st.integers(0, 2**32 - 1), whole_orders=st.booleans(), swing=st.booleans())
 def test_double_pack_and_dual_run_one_trajectory(drive: PositionDrive, seed: int, whole_orders: bool, swing: bool) -> None:
     """Nine drives are one full pack, and one that repeats its last member."""

@@ -83,8 +83,8 @@ struct LuGre {
 
     /// Dissipates for every motion if and only if this holds.
     constexpr Condition<S> passivity() const {
-        return {"viscous", viscous, "bristle_damping (breakaway / coulomb - 1)", bristle_damping * (breakaway / max(coulomb, S(smallest)) - S(1.0)),
-                "N.m.s/rad"};
+        return {"viscous", viscous, "bristle_damping (breakaway / coulomb - 1)",
+                bristle_damping * (breakaway / max(coulomb, S(smallest)) - S(1.0)), "N.m.s/rad"};
     }
 
 private:

@@ -81,9 +81,7 @@ struct Pack {
     friend Pack sin(const Pack& x) { return sincos(x).sin; }
     friend Pack cos(const Pack& x) { return sincos(x).cos; }
     /// Whole in every lane, and the same.
-    friend int whole(const Pack& x, int highest) {
-        return all(x == Pack(x[0])) ? strainwave::whole(x[0], highest) : 0;
-    }
+    friend int whole(const Pack& x, int highest) { return all(x == Pack(x[0])) ? strainwave::whole(x[0], highest) : 0; }
 };
 
 }  // namespace strainwave
