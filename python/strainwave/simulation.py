@@ -57,15 +57,10 @@ class Course:
         """Command, its rate and the load torque at the start, middle and end of each step, shape (n, 3, 3)."""
         inputs = np.zeros((len(self.instants) - 1, 3, 3))
         start, end = self.instants[:-1], self.instants[1:]
-        middle = 0.5 * (start + end)
         for signal, column in ((command, 0), (load_torque, 2)):
             if signal is not None:
-                inputs[:, 0, column] = signal.value(start)
-                inputs[:, 1, column] = signal.value(middle)
-                inputs[:, 2, column] = signal.value_before(end)
-        inputs[:, 0, 1] = command.rate(start)
-        inputs[:, 1, 1] = command.rate(middle)
-        inputs[:, 2, 1] = command.rate_before(end)
+                _lay_out(inputs[:, :, column], start, end, signal.breaks, signal.value, signal.value_before)
+        _lay_out(inputs[:, :, 1], start, end, command.breaks, command.rate, command.rate_before)
         return inputs
 
 
@@ -186,6 +181,23 @@ def derivatives(
     first, first_slopes = _core.now_derivatives(drive, _first_inputs(command, load_torque), list(numbers))
     run = _recording(drive, course, np.concatenate((first, outputs), axis=1), dt)
     return run, np.concatenate((first_slopes, slopes), axis=2)
+
+
+def _lay_out(
+    columns: Array,
+    start: Array,
+    end: Array,
+    breaks: Array,
+    after: Callable[[Array], Array],
+    before: Callable[[Array], Array],
+) -> None:
+    """A signal at the start, middle and end of each step, shape (n, 3): what ends one step begins the next, but for jumps."""
+    columns[:, 0] = after(start)
+    columns[:, 1] = after(0.5 * (start + end))
+    columns[:-1, 2] = columns[1:, 0]
+    jumps = np.flatnonzero(np.isin(end, breaks)) if len(breaks) else np.empty(0, np.intp)
+    ends = np.append(jumps[jumps < len(end) - 1], len(end) - 1)
+    columns[ends, 2] = before(end[ends])
 
 
 def _course(command: Scenario, dt: float, samples: float | Array | None, load_torque: Scenario | None) -> Course:

@@ -58,9 +58,9 @@ struct Fourier {
     /// The same sum, arranged for speed: one sine and cosine, then the whole orders by angle addition.
     struct Compiled {
         static constexpr int highest = 32;
-        using Pair = Array<S, 2>;  ///< what multiplies the sine and the cosine of an order: two lanes of the same arithmetic
+        using Waves = Array<S, 4>;  ///< what multiplies the sine and cosine of one order and of the next: four equal lanes
 
-        Array<Pair, highest> value{}, slope{};
+        Array<Waves, highest / 2> value{}, slope{};
         int top = 0;
         Sequence<S, capacity> order{}, amplitude{}, phase{};
 
@@ -77,19 +77,21 @@ struct Fourier {
         }
 
     private:
-        /// sin(n x) and cos(n x) by the Chebyshev recurrence f(n + 1) = 2 cos(x) f(n) - f(n - 1).
+        /// sin(n x) and cos(n x) by the Chebyshev recurrence f(n + 2) = 2 cos(2 x) f(n) - f(n - 2), two orders at a time: half as
+        /// many steps wait for each other.
         constexpr Error<S> whole_orders(const SinCos<S>& base) const {
-            const S twice = base.cos + base.cos;
-            Pair before{{S(0.0), S(1.0)}}, wave{{base.sin, base.cos}}, values{}, slopes{};
-            for (int n = 0; n < top; ++n)
-                for (int k = 0; k < 2; ++k) {
+            const S twice = base.sin + base.sin, sine = twice * base.cos, cosine = S(1.0) - twice * base.sin;
+            const S step = cosine + cosine;
+            Waves before{{-base.sin, base.cos, S(0.0), S(1.0)}}, wave{{base.sin, base.cos, sine, cosine}}, values{}, slopes{};
+            for (int n = 0; 2 * n < top; ++n)
+                for (int k = 0; k < 4; ++k) {
                     values[k] = values[k] + value[n][k] * wave[k];
                     slopes[k] = slopes[k] + slope[n][k] * wave[k];
-                    const S next = twice * wave[k] - before[k];
+                    const S next = step * wave[k] - before[k];
                     before[k] = wave[k];
                     wave[k] = next;
                 }
-            return {values[0] + values[1], slopes[0] + slopes[1]};
+            return {(values[0] + values[1]) + (values[2] + values[3]), (slopes[0] + slopes[1]) + (slopes[2] + slopes[3])};
         }
     };
 
@@ -99,9 +101,12 @@ struct Fourier {
             const int n = whole(order[h], Compiled::highest);
             if (n > 0) {
                 const SinCos<S> p = sincos(phase[h]);
-                auto& value = sum.value[n - 1];
-                value = {{value[0] + amplitude[h] * p.cos, value[1] + amplitude[h] * p.sin}};
-                sum.slope[n - 1] = {{-order[h] * value[1], order[h] * value[0]}};
+                const int pair = (n - 1) / 2, s = 2 * ((n - 1) % 2), c = s + 1;
+                auto &value = sum.value[pair], &slope = sum.slope[pair];
+                value[s] = value[s] + amplitude[h] * p.cos;
+                value[c] = value[c] + amplitude[h] * p.sin;
+                slope[s] = -order[h] * value[c];
+                slope[c] = order[h] * value[s];
                 sum.top = sum.top > n ? sum.top : n;
             } else {
                 const int i = sum.order.count++;
