@@ -77,8 +77,7 @@ class Relaxation {
 
 public:
     constexpr Relaxation(const X& rates_of_decay, const S& dt) : decay(flattened<S>(rates_of_decay)) {
-        for (int i = 0; i < n; ++i)
-            set(i, any(decay[i] > S(0.0)) ? Exponential<S>::of(decay[i] * dt) : Exponential<S>{}, dt);
+        for (int i = 0; i < n; ++i) set(i, any(decay[i] > S(0.0)) ? Exponential<S>::of(decay[i] * dt) : Exponential<S>{}, dt);
     }
     constexpr Scalars forcing(const X& rate, const X& at) const {
         Scalars force = flattened<S>(rate);
