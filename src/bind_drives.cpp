@@ -57,7 +57,8 @@ Values run_many(const std::vector<Drive>& drives, const Numbers& instants, const
     const Request request(instants, inputs, keep);
     for (const Drive& drive : drives)
         if (parts_of(drive).shape != parts_of(drives[0]).shape)
-            throw nb::value_error("drives run side by side must choose the same models with equally many elements");
+            throw nb::value_error(
+                "drives run side by side must choose the same models, with equally many elements and the same teeth");
     Values out = array({drives.size(), std::size_t(channels), request.kept});
     const Pause pause = pausing(progress);
     nb::gil_scoped_release free;
@@ -144,7 +145,14 @@ void bind_drives(nb::module_& core) {
     drives.attr("__doc__") = "Drives: motor, control, gear and load.";
     core.attr("drives") = drives;
 
-    bind<Gear>(core, "Gear", "gear");
+    auto gear = bind<Gear>(core, "Gear", "gear");
+    gear.def(
+        "save",
+        [](nb::handle self, nb::handle path, const nb::kwargs& words) {
+            nb::module_::import_("strainwave.gear_set").attr("save")(self, path, **words);
+        },
+        nb::arg("path"), nb::arg("words"), nb::sig("def save(self, path: str | pathlib.Path, *, name: str, source: str) -> None"),
+        "Writes a gear file, as `strainwave.save` does.");
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
     bind<Drive::Motion>(core, "Motion", "motion");
     bind<Drive::State>(core, "State", "state");
@@ -156,7 +164,7 @@ void bind_drives(nb::module_& core) {
             const Input<double> u{command, command_rate, load_torque},
                 middle{command + 0.5 * dt * command_rate, command_rate, load_torque},
                 end{command + dt * command_rate, command_rate, load_torque};
-            return step<double>(self, state, Interval<double>{u, middle, end}, dt);
+            return step<double>(self, self.consistent(state), Interval<double>{u, middle, end}, dt);
         },
         nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
         nb::arg("dt"), "The state `dt` [s] later, the command moving at `command_rate`.");

@@ -30,6 +30,7 @@ template <class S, class Record>
 typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, typename AnyPositionDrive<S>::State x,
                                         const Course& course, Record&& record, const std::function<void(std::size_t)>& pause) {
     const auto fast = drive.compile();
+    x = fast.consistent(x);
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % steps_between_pauses == 0) pause(i);
         const Interval<S> u = interval<S>(course.inputs + 9 * i);

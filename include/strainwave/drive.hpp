@@ -130,6 +130,12 @@ struct PositionDrive {
         visit(SW_PART(m, load, "What the output shaft carries"));
     }
 
+    constexpr const char* problem() const {
+        return all(inertia_of(motor) + gear.input_inertia > S(0.0))
+                   ? nullptr
+                   : "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
+    }
+
     constexpr auto compile() const {
         return PositionDrive<S, decltype(gear.compile()), decltype(compiled(motor)), Control, Load>{gear.compile(), compiled(motor),
                                                                                                     control, load};
@@ -220,6 +226,13 @@ struct PositionDrive {
         return x;
     }
 
+    /// A state from outside, with each side's sense of sliding as its speed and its law have it.
+    constexpr State consistent(State x) const {
+        x.sliding_input = sense_of(gear.friction_input, x.motion.input_speed, x.sliding_input);
+        x.sliding_output = sense_of(gear.friction_output, x.motion.output_speed, x.sliding_output);
+        return x;
+    }
+
     /// Whether a side can stick.
     constexpr bool set_valued() const { return is_set_valued(gear.friction_input) || is_set_valued(gear.friction_output); }
 
@@ -294,6 +307,11 @@ private:
             return law.set_valued();
         else
             return friction::SetValued<Law>;
+    }
+    template <class Law>
+    static constexpr S sense_of(const Law& law, const S& speed, const S& sliding) {
+        if (!is_set_valued(law)) return S(1.0);
+        return select(speed == S(0.0), sign(sliding), sign(speed));
     }
     template <class Law>
     static constexpr S at_rest(const Law& law) {

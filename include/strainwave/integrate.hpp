@@ -164,7 +164,8 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
 /// The drive after one step of `dt` [s].
 ///
 /// With set-valued friction the step ends each stretch where a side stops or breaks away, puts that side exactly at rest or sets
-/// it sliding, and goes on. A drive that changes its mind more than 64 times in one step has no usable answer at this step size:
+/// it sliding, and goes on. Events show at the end of a step: a side that crosses zero speed and returns within one is not seen,
+/// which a smaller step cures. A drive that changes its mind more than 64 times in one step has no usable answer at this step size:
 /// its speed is returned as not-a-number, which the caller reports.
 template <class S, class Drive>
 constexpr typename Drive::State step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u, const S& dt) {

@@ -1,6 +1,7 @@
 """The physics, compiled."""
 
 from collections.abc import Callable, Sequence
+import pathlib
 from typing import Any, overload
 
 import numpy
@@ -119,6 +120,9 @@ class Gear:
     source: str = ...
 
     fields: tuple[dict[str, Any], ...]
+
+    def save(self, path: str | pathlib.Path, *, name: str, source: str) -> None:
+        """Writes a gear file, as `strainwave.save` does."""
 
 class Motion:
     """

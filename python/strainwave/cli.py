@@ -54,13 +54,14 @@ def twin(
     can, a part of it is kept back to validate, and the report says what remains unknown.
     """
     from strainwave.gear_set import GearSet
-    from strainwave.identify.measurement import read_measurement
+    from strainwave.identify.measurement import COLUMNS, read_measurement
     from strainwave.identify.twin import twin as identify
     from strainwave.report.twin import twin_report
 
     given: dict[Kind, Path | None] = {"friction": friction, "torsion": torsion, "log": log}
     files = {kind: path for kind, path in given.items() if path is not None}
-    columns, units = _pairs("--column", column), _pairs("--unit", unit)
+    known = {name for kind in files for name in COLUMNS[kind]}
+    columns, units = _pairs("--column", column, known), _pairs("--unit", unit, known)
     with _stages() as stage:
         start = GearSet.read(gear)
         recordings = {kind: read_measurement(kind, path, columns, units) for kind, path in files.items()}
@@ -93,12 +94,16 @@ def gears(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> 
     print("\n".join(name for name in catalogue() if part.lower() in name))
 
 
-def _pairs(option: str, values: list[str] | None) -> dict[str, str]:
+def _pairs(option: str, values: list[str] | None, known: set[str]) -> dict[str, str]:
     pairs = {}
     for value in values or []:
         name, equals, given = value.partition("=")
         if not (name and equals and given):
             raise ValueError(f"{option} {value}: write it as {option} name=value")
+        if name not in known:
+            raise ValueError(
+                f"{option} {value}: {name} is no column of these measurements; they have {', '.join(sorted(known))}"
+            )
         pairs[name] = given
     return pairs
 

@@ -18,7 +18,7 @@ from strainwave.cli import main
 GOOD_TABLE = "speed [rad/s],torque [N.m]\n1,0.021\n5,0.024\n10,0.026\n20,0.031\n50,0.046\n100,0.07\n"
 ONE_BRANCH = "twist [rad],torque [N.m]\n" + "".join(f"{1e-5 * i},{0.4 * i}\n" for i in range(40))
 GOOD_LOOP = "twist [mrad],torque [N.m]\n" + "".join(
-    f"{np.cos(a):.6f},{20 * np.cos(a) + 2 * np.sin(a):.6f}\n" for a in np.linspace(0.0, 2.0 * np.pi, 80)
+    f"{np.cos(a):.6f},{20 * np.cos(a) - 2 * np.sin(a):.6f}\n" for a in np.linspace(0.0, 2.0 * np.pi, 80)
 )
 GOOD_GEAR = """name = "mine"
 [kinematics]
@@ -109,7 +109,7 @@ def test_crooked_columns_are_named_on_the_command_line(tmp_path: Path) -> None:
         ("speed [rad/s],torque [rad]\n1,2\n2,3\n3,4\n", ("rad", "N.m")),
         ("speed [rad/s],torque [furlong]\n1,2\n2,3\n3,4\n", ("table.csv", "furlong")),
         ("velocity [rad/s],torque [N.m]\n1,2\n2,3\n3,4\n", ("table.csv", "speed and torque", "velocity", "--column")),
-        ("speed [rad/s],torque [N.m]\n1,0.1\n2,0.2\n", ("at least 3 speeds", "2")),
+        ("speed [rad/s],torque [N.m]\n1,0.1\n2,0.2\n", ("at least 4 speeds", "2")),
     ],
 )  # fmt: skip
 def test_a_bad_friction_table_is_refused(tmp_path: Path, text: str, expected: tuple[str, ...]) -> None:
@@ -164,6 +164,7 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
         (["twin", "--gear", "nowhere.toml", "--friction", "table.csv"], ("nowhere.toml",)),
         (["twin", "--gear", "hfuc-25-100", "--friction", "nowhere.csv"], ("nowhere.csv",)),
         (["twin", "--gear", "hfuc-25-100"], ("at least one measurement",)),
+        (["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--unit", "spee=rpm"], ("spee", "speed, torque")),
         (
             ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--column", "speed"],
             ("--column speed", "name=value"),

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.gear_set import Entry, GearSet, Quantity, catalogue, load, save
@@ -478,6 +478,8 @@ def gear_sets(draw: st.DrawFn) -> GearSet:
     families = {"motor": "motor", "control": "control", "load": "loads"}
     chosen = {part: draw(st.none() | models(family)) for part, family in families.items()}
     gear = draw(gears)
+    motor = chosen["motor"]
+    assume(gear.input_inertia > 0.0 or motor is None or motor.inertia > 0.0)  # something must turn at the input
     whole = {part: model for part, model in chosen.items() if model is not None}
     paths = GearSet.of(sw.drives.PositionDrive(gear=gear, **whole), name="x", source="x").sources
     absent = tuple(f"{part}." for part in chosen.keys() - whole.keys())

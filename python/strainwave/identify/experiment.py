@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, scenario
+from strainwave import _core, loads, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.recording import Recording
@@ -18,6 +18,7 @@ from strainwave.simulation import derivatives
 
 Array = NDArray[np.float64]
 ENCODERS = ("input_angle", "output_angle")
+HANGING = 0.02  # rad: where gravity is nothing beside friction
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,13 @@ class FrictionTable:
     def of(cls, recording: Recording) -> FrictionTable:
         """From columns speed and torque; a torque given as a magnitude takes the sign of its speed."""
         speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
+        if np.any(speed == 0.0):
+            row = int(np.argmin(np.abs(speed)))
+            raise ValueError(f"sample {row} has speed 0: a table of steady sliding cannot say what holds at rest; leave it out")
         if np.any(speed < 0.0) and np.all(torque >= 0.0):
             torque = np.sign(speed) * torque
+        if np.sum(speed * torque) <= 0.0:
+            raise ValueError("the torque drives the motion instead of opposing it; give it the sign of the speed")
         return cls(speed, torque)
 
     @property
@@ -120,7 +126,7 @@ class TorsionLoop:
 
         What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque.
         """
-        if "input_torque" in recording:
+        if at_input(recording):
             ratio = gear.kinematics.ratio
             return cls(recording.values("input_angle", "rad") / ratio, ratio * recording.values("input_torque", "N.m"))
         return cls(recording.values("twist", "rad").copy(), recording.values("torque", "N.m").copy())
@@ -132,6 +138,13 @@ class TorsionLoop:
                 "the torsion loop has one branch only: its twist never turns back, so stiffness and hysteresis cannot be "
                 "told apart; a loop must load and unload"
             )
+
+        span = float(np.ptp(self.twist) * np.ptp(self.torque))
+        if np.cov(self.twist, self.torque)[0, 1] < 0.0:
+            raise ValueError("the torque falls as the twist grows; give both the same sense, as an elastic gear has them")
+        closed = abs(self.twist[-1] - self.twist[0]) < 0.05 * np.ptp(self.twist)
+        if closed and np.trapezoid(self.torque, self.twist) < -0.01 * span:
+            raise ValueError("the loop gives energy instead of losing it; its samples must follow each other as measured")
 
     @property
     def measured(self) -> Array:
@@ -162,6 +175,11 @@ class TorsionLoop:
     def virgin(self) -> TorsionLoop:
         """The same measurement, taken to be the first loading."""
         return replace(self, history="virgin")
+
+
+def at_input(recording: Recording) -> bool:
+    """Whether a torsion loop was measured at the input, with the output locked."""
+    return not {"twist", "torque"} <= set(recording.names)
 
 
 @dataclass(frozen=True)
@@ -203,6 +221,7 @@ class DriveLog:
                 raise ValueError(f'a drive log cannot be compared by "{name}"; it can by {", ".join(known)}')
         if not chosen:
             raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
+        _check_hanging(recording, drive, chosen)
         command = recording.values("command", drive.control.command_unit)
         time = recording.time - recording.time[0]
         interval = float(np.min(np.diff(time)))
@@ -238,3 +257,19 @@ class DriveLog:
             predicted[row] += zero
             by_zero[unknown, row] = 1.0
         return predicted, np.concatenate((slopes[:, [names.index(name) for name in self.channels]], by_zero))
+
+
+def _check_hanging(recording: Recording, drive: PositionDrive, channels: Sequence[str]) -> None:
+    """A run starts at output angle 0; under gravity, so must the log."""
+    if not isinstance(drive.load, loads.Pendulum) or drive.load.gravity_torque == 0.0:
+        return
+    starts = {
+        name: float(recording.values(name, "rad")[0]) / (drive.gear.kinematics.ratio if name == "input_angle" else 1.0)
+        for name in channels
+        if name in ENCODERS
+    }
+    for name, start in starts.items():
+        if abs(start) > HANGING:
+            raise ValueError(
+                f"a log under gravity must start with the arm hanging, at output angle 0; by {name} it starts at {start:.3g} rad"
+            )

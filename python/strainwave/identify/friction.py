@@ -63,11 +63,11 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
         better by more than 5 %
 
     Raises:
-        ValueError: fewer than three speeds
+        ValueError: fewer than four speeds
     """
     speeds = len(np.unique(table.speed))
-    if speeds < 3:
-        raise ValueError(f"a friction table needs at least 3 speeds; this one has {speeds}")
+    if speeds < 4:
+        raise ValueError(f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}")
     law = gear.friction_input
     candidates = [_straight(table, gear)]
     if isinstance(law, friction.Stribeck | friction.LuGre) and speeds > len(FALLING) + 1:

@@ -14,7 +14,7 @@ from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.gear_set import NOT_GIVEN, Entry, GearSet
-from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
+from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop, at_input
 from strainwave.identify.fit import Estimate, Fit
 from strainwave.identify.friction import fit_friction
 from strainwave.identify.log import fit_log, free_parameters, prepared
@@ -208,7 +208,7 @@ def _from_torsion(gear: Gear, recording: Recording, source: str) -> Evidence:
     remarks = [
         f"valid up to {np.abs(loop.torque).max():.4g} N·m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
     ]
-    if "input_torque" in recording:
+    if at_input(recording):
         remarks.append("measured at the input with the output locked: friction of the wave generator is inside the loop")
     return Evidence(
         "torsion", source, recording, best.fit, best.fit.residuals[:, ~best.fit.training], best.fit.rms(held_out=True),

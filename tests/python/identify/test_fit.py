@@ -33,7 +33,7 @@ def drive(**changes: float) -> sw.drives.PositionDrive:
             ),
         ),
         motor=sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4),
-        load=sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0),
+        load=sw.loads.Inertia(inertia=0.5),
     )
 
 

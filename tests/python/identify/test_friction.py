@@ -64,6 +64,21 @@ def test_magnitudes_over_speeds_of_both_signs_are_understood() -> None:
     assert FrictionTable.of(recording).torque == pytest.approx([-0.2, -0.1, 0.1, 0.2])
 
 
-def test_two_speeds_are_too_few() -> None:
-    with pytest.raises(ValueError, match="at least 3 speeds; this one has 2"):
-        fit_friction(FrictionTable(np.array([1.0, 2.0]), np.array([0.1, 0.2])), sw.Gear())
+def test_three_speeds_are_too_few_and_four_are_enough() -> None:
+    speed = np.array([1.0, 2.0, 5.0, 10.0])
+    with pytest.raises(ValueError, match="at least 4 speeds, one of them to validate; this one has 3"):
+        fit_friction(FrictionTable(speed[:3], 0.1 + 0.01 * speed[:3]), sw.Gear())
+    assert fit_friction(FrictionTable(speed, 0.1 + 0.01 * speed), sw.Gear())[0].coulomb == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("speed", "torque", "message"),
+    [
+        ([0.0, 1.0, 2.0, 3.0], [0.1, 0.2, 0.3, 0.4], "sample 0 has speed 0"),
+        ([1.0, 2.0, 3.0], [-0.1, -0.2, -0.3], "drives the motion instead of opposing it"),
+    ],
+)
+def test_what_is_no_table_of_steady_friction_is_refused(speed: list[float], torque: list[float], message: str) -> None:
+    recording = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    with pytest.raises(ValueError, match=message):
+        FrictionTable.of(recording)

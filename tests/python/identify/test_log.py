@@ -72,13 +72,27 @@ def test_what_a_better_measurement_gave_is_left_alone() -> None:
 
 
 def test_a_log_that_starts_in_motion_is_refused() -> None:
-    whole = recording(["input_angle"])
-    moving = whole.between(0.35, 2.0)
+    moving = recording(["input_angle"]).between(0.35, 2.0)
+    level = drive(START).replace(load=sw.loads.Inertia(inertia=0.3))
     with pytest.raises(ValueError, match="must start at rest: input_angle starts at"):
-        fit_log(DriveLog.of(moving, drive(START)), drive(START), ["gear.friction_input.coulomb"])
+        fit_log(DriveLog.of(moving, level), level, ["gear.friction_input.coulomb"])
 
 
 def test_a_log_without_a_measured_column_is_refused() -> None:
     only = recording(["input_angle"]).select(["time", "command"])
     with pytest.raises(ValueError, match="needs a measured column to compare"):
         DriveLog.of(only, drive(START))
+
+
+def test_a_coarse_log_that_starts_at_rest_is_accepted() -> None:
+    time = np.linspace(0.0, 1.0, 201)
+    run = sw.simulate(drive(TRUTH), sw.scenario.table(time, 5.0 * np.sin(6.0 * time)), sample=5e-3)
+    log = DriveLog.of(run.select(["time", "command", "input_angle"]), drive(START))
+    assert fit_log(log, drive(START), ["gear.friction_input.coulomb"]).fit.gear.friction_input.coulomb > 0.0
+
+
+def test_a_log_under_gravity_that_does_not_start_hanging_is_refused() -> None:
+    raised = recording(["output_angle"])
+    raised = raised.with_column("output_angle", raised["output_angle"] + 0.9, "rad")
+    with pytest.raises(ValueError, match=r"arm hanging.*output_angle it starts at 0.9"):
+        DriveLog.of(raised, drive(START))

@@ -97,3 +97,11 @@ def test_no_element_that_cannot_slip_within_the_loop_is_left_in_the_model() -> N
             slips = np.array(elements.breakaway) / np.array(elements.stiffness)
             assert np.all(slips < 0.5 * np.ptp(measured.twist)), kind
             assert all(np.isfinite(e.sigma) for e in candidate.fit.estimates if e.path.startswith("hysteresis")), kind
+
+
+def test_a_loop_that_cannot_be_one_is_refused() -> None:
+    measured = loop(SPRINGS["linear"], cycle())
+    with pytest.raises(ValueError, match="torque falls as the twist grows"):
+        TorsionLoop(measured.twist, -measured.torque)
+    with pytest.raises(ValueError, match="gives energy instead of losing it"):
+        TorsionLoop(measured.twist[::-1].copy(), measured.torque[::-1].copy())
