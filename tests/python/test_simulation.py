@@ -234,3 +234,37 @@ def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
     finally:
         key.join()
         signal.signal(signal.SIGINT, before)
+
+
+# What a run may start from, and at which steps
+
+
+def test_a_start_in_motion_slides_whatever_the_state_says_of_sliding() -> None:
+    """Coulomb friction alone brakes evenly: w(t) = w0 - F t / J."""
+    friction = sw.friction.Coulomb(coulomb=0.01, breakaway=0.01)
+    drive = sw.drives.PositionDrive(
+        gear=sw.Gear(stiffness=sw.stiffness.Linear(k=1e-30), friction_input=friction),
+        motor=sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=1e-3),
+    )
+    rest = drive.rest()
+    for speed in (5.0, -5.0):
+        start = rest.replace(motion=rest.motion.replace(input_speed=speed))
+        run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), start=start)
+        assert run["input_speed"][-1] == pytest.approx(np.sign(speed) * (5.0 - 0.01 * 0.2 / 1e-3), rel=1e-12)
+        assert np.sign(run["friction_input"][-1]) == np.sign(speed)
+
+
+def test_a_step_that_cannot_follow_the_gear_is_refused_with_one_that_can() -> None:
+    drive = sw.drives.PositionDrive(gear=sw.Gear(stiffness=sw.stiffness.Linear(k=1e4)), load=sw.loads.Inertia(inertia=1e-2))
+    command = sw.scenario.step(amplitude=1.0, duration=0.1)
+    frequency = np.sqrt(1e4 * (1.0 / 1e-2 + 1.0 / (1e4 * drive.motor.inertia)))
+    with pytest.raises(
+        FloatingPointError, match=rf"vibrates at {frequency:.4g} rad/s.*take dt = {1.0 / frequency:.2g} s or less"
+    ):
+        sw.simulate(drive, command, dt=1.5 / frequency)
+    assert len(sw.simulate(drive, command, dt=0.9 / frequency)) > 2
+
+
+def test_a_drive_without_inertia_at_the_input_is_refused() -> None:
+    with pytest.raises(ValueError, match="cannot both be 0: something must turn at the input"):
+        sw.drives.PositionDrive(motor=sw.motor.DC(inertia=0.0))

@@ -271,5 +271,6 @@ def _check_hanging(recording: Recording, drive: PositionDrive, channels: Sequenc
     for name, start in starts.items():
         if abs(start) > HANGING:
             raise ValueError(
-                f"a log under gravity must start with the arm hanging, at output angle 0; by {name} it starts at {start:.3g} rad"
+                f"a log under gravity must start with the arm hanging, at output angle 0; "
+                f"by {name} it starts at {start:.3g} rad"
             )
