@@ -65,7 +65,14 @@ def twin(
     with _stages() as stage:
         start = GearSet.read(gear)
         recordings = {kind: read_measurement(kind, path, columns, units) for kind, path in files.items()}
-        found = identify(start, **recordings, sources={kind: path.name for kind, path in files.items()}, progress=stage)
+        found = identify(
+            start,
+            friction=recordings.get("friction"),
+            torsion=recordings.get("torsion"),
+            log=recordings.get("log"),
+            sources={kind: path.name for kind, path in files.items()},
+            progress=stage,
+        )
         stage("report")
         _write(out, found.gear_set, twin_report(found, provenance=_provenance(files.values())))
     _summarise(found, out)

@@ -158,8 +158,7 @@ def _unit(path: str | Path, label: Label, name: str, given: str | None) -> str:
             raise ValueError(f'{path} column "{label.name}" is in "{label.unit}", but units says "{given}"')
         return given
     if label.unit is None:
-        unit = _EXPECTED.get(name, "N.m")
-        hint = f'write the header as {label.name} [{unit}] or pass units={{"{name}": "{unit}"}}'
+        hint = f'write it behind the name, as in torque [N.m], or give it apart as units={{"{name}": …}}'
         raise ValueError(f'{path} column "{label.name}" has no unit; {hint}')
     try:
         return check_unit(label.unit)
@@ -190,20 +189,6 @@ def parquet_numbers(path: str | Path, table: pyarrow.Table, field: pyarrow.Field
 
 
 TITLE = "# title: "
-
-# What a column of this name is most likely in, to show how a unit is written.
-_EXPECTED = {
-    "time": "s",
-    "speed": "rad/s",
-    "input_speed": "rad/s",
-    "output_speed": "rad/s",
-    "twist": "rad",
-    "position": "rad",
-    "input_angle": "rad",
-    "output_angle": "rad",
-    "current": "A",
-    "command": "V",
-}
 
 # Sign, digits, one decimal mark (group 1), exponent.
 _NUMBER = re.compile(r"[+-]?(?=[.,]?\d)\d*([.,]?)\d*(?:[eE][+-]?\d+)?", re.ASCII)

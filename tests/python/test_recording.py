@@ -368,7 +368,8 @@ def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
         ("torque [N.m],,\n1,2,3\n", " column 2 has no name; name it, or pick columns with columns={...}"),
         (
             "torque\n1\n",
-            ' column "torque" has no unit; write the header as torque [N.m] or pass units={"torque": "N.m"}',
+            ' column "torque" has no unit; write it behind the name, as in torque [N.m], '
+            'or give it apart as units={"torque": …}',
         ),
         ("torque []\n1\n", ' column "torque": unit "" is not known; write it like N.m, rad/s, deg'),
         (
@@ -601,5 +602,5 @@ def test_the_locked_torque_tables_are_refused_as_time_series_for_their_repeated_
     reason = "0.0783 s does not lie after 0.0783 s; time must increase"
     with pytest.raises(ValueError, match=exactly(f'{path} line 10, column "time_s": {reason}')):
         Recording.read(path, {"time": "time_s"}, {"time": "s"})
-    with pytest.raises(ValueError, match=r'column "time_s" has no unit; write the header as time_s \[N\.m\]'):
+    with pytest.raises(ValueError, match=r'column "time_s" has no unit; write it behind the name'):
         Recording.read(path)

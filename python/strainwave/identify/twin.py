@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -128,6 +128,7 @@ def twin(
     torsion: Recording | None = None,
     log: Recording | None = None,
     sources: dict[Kind, str] | None = None,
+    other_specimen: Collection[str] = (),
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Twin:
     """Fits what each measurement can tell of a gear, validates on data kept back, and says what cannot be told.
@@ -139,6 +140,7 @@ def twin(
         log: run of the drive from rest with columns time, command and measured outputs (input_angle, output_angle, current …);
             the start set must then have a motor and a load
         sources: where each measurement came from, for the record
+        other_specimen: measurements of another specimen than the starting set describes; these contradict nothing in it
         progress: called with the name of each stage as it begins
 
     Returns:
@@ -176,7 +178,13 @@ def twin(
         gear = evidence[-1].fit.gear
     verdicts = _verdicts(start, gear, evidence)
     found = replace(start, name=f"{start.name}, twin", gear=gear, sources=_sources(start, verdicts))
-    return Twin(start, found, tuple(evidence), tuple(verdicts), tuple(_contradictions(start, evidence)))
+    return Twin(
+        start,
+        found,
+        tuple(evidence),
+        tuple(verdicts),
+        tuple(_contradictions(start, [e for e in evidence if e.kind not in other_specimen])),
+    )
 
 
 @contextmanager

@@ -137,3 +137,13 @@ def test_a_value_that_follows_from_a_fit_does_not_keep_its_old_source(found: sw.
     assert found.gear_set.gear.friction_input.breakaway != found.start.gear.friction_input.breakaway
     assert found.gear_set.sources[path].source != found.start.sources[path].source
     assert "follows from the parameters fitted" in found.gear_set.sources[path].source
+
+
+def test_another_specimen_contradicts_nothing() -> None:
+    soft = loop()
+    recording = sw.Recording(
+        {"twist": soft["twist"], "torque": soft["torque"] - 2.7e4 * soft["twist"]}, {"twist": "rad", "torque": "N.m"}
+    )
+    start = sw.GearSet.read("hfuc-25-100")
+    assert sw.twin(start, torsion=recording).contradictions
+    assert not sw.twin(start, torsion=recording, other_specimen=("torsion",)).contradictions
