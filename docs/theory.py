@@ -16,13 +16,18 @@ from matplotlib.figure import Figure
 from strainwave import _core
 
 Model = type[Any]
+ABOUT = {
+    "kinematic_noise": "Random kinematic error, beside the deterministic one.",
+    "density": "Densities of Preisach's hysteresis.",
+}
 
 
 def write(folder: Path) -> None:
     """One page a family, one for gear and drive, with their figures."""
     folder.mkdir()
     for family, models in _core.families.items():
-        page(folder, family, getattr(sw, family).__doc__, list(models.values()))
+        about = getattr(sw, family).__doc__ if hasattr(sw, family) else ABOUT[family]
+        page(folder, family, about, list(models.values()))
     page(folder, "gear_and_drive", "How the parts go together.", [sw.Gear, sw.drives.PositionDrive])
 
 
@@ -84,7 +89,8 @@ def constructed(model: Model, words: str) -> Any:
     for example in doctest.DocTestParser().get_examples(words):
         for node in ast.walk(ast.parse(example.source)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == model.__name__:
-                return model(**{word.arg: ast.literal_eval(word.value) for word in node.keywords if word.arg})
+                names = {kind.__name__: kind for kinds in _core.families.values() for kind in kinds.values()}
+                return eval(ast.unparse(node), names)
     return None
 
 
@@ -108,20 +114,43 @@ def error(model: Any, axes: Axes) -> None:
     axes.set(xlabel="input angle [deg]", ylabel="error at the output [mrad]")
 
 
+LOAD = 10.0  # N.m, under which friction is drawn that depends on it
+
+
 def steady(model: Any, axes: Axes) -> None:
     fastest = 10.0 * getattr(model, "stribeck_speed", 1.0)
     slowest = 1e-9 * fastest
     for speed in (np.linspace(-fastest, -slowest, 401), np.linspace(slowest, fastest, 401)):
-        axes.plot(speed, model.steady(speed), color="C0")
-    if hasattr(model, "hold"):
-        axes.plot([0.0, 0.0], [-model.hold(), model.hold()], color="C0")
+        axes.plot(speed, model.steady(speed, load=LOAD), color="C0")
+    if model.set_valued:
+        axes.plot([0.0, 0.0], [-model.hold(-1.0, load=LOAD), model.hold(load=LOAD)], color="C0")
     axes.set(xlabel="speed [rad/s]", ylabel="steady friction [N.m]")
 
 
+def over_contact(model: Any, axes: Axes) -> None:
+    """Over whatever the law depends on besides the speed."""
+    ranges = {
+        "angle": (np.linspace(0.0, getattr(model, "domain_end", 2.0 * np.pi), 721), "angle [rad]"),
+        "load": (np.linspace(-LOAD, LOAD, 401), "transmitted torque [N.m]"),
+        "temperature": (np.linspace(273.15, 333.15, 121), "temperature [K]"),
+    }
+    for name, (values, label) in ranges.items():
+        friction = model.steady(1.0, **{"load": LOAD, name: values})
+        if np.ptp(friction) > 1e-9 * np.abs(friction).max():
+            axes.plot(values, friction)
+            axes.set(xlabel=label, ylabel="friction at 1 rad/s [N.m]")
+            return
+    axes.set_axis_off()
+
+
 def presliding(model: Any, axes: Axes) -> None:
+    """Slow cycles about three times as wide as the contact bends before it slips."""
+    bend = 1e-9
+    stiffness = model.trace([0.0, 1.0], [bend, bend], load=LOAD)[-1] / bend
+    reach = 3.0 * model.steady(1e-3, load=LOAD) / stiffness
     time = np.linspace(0.0, 125.0, 2001)
-    angle = 2.0 * model.breakaway / model.bristle_stiffness * np.sin(0.1 * time)
-    axes.plot(1e3 * angle, model.trace(time, np.gradient(angle, time)))
+    angle = reach * np.sin(0.1 * time)
+    axes.plot(1e3 * angle, model.trace(time, np.gradient(angle, time), load=LOAD))
     axes.set(xlabel="angle [mrad], cycled slowly", ylabel="friction [N.m]")
 
 
@@ -132,7 +161,11 @@ def tangent(model: Any, axes: Axes) -> None:
 
 
 def work(model: Any, axes: Axes) -> None:
-    turns = 1e-3 * np.array([0.0, 4.0, -4.0, 4.0, 1.0, 3.0, -4.0])
+    """As wide as the secant falls to a third of what it begins with."""
+    reaches = np.geomspace(1e-6, 1.0, 241)
+    secant = np.array([model.trace([0.0, reach])[-1] / reach for reach in reaches])
+    reach = reaches[np.argmax(secant < secant.max() / 3.0)]
+    turns = reach * np.array([0.0, 1.0, -1.0, 1.0, 0.25, 0.75, -1.0])
     path = np.concatenate([np.linspace(start, end, 101) for start, end in pairwise(turns)])
     axes.plot(1e3 * path, model.trace(path))
     axes.set(xlabel="twist [mrad]", ylabel="torque [N.m]")
@@ -141,7 +174,8 @@ def work(model: Any, axes: Axes) -> None:
 CURVES = {
     ("error",): error,
     ("steady",): steady,
-    ("steady", "trace"): presliding,
+    ("steady", "set_valued"): over_contact,
+    ("steady", "State"): presliding,
     ("tangent",): tangent,
     ("work",): work,
 }

@@ -13,20 +13,30 @@ namespace {
 template <class M>
 const char* python_name() {
     const std::string text = __PRETTY_FUNCTION__;
-    const std::size_t end = text.find("<double>"), start = text.rfind("::", end) + 2;
+    const std::size_t end = text.find("<double"), start = text.rfind("::", end) + 2;
     return kept(text.substr(start, end - start));
 }
 
 /// A family of models as a module of the package, and its list by file name.
-template <template <class> class... Law>
-void bind_family(nb::module_& core, const char* name, const char* doc, List<Law...>) {
+nb::module_ family_module(nb::module_& core, const char* name, const char* doc) {
     nb::module_ family = nb::borrow<nb::module_>(PyImport_AddModule((std::string("strainwave.") + name).c_str()));
     family.attr("__doc__") = doc;
-    nb::dict models;
-    (bind_model<Law<double>>(family, python_name<Law<double>>()), ...);
-    ((models[Law<double>::name] = nb::type<Law<double>>()), ...);
     core.attr(name) = family;
+    return family;
+}
+
+/// The models of a list, and the list by their names in files.
+template <template <class...> class... Law>
+void bind_list(nb::module_& core, nb::module_ family, const char* name, List<Law...>) {
+    nb::dict models;
+    (bind_model<AtRunTime<Law, double>>(family, python_name<Law<double>>()), ...);
+    ((models[Law<double>::name] = nb::type<AtRunTime<Law, double>>()), ...);
     core.attr("families")[name] = models;
+}
+
+template <class L>
+void bind_family(nb::module_& core, const char* name, const char* doc, L list) {
+    bind_list(core, family_module(core, name, doc), name, list);
 }
 
 }  // namespace
@@ -40,10 +50,15 @@ NB_MODULE(_core, core) {
         "strainwave._core.PassivityWarning", "A set of parameters lets its model create energy.", PyExc_UserWarning, nullptr));
     using namespace strainwave::host;
     bind_family(core, "kinematics", "Rigid motion: the signed ratio from the teeth and the fixed member.", kinematics::Models{});
-    bind_family(core, "kinematic_error", "Pure kinematic error at the output, over the input angle.", kinematic_error::Models{});
+    nb::module_ error = family_module(core, "kinematic_error", "Pure kinematic error at the output, over the input angle.");
+    bind_list(core, error, "kinematic_error", kinematic_error::Models{});
+    bind_list(core, error, "kinematic_noise", kinematic_error::Noises{});
     bind_family(core, "friction", "Friction torque of one side, over its speed.", friction::Models{});
     bind_family(core, "stiffness", "Elastic torque over the twist.", stiffness::Models{});
-    bind_family(core, "hysteresis", "Torque that depends on the history of the twist.", hysteresis::Models{});
+    nb::module_ hysteresis = family_module(core, "hysteresis", "Torque that depends on the history of the twist.");
+    bind_model<strainwave::hysteresis::PrandtlIshlinskii<double>>(hysteresis, "PrandtlIshlinskii");
+    bind_list(core, hysteresis, "density", strainwave::hysteresis::Densities{});
+    bind_list(core, hysteresis, "hysteresis", strainwave::hysteresis::Models{});
     bind_family(core, "motor", "Motors on the input shaft.", motor::Models{});
     bind_family(core, "control", "What turns the command into the motor's voltage.", control::Models{});
     bind_family(core, "loads", "What the output shaft carries.", load::Models{});

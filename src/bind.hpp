@@ -36,7 +36,20 @@ inline std::string limits(const Field& field) {
            ", " + (open_high ? "inf)" : shortest(field.max) + "]");
 }
 
+/// In words and numbers, that a law is used where it is not valid.
+inline std::string outside(const Domain<double>& domain) {
+    return std::string(domain.name) + " = " + with_unit(domain.value, domain.unit) + " lies outside of [" + shortest(domain.low) +
+           ", " + with_unit(domain.high, "1") + "]" + (std::strcmp(domain.unit, "1") == 0 ? "" : " " + std::string(domain.unit)) +
+           (*domain.remedy ? std::string("; ") + domain.remedy : "");
+}
+
 inline std::string text_of(nb::handle value) { return nb::cast<std::string>(nb::repr(value)); }
+
+/// Whether a number counts something.
+template <class T>
+constexpr bool is_whole(const Field& field) {
+    return std::is_same_v<T, int> || field.whole;
+}
 
 /// Reads a member from Python, or says what is wrong with it.
 struct Reader {
@@ -75,12 +88,10 @@ struct Reader {
                 names += std::string(i++ ? " or " : "") + "'" + name + "'";
             }
             refuse_type(field, names, value);
-        } else if constexpr (std::is_same_v<T, int>) {
-            const double x = number(value, field, field.name);
-            if (x != std::floor(x)) refuse_type(field, "a whole number", value);
-            return int(x);
         } else {
-            return number(value, field, field.name);
+            const double x = number(value, field, field.name);
+            if (is_whole<T>(field) && x != std::floor(x)) refuse_type(field, "a whole number", value);
+            return T(x);
         }
     }
 
@@ -101,10 +112,16 @@ private:
         if (!found) refuse_type(field, "one of " + names, value);
         return choice;
     }
+    /// A sequence of numbers; a number alone is a sequence of one.
     template <class T>
     T sequence(nb::handle value, const Field& field) const {
-        if (nb::isinstance<nb::str>(value) || !nb::hasattr(value, "__iter__")) refuse_type(field, "a sequence of numbers", value);
         T list{};
+        if (double alone = 0.0; is_sequence<T> && !nb::isinstance<nb::bool_>(value) && nb::try_cast<double>(value, alone)) {
+            list[0] = number(value, field, field.name);
+            if constexpr (is_sequence<T>) list.count = 1;
+            return list;
+        }
+        if (nb::isinstance<nb::str>(value) || !nb::hasattr(value, "__iter__")) refuse_type(field, "a sequence of numbers", value);
         constexpr int most = sizeof(list.item) / sizeof(list.item[0]);
         int count = 0;
         for (nb::handle item : nb::iter(value)) {
@@ -156,7 +173,8 @@ std::string python_type(bool argument) {
         const auto type = nb::type<T>();
         return nb::cast<std::string>(type.attr("__module__")) + "." + nb::cast<std::string>(type.attr("__qualname__"));
     } else if constexpr (is_sequence<T> || is_array<T>) {
-        return argument ? "collections.abc.Sequence[float]" : "tuple[float, ...]";
+        if (!argument) return "tuple[float, ...]";
+        return is_sequence<T> ? "float | collections.abc.Sequence[float]" : "collections.abc.Sequence[float]";
     } else if constexpr (std::is_enum_v<T>) {
         return "str";
     } else if constexpr (std::is_same_v<T, int>) {
@@ -179,6 +197,24 @@ inline const char* kept(std::string text) {
     return texts.back()->c_str();
 }
 
+/// What a member may be chosen from: models by their names in files, or the names of an enumeration.
+template <class T>
+nb::object options_of() {
+    if constexpr (is_choice<T>) {
+        nb::dict models;
+        [&]<class S, class... Law>(const Choice<S, Law...>*) {
+            ((models[Law::name] = nb::type<Law>()), ...);
+        }(static_cast<const T*>(nullptr));
+        return models;
+    } else if constexpr (std::is_enum_v<T>) {
+        nb::list names;
+        for (const char* name : choices(T{}).item) names.append(name);
+        return nb::tuple(names);
+    } else {
+        return nb::none();
+    }
+}
+
 template <class M>
 std::string documentation() {
     std::string text;
@@ -192,7 +228,7 @@ std::string documentation() {
                 if (std::strcmp(field.unit, "1") != 0) text += std::string(" [") + field.unit + "]";
                 if (field.min > -unbounded || field.max < unbounded) text += ", in " + limits(field);
             }
-            if constexpr (std::is_enum_v<T>) text += ", one of " + text_of(nb::make_tuple(choices(T{})[0], choices(T{})[1]));
+            if constexpr (std::is_enum_v<T>) text += ", one of " + text_of(options_of<T>());
         }
         text += "; default " + text_of(to_python(member)) + "\n";
     };
@@ -205,9 +241,23 @@ std::string documentation() {
 }
 
 template <class M>
-void check_relations(const M& model) {
+void check_relations(const M& model, const std::string& name) {
     if constexpr (requires { model.problem(); })
-        if (const char* problem = model.problem()) throw nb::value_error((std::string(M::name) + ": " + problem).c_str());
+        if (const char* problem = model.problem()) throw nb::value_error((name + ": " + problem).c_str());
+}
+
+/// Warns if the parameters let the model create energy.
+template <class M>
+void check_passivity(const M& model) {
+    if constexpr (requires { model.passivity(); }) {
+        const Condition<double> rule = model.passivity();
+        if (rule.left >= rule.right) return;
+        const std::string text = std::string(M::name) + " can create energy: " + rule.left_name + " = " +
+                                 with_unit(rule.left, rule.unit) + " must be at least " + rule.right_name + " = " +
+                                 with_unit(rule.right, rule.unit);
+        if (PyErr_WarnEx(nb::module_::import_("strainwave._core").attr("PassivityWarning").ptr(), text.c_str(), 1) < 0)
+            throw nb::python_error();
+    }
 }
 
 /// `model` with the members that `values` names; an unknown name is refused.
@@ -224,7 +274,7 @@ M replaced(M model, const nb::kwargs& values, const std::string& name) {
     });
     for (auto [key, value] : unknown)
         throw nb::type_error((name + " has no parameter " + text_of(key) + "; it has " + known).c_str());
-    check_relations(model);
+    check_relations(model, name);
     return model;
 }
 
@@ -255,7 +305,8 @@ std::string signature(const std::string& head, const std::string& result) {
     return text + ") -> " + result;
 }
 
-/// What is known of each member besides its value: name, unit, doc, min, max (None: no limit), and whether it is a part.
+/// What is known of each member besides its value: name, unit, doc, limits (None: no limit) and whether the lower one is open, its
+/// kind, and what it may be chosen from.
 template <class M>
 nb::tuple schema() {
     nb::list list;
@@ -270,8 +321,10 @@ nb::tuple schema() {
         entry["kind"] = is_sequence<T> || is_array<T> || is_slots<T> ? "sequence"
                         : is_choice<T> || Described<T>               ? "part"
                         : std::is_enum_v<T>                          ? "choice"
-                        : std::is_same_v<T, int>                     ? "count"
+                        : is_whole<T>(field)                         ? "count"
                                                                      : "number";
+        entry["open"] = field.min == smallest;
+        entry["options"] = options_of<T>();
         list.append(entry);
     });
     return nb::tuple(list);
@@ -283,10 +336,20 @@ nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string&
     static_assert(fully_described<M>, "every member needs a Field");
     auto c = nb::class_<M>(scope, python_name, kept(documentation<M>()));
     c.def(
-        "__init__", [name](M* self, const nb::kwargs& values) { new (self) M(replaced(M{}, values, name)); },
+        "__init__",
+        [name](M* self, const nb::kwargs& values) {
+            const M model = replaced(M{}, values, name);
+            check_passivity(model);
+            new (self) M(model);
+        },
         nb::sig(kept(signature<M>("__init__", "None"))));
     c.def(
-        "replace", [name](const M& self, const nb::kwargs& values) { return replaced(self, values, name); },
+        "replace",
+        [name](const M& self, const nb::kwargs& values) {
+            const M model = replaced(self, values, name);
+            check_passivity(model);
+            return model;
+        },
         nb::sig(kept(signature<M>("replace", python_type<M>(false)))), "The same with the named parameters changed.");
     const M defaults{};
     M::fields(defaults, [&]<class T>(const T& member, const Field& field) {

@@ -1,6 +1,6 @@
 #include <nanobind/stl/function.h>
 
-#include "bind.hpp"
+#include "verbs.hpp"
 #include "simulate.hpp"
 
 namespace strainwave::host {
@@ -24,8 +24,8 @@ struct Request {
 
     Request(const Numbers& instants, const Numbers& inputs, const Flags& keep)
         : course{instants.data(), inputs.data(), keep.data(), keep.size()} {
-        if (instants.size() != course.steps + 1 || inputs.size() != 9 * course.steps)
-            throw nb::value_error("a course of n steps has n + 1 instants, inputs of shape (n, 3, 3) and n flags");
+        if (instants.size() != course.steps + 1 || inputs.size() != 12 * course.steps)
+            throw nb::value_error("a course of n steps has n + 1 instants, inputs of shape (n, 3, 4) and n flags");
         for (std::size_t i = 0; i < course.steps; ++i) kept += keep.data()[i] != 0;
     }
 };
@@ -80,8 +80,8 @@ nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Num
 }
 
 Input<double> input_of(const Numbers& u) {
-    if (u.size() != 3) throw nb::value_error("inputs at an instant are command, its rate and the load torque");
-    return {u.data()[0], u.data()[1], u.data()[2]};
+    if (u.size() != 4) throw nb::value_error("inputs at an instant are command, its rate, load torque and temperature");
+    return {u.data()[0], u.data()[1], u.data()[2], u.data()[3]};
 }
 
 Values now(const Drive& drive, const Drive::State& x, const Numbers& u) {
@@ -132,9 +132,63 @@ void bind_numbers(nb::module_& core) {
         "The same models with other numbers, in the order of `parameters`.");
 }
 
-template <template <class> class... Law>
+template <template <class...> class... Law>
 void bind_numbers_of(nb::module_& core, List<Law...>) {
-    (bind_numbers<Law<double>>(core), ...);
+    (bind_numbers<AtRunTime<Law, double>>(core), ...);
+}
+
+/// Spring and hysteresis of a gear whose input is held, twisted slowly.
+class QuasiStatic {
+    const AnyGear<double>& gear;
+    decltype(gear.hysteresis)::State held{};
+    double at = 0.0;
+
+public:
+    explicit QuasiStatic(const AnyGear<double>& gear_) : gear(gear_) {}
+
+    double torque(double twist) const { return gear.stiffness.torque(twist) + gear.hysteresis.torque(held, twist - at); }
+    void move(double twist) {
+        check_domain("gear.stiffness", domain<double>(gear.stiffness, twist));
+        held = gear.hysteresis.advance(held, twist - at);
+        at = twist;
+    }
+
+    /// The twist at which `wanted` [N.m] is reached without turning back on the way. The torque rises with the twist, so that a
+    /// bracket closes.
+    double twist(double wanted) const {
+        const double away = wanted < torque(at) ? -1.0 : 1.0;
+        double low = at, high = at, reach = std::max(std::abs(at), 1e-9) * away;
+        while (away * (torque(high) - wanted) < 0.0) {
+            low = high;
+            high = at + (reach *= 2.0);
+            if (!std::isfinite(high)) throw nb::value_error(("no twist gives the torque " + with_unit(wanted, "N.m")).c_str());
+        }
+        for (int i = 0; i < 2000 && low != high; ++i) {
+            const double middle = low + 0.5 * (high - low);
+            if (middle == low || middle == high) break;
+            (away * (torque(middle) - wanted) < 0.0 ? low : high) = middle;
+        }
+        return std::abs(torque(low) - wanted) < std::abs(torque(high) - wanted) ? low : high;
+    }
+};
+
+Values trace_of(const AnyGear<double>& gear, nb::handle twist) {
+    const auto path = path_of(twist, "twist");
+    auto [out, torque] = like(path);
+    QuasiStatic moved(gear);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        moved.move(path.data()[i]);
+        torque[i] = moved.torque(path.data()[i]);
+    }
+    return out;
+}
+
+Values twist_of(const AnyGear<double>& gear, nb::handle torque) {
+    const auto path = path_of(torque, "torque");
+    auto [out, twist] = like(path);
+    QuasiStatic moved(gear);
+    for (std::size_t i = 0; i < path.size(); ++i) moved.move(twist[i] = moved.twist(path.data()[i]));
+    return out;
 }
 
 }  // namespace
@@ -153,6 +207,21 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("path"), nb::arg("words"), nb::sig("def save(self, path: str | pathlib.Path, *, name: str, source: str) -> None"),
         "Writes a gear file, as `strainwave.save` does.");
+    gear.def("trace", &trace_of, nb::arg("twist"), nb::sig("def trace(self, twist: " SW_NUMBERS ") -> " SW_ARRAY),
+             "Torque [N.m], shape (n,), of spring and hysteresis along a slow path of `twist` [rad], shape (n,), from twist 0 and "
+             "without history.");
+    gear.def("twist", &twist_of, nb::arg("torque"), nb::sig("def twist(self, torque: " SW_NUMBERS ") -> " SW_ARRAY),
+             "Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of "
+             "`trace`, to rounding, for every spring and hysteresis.");
+    nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
+        try {
+            std::rethrow_exception(thrown);
+        } catch (const OutOfBounds& error) {
+            PyErr_SetString(PyExc_ValueError, (std::string(error.part) + ": " + outside(error.domain) + "; first at t = " +
+                                               with_unit(error.time, "s"))
+                                                  .c_str());
+        }
+    });
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
     bind<Drive::Motion>(core, "Motion", "motion");
     bind<Drive::State>(core, "State", "state");
@@ -160,14 +229,15 @@ void bind_drives(nb::module_& core) {
         "rest", [](const Drive& self) { return self.rest(); }, "The state at rest, untwisted and without history, input angle 0.");
     drive.def(
         "step",
-        [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque, double dt) {
-            const Input<double> u{command, command_rate, load_torque},
-                middle{command + 0.5 * dt * command_rate, command_rate, load_torque},
-                end{command + dt * command_rate, command_rate, load_torque};
-            return step<double>(self, self.consistent(state), Interval<double>{u, middle, end}, dt);
+        [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque, double temperature,
+           double dt) {
+            const auto at = [&](double share) {
+                return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
+            };
+            return step<double>(self, self.consistent(state), Interval<double>{at(0.0), at(0.5), at(1.0)}, dt);
         },
         nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
-        nb::arg("dt"), "The state `dt` [s] later, the command moving at `command_rate`.");
+        nb::arg("temperature") = friction::room_temperature, nb::arg("dt"), "The state `dt` [s] later, the command moving at `command_rate`.");
 
     nb::list outputs;
     const Output<double> output{};
@@ -214,6 +284,7 @@ void bind_drives(nb::module_& core) {
     bind_numbers_of(core, stiffness::Models{});
     bind_numbers_of(core, hysteresis::Models{});
     bind_numbers_of(core, kinematic_error::Models{});
+    bind_numbers_of(core, kinematic_error::Noises{});
 }
 
 }  // namespace strainwave::host

@@ -51,7 +51,7 @@ void observe_derivatives(const Drive& drive, const Input<double>& u, const std::
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
-        write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque)}), first, parameters.size(),
+        write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque), Slope(u.temperature)}), first, parameters.size(),
               0, 1, out, slopes);
     }
 }
@@ -76,9 +76,9 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
                           double* out, double* slopes) {
     const Parts parts = parts_of(gear);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
-        const auto dual = seeded<AnyGear<Slope>>(parts, parameters, first);
+        const auto law = compiled(seeded<AnyGear<Slope>>(parts, parameters, first).friction_input);
         for (std::size_t i = 0; i < n; ++i) {
-            const Slope torque = dual.friction_input.visit([&](const auto& law) { return friction::steady(law, Slope(speed[i])); });
+            const Slope torque = friction::steady(law, friction::Contact<Slope>{Slope(speed[i])});
             out[i] = torque.value;
             for (std::size_t p = first; p < first + width && p < parameters.size(); ++p)
                 slopes[p * n + i] = torque.slope[p - first];

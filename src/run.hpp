@@ -1,6 +1,8 @@
 #pragma once
 #include <strainwave/any.hpp>
 #include <strainwave/integrate.hpp>
+#include <strainwave/scalar/dual.hpp>
+#include <strainwave/scalar/pack.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -11,15 +13,48 @@ namespace strainwave::host {
 /// The command over `steps` steps: instants[0..steps], and per step the inputs at its start, middle and end.
 struct Course {
     const double* instants;
-    const double* inputs;      ///< (steps, 3, 3): command, command_rate, load_torque
+    const double* inputs;      ///< (steps, 3, 4): command, command_rate, load_torque, temperature
     const std::uint8_t* keep;  ///< (steps): whether to record the end of the step
     std::size_t steps;
 };
 
+// Calls f with what each lane of some scalars holds.
+template <class F>
+void each_lane(double a, double b, double c, F&& f) {
+    f(a, b, c);
+}
+template <int n, class F>
+void each_lane(const Dual<n>& a, const Dual<n>& b, const Dual<n>& c, F&& f) {
+    f(a.value, b.value, c.value);
+}
+template <int n, class F>
+void each_lane(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c, F&& f) {
+    for (int i = 0; i < n; ++i) f(a[i], b[i], c[i]);
+}
+
 template <class S>
 Interval<S> interval(const double* inputs) {
-    const auto at = [](const double* u) { return Input<S>{S(u[0]), S(u[1]), S(u[2])}; };
-    return {at(inputs), at(inputs + 3), at(inputs + 6)};
+    const auto at = [](const double* u) { return Input<S>{S(u[0]), S(u[1]), S(u[2]), S(u[3])}; };
+    return {at(inputs), at(inputs + 4), at(inputs + 8)};
+}
+
+/// A drive has left the range that one of its parts is valid in.
+struct OutOfBounds {
+    const char* part;
+    Domain<double> domain;
+    double time;
+};
+
+/// Throws OutOfBounds if a part is not valid where the drive stands, in any lane.
+template <class S, class Drive>
+void check_bounds(const Drive& drive, const typename Drive::State& x, const Input<S>& u, double time) {
+    drive.bounds(x, u, [&](const char* part, const Domain<S>& domain) {
+        if (all(domain.holds())) return;
+        each_lane(domain.value, domain.low, domain.high, [&](double value, double low, double high) {
+            const Domain<double> of_lane{domain.name, value, low, high, domain.unit, domain.remedy};
+            if (!of_lane.holds()) throw OutOfBounds{part, of_lane, time};
+        });
+    });
 }
 
 /// How many steps pass between two calls of `pause`, which may throw.
@@ -30,11 +65,13 @@ template <class S, class Record>
 typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, typename AnyPositionDrive<S>::State x,
                                         const Course& course, Record&& record, const std::function<void(std::size_t)>& pause) {
     const auto fast = drive.compile();
+    const bool has_bounds = fast.has_bounds();
     x = fast.consistent(x);
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % steps_between_pauses == 0) pause(i);
-        const Interval<S> u = interval<S>(course.inputs + 9 * i);
+        const Interval<S> u = interval<S>(course.inputs + 12 * i);
         x = step<S>(fast, x, u, S(course.instants[i + 1] - course.instants[i]));
+        if (has_bounds) check_bounds(fast, x, u.end, course.instants[i + 1]);
         if (course.keep[i]) record(fast.output(x, u.end));
     }
     return x;

@@ -23,7 +23,8 @@ ATTRIBUTES = {
 
 def stubs() -> dict[Path, str]:
     """The text of each stub, by its place in the package."""
-    modules = ("strainwave._core", "strainwave.drives", *(f"strainwave.{family}" for family in _core.families))
+    of_models = {model.__module__ for family in _core.families.values() for model in family.values()}
+    modules = ("strainwave._core", "strainwave.drives", *sorted(of_models))
     return {PACKAGE / f"{module.rpartition('.')[2]}.pyi": stub(module) for module in modules}
 
 

@@ -22,8 +22,9 @@ STRICT = ("-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-psabi
 ZIG = (sys.executable, "-m", "ziglang", "c++")
 
 # Python may not call a module as it calls the function `load`.
-NAMESPACE = {"loads": "load"}
-GEAR = ("kinematics", "kinematic_error", "stiffness", "hysteresis", "friction", "friction")
+NAMESPACE = {"loads": "load", "kinematic_noise": "kinematic_error"}
+GEAR = ("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", "friction", "friction", "friction")
+PLACES = 3  # of friction, the last parts of a gear
 DRIVE = ("motor", "control", "loads")
 
 
@@ -58,9 +59,9 @@ def listed(family: str, scalar: str) -> Iterator[str]:
 
 
 def drives(scalar: str) -> list[str]:
-    """As many drives as the longest list has models; shorter lists go round, output friction is one ahead of input friction."""
+    """As many drives as the longest list has models; shorter lists go round, friction is one ahead from place to place."""
     count = max(map(len, _core.families.values()))
-    gear = [islice(listed(family, scalar), i == len(GEAR) - 1, None) for i, family in enumerate(GEAR)]
+    gear = [islice(listed(family, scalar), max(0, i + PLACES - len(GEAR)), None) for i, family in enumerate(GEAR)]
     drive = [listed(family, scalar) for family in DRIVE]
     return [
         f"strainwave::PositionDrive<{scalar}, strainwave::Gear<{scalar}, {', '.join(map(next, gear))}>, "

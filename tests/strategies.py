@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import re
+import warnings
+from functools import cache
 from typing import Any
 
 import strainwave as sw
@@ -21,11 +22,12 @@ TYPICAL = {
     "rad/s": (1e-2, 1e1),
     "kg.m2": (1e-5, 1e0),
     "H": (1e-4, 1e-2),
+    "1/(N.m)": (1e-3, 1e-1),
+    "m": (2.4e-2, 2.6e-2),
+    "K": (250.0, 350.0),
+    "1/K": (1e-3, 1e-1),
 }
 AROUND_ONE = (10**-1.5, 10**1.5)
-
-# The parts of a gear and of a drive that are named otherwise than the family they are chosen from.
-FAMILY = {"friction_input": "friction", "friction_output": "friction", "load": "loads"}
 
 Field = dict[str, Any]
 
@@ -39,61 +41,59 @@ def signed(magnitudes: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
     return st.tuples(st.sampled_from([1.0, -1.0]), magnitudes).map(lambda drawn: drawn[0] * drawn[1])
 
 
-def refusal(model: Any, field: Field, value: object) -> str:
-    """What a model says to one value of a field; nothing if it takes it."""
-    try:
-        model(**{field["name"]: [value] if field["kind"] == "sequence" else value})
-    except (TypeError, ValueError) as error:
-        return str(error)
-    return ""
-
-
-def options(model: Any, field: Field) -> list[str]:
-    """What a field that is a choice can be, as the model tells who asks for something else."""
-    return re.findall(r"'(\w+)'", refusal(model, field, None))
-
-
-def numbers(model: Any, field: Field) -> st.SearchStrategy[float]:
-    """What a number may be: zero too where that is allowed, negative too where nothing forbids it."""
-    magnitudes = log_uniform(*TYPICAL.get(field["unit"], AROUND_ONE))
+def numbers(field: Field) -> st.SearchStrategy[float]:
+    """What a number may be: zero too where that is allowed, negative too where nothing forbids it; within its limits."""
+    low, high = TYPICAL.get(field["unit"], AROUND_ONE)
+    if field["max"] is not None:
+        low, high = min(low, field["max"]), min(high, field["max"])
+    if field["min"]:
+        low, high = max(low, field["min"]), max(high, field["min"])
+    magnitudes = log_uniform(low, high)
     if field["min"] is None:
         return st.just(0.0) | signed(magnitudes)
-    positive = "must lie in (0" in refusal(model, field, 0.0)
-    return magnitudes if positive else st.one_of(st.just(0.0), *5 * [magnitudes])
+    return magnitudes if field["open"] or field["min"] > 0.0 else st.one_of(st.just(0.0), *5 * [magnitudes])
 
 
 def values(model: Any, field: Field) -> st.SearchStrategy[Any]:
-    """What a field may be. The sequences of one model are equally long."""
+    """What a field may be. The sequences of one model are equally long, if they can be."""
     match field["kind"]:
         case "part":
-            return gears if field["name"] == "gear" else models(FAMILY.get(field["name"], field["name"]))
+            return gears if field["name"] == "gear" else st.one_of([built(kind) for kind in field["options"].values()])
         case "choice":
-            return st.sampled_from(options(model, field))
+            return st.sampled_from(field["options"])
         case "count":
             return st.integers(int(field["min"]), int(field["max"]))
         case "sequence":
-            element, length = numbers(model, field), st.shared(st.integers(0, 8), key=model.name)
+            element, length = numbers(field), st.shared(st.integers(0, 8), key=model.name)
             return length.flatmap(lambda n: st.lists(element, min_size=n, max_size=n))
         case _:
-            return numbers(model, field)
+            return numbers(field)
 
 
+@cache
 def built(model: Any) -> st.SearchStrategy[Any]:
     """A model with every field drawn."""
 
     def make(drawn: dict[str, Any]) -> Any:
         try:
-            return model(**drawn)
+            with warnings.catch_warnings(action="ignore", category=_core.PassivityWarning):
+                return model(**drawn)
         except ValueError:  # a relation between fields, as t2 >= t1, does not hold
             reject()
 
     return st.fixed_dictionaries({field["name"]: values(model, field) for field in model.fields}).map(make)
 
 
-def models(family: str, *verbs: str) -> st.SearchStrategy[Any]:
-    """Any model of a family that has these verbs, with any numbers."""
-    having = [model for model in _core.families[family].values() if all(hasattr(model, verb) for verb in verbs)]
-    return st.one_of([built(model) for model in having])
+def models(family: str, *verbs: str, **claims: bool) -> st.SearchStrategy[Any]:
+    """Any model of a family that has these verbs and claims this of itself, with any numbers."""
+    return st.one_of(
+        [
+            built(model)
+            for model in _core.families[family].values()
+            if all(hasattr(model, verb) for verb in verbs)
+            and all(getattr(model, claim, None) == claimed for claim, claimed in claims.items())
+        ]
+    )
 
 
 gears = built(sw.Gear)

@@ -79,43 +79,52 @@ struct Choice {
     SW_VERB(voltage)
     SW_VERB(decay)
     SW_VERB(rate)
+    SW_VERB(everett)
+    SW_VERB(rising)
+    SW_VERB(falling)
+    SW_VERB(virgin)
+    SW_VERB(virgin_work)
 #undef SW_VERB
 
-    // What only some friction laws have.
-    constexpr State rate(const State& x, const friction::Contact<S>& contact) const {
-        return visit([&](const auto& law) {
-            if constexpr (requires { law.rate(own(law, x), contact); })
-                return stored(law, law.rate(own(law, x), contact));
-            else
-                return State{};
-        });
-    }
-    constexpr State decay(const friction::Contact<S>& contact) const {
-        return visit([&](const auto& law) {
-            if constexpr (requires { law.decay(contact); })
-                return stored(law, law.decay(contact));
-            else
-                return State{};
-        });
-    }
-    constexpr State confined(const State& x) const {
-        return visit([&](const auto& law) {
-            if constexpr (requires { law.confined(own(law, x)); })
-                return stored(law, law.confined(own(law, x)));
-            else
-                return x;
-        });
+    // Friction, modulated or not.
+    constexpr S torque(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return friction::torque(law, own(law, x), at); });
     }
     constexpr bool set_valued() const {
-        return visit([](const auto& law) { return friction::SetValued<std::remove_cvref_t<decltype(law)>>; });
+        return visit([](const auto& law) { return friction::set_valued(law); });
     }
-    constexpr S hold() const {
-        return visit([](const auto& law) {
-            if constexpr (friction::SetValued<std::remove_cvref_t<decltype(law)>>)
-                return law.hold();
-            else
-                return S(0.0);
-        });
+    constexpr S hold(const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return friction::hold(law, at); });
+    }
+    constexpr State rate(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::rate(law, own(law, x), at)); });
+    }
+    constexpr State decay(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::decay(law, own(law, x), at)); });
+    }
+    constexpr State confined(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::confined(law, own(law, x), at)); });
+    }
+    constexpr State renewed(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::renewed(law, own(law, x), at)); });
+    }
+    constexpr State advance(const State& x, const friction::Contact<S>& at, const S& dt) const {
+        return visit([&](const auto& law) { return stored(law, friction::advance(law, own(law, x), at, dt)); });
+    }
+    constexpr State settled(const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::settled(law, at)); });
+    }
+
+    template <class Where>
+    constexpr bool bounded() const {
+        return visit([](const auto& law) { return strainwave::bounded<Where>(law); });
+    }
+    template <class Where>
+    constexpr Domain<S> domain(const Where& where) const {
+        return visit([&](const auto& law) { return strainwave::domain<S>(law, where); });
+    }
+    constexpr bool active() const {
+        return visit([](const auto& law) { return law.active(); });
     }
 
 private:
@@ -145,17 +154,42 @@ private:
 
 namespace detail {
 
+/// A law that holds another holds any, where it is chosen at run time.
+template <class S, class Law>
+struct AtRunTime {
+    using type = Law;
+};
+
 template <class S, class L>
 struct ChoiceOf;
-template <class S, template <class> class... Law>
+template <class S, template <class...> class... Law>
 struct ChoiceOf<S, List<Law...>> {
-    using type = Choice<S, Law<S>...>;
+    using type = Choice<S, typename AtRunTime<S, Law<S>>::type...>;
 };
 
 }  // namespace detail
 
 template <class S, class L>
 using AnyOf = typename detail::ChoiceOf<S, L>::type;
+template <template <class...> class Law, class S>
+using AtRunTime = typename detail::AtRunTime<S, Law<S>>::type;
+
+namespace detail {
+
+template <class S, class Law>
+struct AtRunTime<S, friction::Cyclic<S, Law>> {
+    using type = friction::Cyclic<S, AnyOf<S, friction::Plain>>;
+};
+template <class S, class Law>
+struct AtRunTime<S, friction::Thermal<S, Law>> {
+    using type = friction::Thermal<S, AnyOf<S, friction::Varying>>;
+};
+template <class S, class Density>
+struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
+    using type = hysteresis::Preisach<S, AnyOf<S, hysteresis::Densities>>;
+};
+
+}  // namespace detail
 
 template <class S, class... Body>
 constexpr S inertia_of(const Choice<S, Body...>& body) {
@@ -163,8 +197,9 @@ constexpr S inertia_of(const Choice<S, Body...>& body) {
 }
 
 template <class S>
-using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, stiffness::Models>,
-                     AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>, AnyOf<S, friction::Models>>;
+using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
+                     AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>,
+                     AnyOf<S, friction::Models>, AnyOf<S, friction::Models>>;
 
 template <class S>
 using AnyPositionDrive = PositionDrive<S, AnyGear<S>, AnyOf<S, motor::Models>, AnyOf<S, control::Models>, AnyOf<S, load::Models>>;

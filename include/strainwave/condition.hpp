@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/field.hpp>
 
 namespace strainwave {
 
@@ -11,5 +12,44 @@ struct Condition {
     S right;
     const char* unit;
 };
+
+/// Where a law is valid: `value` within [low, high].
+template <class S>
+struct Domain {
+    const char* name;
+    S value;
+    S low{-unbounded};
+    S high{unbounded};
+    const char* unit;
+    const char* remedy;  ///< What the user can do: a sentence, or nothing
+
+    constexpr auto holds() const { return (value >= low) & !(value > high); }
+};
+
+/// A law that is valid within bounds only.
+template <class Law, class Where>
+concept Bounded = requires(const Law& law, const Where& where) { law.domain(where); };
+
+/// Whether a law has bounds; asked of a choice, whether the law chosen has.
+template <class Where, class Law>
+constexpr bool bounded(const Law& law) {
+    if constexpr (requires { law.modulated(Where{}); })
+        return bounded<Where>(law.law);
+    else if constexpr (requires { law.template bounded<Where>(); })
+        return law.template bounded<Where>();
+    else
+        return Bounded<Law, Where>;
+}
+
+/// Where a law is valid, for the twist or the contact it is asked at; everywhere, if it does not say.
+template <class S, class Law, class Where>
+constexpr Domain<S> domain(const Law& law, const Where& where) {
+    if constexpr (requires { law.modulated(where); })
+        return domain<S>(law.law, law.modulated(where));
+    else if constexpr (Bounded<Law, Where>)
+        return law.domain(where);
+    else
+        return {"", S(0.0), S(-unbounded), S(unbounded), "", ""};
+}
 
 }  // namespace strainwave

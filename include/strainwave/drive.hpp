@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/condition.hpp>
 #include <strainwave/control/reference.hpp>
 #include <strainwave/friction/contact.hpp>
 #include <strainwave/gear.hpp>
@@ -10,18 +11,21 @@ template <class S>
 struct Input {
     S command{0.0};
     S command_rate{0.0};
-    S load_torque{0.0};  ///< N.m, added to the load's own
+    S load_torque{0.0};                            ///< N.m, added to the load's own
+    S temperature{friction::room_temperature};  ///< K
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, command, "1", "Command: output angle [rad] of a controlled drive, voltage [V] of an open loop"));
         visit(SW_FIELD(m, command_rate, "1/s", "Time derivative of the command"));
         visit(SW_FIELD(m, load_torque, "N.m", "Torque that holds the output back, besides the load's own"));
+        visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
     }
 };
 
 /// What flows continuously. The transmission error theta_in / i - theta_out replaces the output angle.
-template <class S, class MotorState, class ControlState, class FrictionInputState, class FrictionOutputState>
+template <class S, class MotorState, class ControlState, class FrictionInputState, class FrictionMeshState,
+          class FrictionOutputState>
 struct Motion {
     MotorState motor{};
     ControlState control{};
@@ -30,6 +34,7 @@ struct Motion {
     S transmission_error{0.0};
     S output_speed{0.0};
     FrictionInputState friction_input{};
+    FrictionMeshState friction_mesh{};
     FrictionOutputState friction_output{};
 
     template <class Self, class Visit>
@@ -41,6 +46,7 @@ struct Motion {
         visit(SW_FIELD(m, transmission_error, "rad", "theta_in / i - theta_out"));
         visit(SW_FIELD(m, output_speed, "rad/s", "Output speed"));
         visit(SW_PART(m, friction_input, "State of the friction at the input"));
+        visit(SW_PART(m, friction_mesh, "State of the friction of the mesh"));
         visit(SW_PART(m, friction_output, "State of the friction at the output"));
     }
 };
@@ -70,7 +76,7 @@ struct State {
 template <class S>
 struct Output {
     S command, input_angle, input_speed, output_angle, output_speed, twist, kinematic_error, transmission_error, torque, current,
-        voltage, friction_input, friction_output, load_torque;
+        voltage, friction_input, friction_mesh, friction_output, load_torque, temperature;
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -86,8 +92,10 @@ struct Output {
         visit(SW_FIELD(m, current, "A", "Motor current"));
         visit(SW_FIELD(m, voltage, "V", "Motor voltage"));
         visit(SW_FIELD(m, friction_input, "N.m", "Friction torque at the input, opposing its motion"));
+        visit(SW_FIELD(m, friction_mesh, "N.m", "Friction torque of the mesh, opposing its motion, at the output's scale"));
         visit(SW_FIELD(m, friction_output, "N.m", "Friction torque at the output, opposing its motion"));
         visit(SW_FIELD(m, load_torque, "N.m", "Torque of the load, holding the output back"));
+        visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
     }
 };
 
@@ -111,10 +119,12 @@ struct PositionDrive {
     static constexpr auto doc = R"(
         A motor, its controller, one strain wave gear and a load.
 
-        .. math:: J_{in} \ddot\theta_{in} = K_m i - T\,(1/i - e') - F_{in}, \qquad
+        .. math:: J_{in} \ddot\theta_{in} = K_m i - (T + F_{mesh})\,(1/i - e') - F_{in}, \qquad
                   J_{out} \ddot\theta_{out} = T - T_{load} - F_{out}
 
-        with J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear, F the friction of each side.
+        with J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear, F the friction of each place.
+        Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
+        told apart: it is reported in proportion to what each can hold.
         Angles are carried relative to the rigid motion, so an hour of rotation is as accurate as a second.
 
         >>> import strainwave as sw
@@ -131,7 +141,7 @@ struct PositionDrive {
     }
 
     constexpr const char* problem() const {
-        return all(inertia_of(motor) + gear.input_inertia > S(0.0))
+        return all(input_inertia() > S(0.0))
                    ? nullptr
                    : "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
     }
@@ -142,18 +152,26 @@ struct PositionDrive {
     }
 
     using FrictionInput = decltype(Gear{}.friction_input);
+    using FrictionMesh = decltype(Gear{}.friction_mesh);
     using FrictionOutput = decltype(Gear{}.friction_output);
     using Hysteresis = decltype(Gear{}.hysteresis);
 
     using Motion = strainwave::Motion<S, typename Motor::State, typename Control::State, typename FrictionInput::State,
-                                      typename FrictionOutput::State>;
+                                      typename FrictionMesh::State, typename FrictionOutput::State>;
     using State = strainwave::State<S, Motion, typename Hysteresis::State>;
     using Output = strainwave::Output<S>;
+    using Contact = friction::Contact<S>;
 
-    /// Rate of the motion, and the torque that drives each side with its friction left out.
+    /// The places where friction acts.
+    struct Contacts {
+        Contact input, mesh, output;
+    };
+
+    /// Rate of the motion, the torques that friction which can stick must hold, and where that came from.
     struct Flow {
         Motion rate;
-        S twist;
+        typename Gear::Mesh mesh;
+        Contacts contacts;
         S input_balance;
         S output_balance;
     };
@@ -161,53 +179,64 @@ struct PositionDrive {
     /// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
     constexpr State rest() const {
         State x{};
-        x.motion.transmission_error = gear.kinematic_error.at(kinematic_error::Angle<S>{}).value;
-        x.sliding_input = at_rest(gear.friction_input);
-        x.sliding_output = at_rest(gear.friction_output);
+        // Once is enough without noise; with noise, whose amplitude follows the torque, a few rounds bring the twist to zero.
+        for (int i = 0; i < 8; ++i)
+            x.motion.transmission_error = gear.mesh({}, S(0.0), x.motion.transmission_error, S(0.0), {}, S(0.0)).error;
+        x.sliding_input = S(input_sticks() ? 0.0 : 1.0);
+        x.sliding_output = S(output_sticks() ? 0.0 : 1.0);
         return x;
     }
 
     constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u) const {
-        const auto mesh = this->mesh(x, y);
         const auto reference = this->reference(x, y, u);
         const S voltage = control.voltage(y.control, reference);
-        const friction::Contact<S> input = contact_input(x, y), output = contact_output(x, y);
-        const S torque = motor.torque(motor.current(y.motor, voltage, y.input_speed));
+        const S motor_torque = motor.torque(motor.current(y.motor, voltage, y.input_speed));
 
         Flow flow{};
-        flow.twist = mesh.twist;
-        flow.input_balance = torque - mesh.torque * mesh.per_input;
-        flow.output_balance = mesh.torque - load.torque(output_angle(x, y)) - u.load_torque;
+        const auto mesh = flow.mesh = this->mesh(x, y);
+        const auto& at = flow.contacts = contacts(x, y, mesh, u);
+        const Resistance input = resistance(gear.friction_input, y.friction_input, at.input);
+        const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh);
+        const Resistance output = resistance(gear.friction_output, y.friction_output, at.output);
+        flow.input_balance = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
+        flow.output_balance = mesh.torque - load.torque(output_angle(x, y)) - u.load_torque - output.always;
         Motion& rate = flow.rate;
         rate.motor = motor.rate(y.motor, voltage, y.input_speed);
         rate.control = control.rate(y.control, reference);
         rate.input_angle = y.input_speed;
-        rate.input_speed = moving(input, flow.input_balance - gear.friction_input.torque(y.friction_input, input)) /
-                           (inertia_of(motor) + gear.input_inertia);
+        rate.input_speed = moving(at.input, flow.input_balance - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
-        rate.output_speed =
-            moving(output, flow.output_balance - gear.friction_output.torque(y.friction_output, output)) / inertia_of(load);
-        if constexpr (friction::Bristle<FrictionInput>) rate.friction_input = gear.friction_input.rate(y.friction_input, input);
-        if constexpr (friction::Bristle<FrictionOutput>)
-            rate.friction_output = gear.friction_output.rate(y.friction_output, output);
+        rate.output_speed = moving(at.output, flow.output_balance - output.sliding) / inertia_of(load);
+        rate.friction_input = friction::rate(gear.friction_input, y.friction_input, at.input);
+        rate.friction_mesh = friction::rate(gear.friction_mesh, y.friction_mesh, at.mesh);
+        rate.friction_output = friction::rate(gear.friction_output, y.friction_output, at.output);
         return flow;
     }
 
     /// How fast each member forgets itself [1/s]: what an explicit method could not follow.
-    constexpr Motion decay(const State& x) const {
+    constexpr Motion decay(const Motion& y, const Contacts& at) const {
         Motion rates{};
         rates.motor = motor.decay();
-        if constexpr (friction::Bristle<FrictionInput>)
-            rates.friction_input = gear.friction_input.decay(contact_input(x, x.motion));
-        if constexpr (friction::Bristle<FrictionOutput>)
-            rates.friction_output = gear.friction_output.decay(contact_output(x, x.motion));
+        rates.friction_input = friction::decay(gear.friction_input, y.friction_input, at.input);
+        rates.friction_mesh = friction::decay(gear.friction_mesh, y.friction_mesh, at.mesh);
+        rates.friction_output = friction::decay(gear.friction_output, y.friction_output, at.output);
         return rates;
     }
 
-    /// The bristles within what they can ever reach, also where an integrator's stage would leave it.
-    constexpr Motion confined(Motion y) const {
-        if constexpr (friction::Bristle<FrictionInput>) y.friction_input = gear.friction_input.confined(y.friction_input);
-        if constexpr (friction::Bristle<FrictionOutput>) y.friction_output = gear.friction_output.confined(y.friction_output);
+    /// The states of friction within what they can ever reach, also where an integrator's stage would leave it. `at` holds the
+    /// contacts of an instant close by.
+    constexpr Motion confined(Motion y, const Contacts& at, const S& per_input) const {
+        y.friction_input = friction::confined(gear.friction_input, y.friction_input, at.input.moving(y.input_speed));
+        y.friction_mesh = friction::confined(gear.friction_mesh, y.friction_mesh, at.mesh.moving(y.input_speed * per_input));
+        y.friction_output = friction::confined(gear.friction_output, y.friction_output, at.output.moving(y.output_speed));
+        return y;
+    }
+
+    /// What a step keeps fixed of the states of friction, decided anew at its end.
+    constexpr Motion renewed(Motion y, const Contacts& at, const S& per_input) const {
+        y.friction_input = friction::renewed(gear.friction_input, y.friction_input, at.input.moving(y.input_speed));
+        y.friction_mesh = friction::renewed(gear.friction_mesh, y.friction_mesh, at.mesh.moving(y.input_speed * per_input));
+        y.friction_output = friction::renewed(gear.friction_output, y.friction_output, at.output.moving(y.output_speed));
         return y;
     }
 
@@ -228,13 +257,13 @@ struct PositionDrive {
 
     /// A state from outside, with each side's sense of sliding as its speed and its law have it.
     constexpr State consistent(State x) const {
-        x.sliding_input = sense_of(gear.friction_input, x.motion.input_speed, x.sliding_input);
-        x.sliding_output = sense_of(gear.friction_output, x.motion.output_speed, x.sliding_output);
+        x.sliding_input = sense_of(input_sticks(), x.motion.input_speed, x.sliding_input);
+        x.sliding_output = sense_of(output_sticks(), x.motion.output_speed, x.sliding_output);
         return x;
     }
 
     /// Whether a side can stick.
-    constexpr bool set_valued() const { return is_set_valued(gear.friction_input) || is_set_valued(gear.friction_output); }
+    constexpr bool set_valued() const { return input_sticks() || output_sticks(); }
 
     /// How far both sides are from changing between sticking and sliding; below zero, one has.
     constexpr S margin(const State& x, const Input<S>& u) const {
@@ -262,14 +291,24 @@ struct PositionDrive {
         x.motion.input_speed = select(input_stops, S(0.0), x.motion.input_speed);
         x.motion.output_speed = select(output_stops, S(0.0), x.motion.output_speed);
         const Flow now = flow(x, x.motion, u);
-        x.sliding_input = select(at_input, sense(now.input_balance, gear.friction_input, input_stops), x.sliding_input);
-        x.sliding_output = select(at_output, sense(now.output_balance, gear.friction_output, output_stops), x.sliding_output);
+        x.sliding_input = select(at_input, sense(now.input_balance, hold_input(now), input_stops), x.sliding_input);
+        x.sliding_output = select(at_output, sense(now.output_balance, hold_output(now), output_stops), x.sliding_output);
         return x;
     }
 
-    constexpr friction::Contact<S> contact_input(const State& x, const Motion& y) const { return {y.input_speed, x.sliding_input}; }
-    constexpr friction::Contact<S> contact_output(const State& x, const Motion& y) const {
-        return {y.output_speed, x.sliding_output};
+    /// Whether every part is valid where the drive stands; visit(part, Domain) of those that may not be.
+    template <class Visit>
+    constexpr void bounds(const State& x, const Input<S>& u, Visit&& visit) const {
+        const Flow now = flow(x, x.motion, u);
+        if (bounded<S>(gear.stiffness)) visit("gear.stiffness", domain<S>(gear.stiffness, now.mesh.twist));
+        if (bounded<Contact>(gear.friction_input)) visit("gear.friction_input", domain<S>(gear.friction_input, now.contacts.input));
+        if (bounded<Contact>(gear.friction_mesh)) visit("gear.friction_mesh", domain<S>(gear.friction_mesh, now.contacts.mesh));
+        if (bounded<Contact>(gear.friction_output))
+            visit("gear.friction_output", domain<S>(gear.friction_output, now.contacts.output));
+    }
+    constexpr bool has_bounds() const {
+        return bounded<S>(gear.stiffness) || bounded<Contact>(gear.friction_input) || bounded<Contact>(gear.friction_mesh) ||
+               bounded<Contact>(gear.friction_output);
     }
 
     constexpr auto mesh(const State& x, const Motion& y) const {
@@ -278,8 +317,7 @@ struct PositionDrive {
 
     constexpr Output output(const State& x, const Input<S>& u) const {
         const Motion& y = x.motion;
-        const auto mesh = this->mesh(x, y);
-        const auto flow = this->flow(x, y, u);
+        const auto now = flow(x, y, u);
         const S voltage = control.voltage(y.control, reference(x, y, u));
         const S output_angle = this->output_angle(x, y);
         const S load_torque = load.torque(output_angle) + u.load_torque;
@@ -288,67 +326,95 @@ struct PositionDrive {
                 y.input_speed,
                 output_angle,
                 y.output_speed,
-                mesh.twist,
-                mesh.error,
+                now.mesh.twist,
+                now.mesh.error,
                 y.transmission_error,
-                mesh.torque,
+                now.mesh.torque,
                 motor.current(y.motor, voltage, y.input_speed),
                 voltage,
-                holding(contact_input(x, y), flow.input_balance, gear.friction_input.torque(y.friction_input, contact_input(x, y))),
-                holding(contact_output(x, y), flow.output_balance,
-                        gear.friction_output.torque(y.friction_output, contact_output(x, y))),
-                load_torque};
+                reported(gear.friction_input, y.friction_input, now.contacts.input, held(now.input_balance, hold_input(now))),
+                reported(gear.friction_mesh, y.friction_mesh, now.contacts.mesh,
+                         along(now.mesh.per_input, held(now.input_balance, hold_input(now)))),
+                reported(gear.friction_output, y.friction_output, now.contacts.output,
+                         held(now.output_balance, hold_output(now))),
+                load_torque,
+                u.temperature};
     }
 
 private:
+    /// What a friction opposes: the part that acts at rest too, and the part that can stick.
+    struct Resistance {
+        S always, sliding;
+    };
     template <class Law>
-    static constexpr bool is_set_valued(const Law& law) {
-        if constexpr (requires { law.set_valued(); })
-            return law.set_valued();
-        else
-            return friction::SetValued<Law>;
+    static constexpr Resistance resistance(const Law& law, const typename Law::State& x, const Contact& contact) {
+        const S torque = friction::torque(law, x, contact);
+        if (friction::set_valued(law)) return {S(0.0), torque};
+        return {torque, S(0.0)};
     }
-    template <class Law>
-    static constexpr S sense_of(const Law& law, const S& speed, const S& sliding) {
-        if (!is_set_valued(law)) return S(1.0);
+
+    constexpr S input_inertia() const { return inertia_of(motor) + gear.input_inertia; }
+    constexpr bool input_sticks() const {
+        return friction::set_valued(gear.friction_input) || friction::set_valued(gear.friction_mesh);
+    }
+    constexpr bool output_sticks() const { return friction::set_valued(gear.friction_output); }
+
+    static constexpr S sense_of(bool sticks, const S& speed, const S& sliding) {
+        if (!sticks) return S(1.0);
         return select(speed == S(0.0), sign(sliding), sign(speed));
     }
-    template <class Law>
-    static constexpr S at_rest(const Law& law) {
-        return S(is_set_valued(law) ? 0.0 : 1.0);
+
+    /// How each place moves and what it bears. The output's angle is split into whole turns before it is multiplied out.
+    constexpr Contacts contacts(const State& x, const Motion& y, const typename Gear::Mesh& mesh, const Input<S>& u) const {
+        const S inverse = gear.kinematics.inverse_ratio(), turned = x.turns * inverse, turns = rint(turned);
+        const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse;
+        Contacts at{};
+        at.input = {y.input_speed, x.sliding_input, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, u.temperature};
+        at.mesh = {y.input_speed * mesh.per_input, along(mesh.per_input, x.sliding_input), {rigid, turns}, mesh.torque, u.temperature};
+        at.output = {y.output_speed, x.sliding_output, {rigid - y.transmission_error, turns}, mesh.torque, u.temperature};
+        return at;
+    }
+
+    /// The largest torque that holds the input against what drives it, and likewise the output.
+    constexpr S hold_input(const Flow& now) const {
+        const S push = sign(now.input_balance), per_input = now.mesh.per_input;
+        return friction::hold(gear.friction_input, now.contacts.input.pushed(push)) +
+               abs(per_input) * friction::hold(gear.friction_mesh, now.contacts.mesh.pushed(along(per_input, push)));
+    }
+    constexpr S hold_output(const Flow& now) const {
+        return friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_balance)));
     }
 
     constexpr S margin_input(const State& x, const Flow& now) const {
-        return margin(gear.friction_input, contact_input(x, x.motion), now.input_balance);
+        return margin(input_sticks(), x.sliding_input, x.motion.input_speed, hold_input(now), now.input_balance);
     }
     constexpr S margin_output(const State& x, const Flow& now) const {
-        return margin(gear.friction_output, contact_output(x, x.motion), now.output_balance);
+        return margin(output_sticks(), x.sliding_output, x.motion.output_speed, hold_output(now), now.output_balance);
     }
-    template <class Law>
-    static constexpr S margin(const Law& law, const friction::Contact<S>& contact, const S& balance) {
-        if constexpr (friction::SetValued<Law>) {
-            if (is_set_valued(law))
-                return select(contact.sliding == S(0.0), law.hold() - abs(balance), contact.sliding * contact.speed);
-        }
-        return S(unbounded);
+    static constexpr S margin(bool sticks, const S& sliding, const S& speed, const S& hold, const S& balance) {
+        if (!sticks) return S(unbounded);
+        return select(sliding == S(0.0), hold - abs(balance), sliding * speed);
     }
 
     /// Which way a side goes at an event: one that stops sticks if its friction holds it.
-    template <class Law, class Mask>
-    static constexpr S sense(const S& balance, const Law& law, const Mask& stops) {
-        if constexpr (friction::SetValued<Law>)
-            return select(stops & !(abs(balance) > law.hold()), S(0.0), sign(balance));
-        else
-            return S(1.0);
+    template <class Mask>
+    static constexpr S sense(const S& balance, const S& hold, const Mask& stops) {
+        return select(stops & !(abs(balance) > hold), S(0.0), sign(balance));
     }
 
     /// A side that sticks does not accelerate.
-    static constexpr S moving(const friction::Contact<S>& contact, const S& torque) {
+    static constexpr S moving(const Contact& contact, const S& torque) {
         return select(contact.sliding == S(0.0), S(0.0), torque);
     }
-    /// A side that sticks balances what drives it.
-    static constexpr S holding(const friction::Contact<S>& contact, const S& balance, const S& sliding) {
-        return select(contact.sliding == S(0.0), balance, sliding);
+
+    /// The share of its hold that a side which sticks makes use of, with the sense of what it balances.
+    static constexpr S held(const S& balance, const S& hold) { return balance / max(hold, S(smallest)); }
+    /// A place that sticks balances its share of what drives its side.
+    template <class Law>
+    static constexpr S reported(const Law& law, const typename Law::State& x, const Contact& contact, const S& share) {
+        const S sliding = friction::torque(law, x, contact);
+        if (!friction::set_valued(law)) return sliding;
+        return select(contact.sliding == S(0.0), share * friction::hold(law, contact.pushed(sign(share))), sliding);
     }
 
     constexpr S input_angle(const State& x, const Motion& y) const { return y.input_angle + S(2.0 * pi) * x.turns; }

@@ -16,6 +16,7 @@ struct Field {
     const char* doc;
     double min = -unbounded;
     double max = unbounded;
+    bool whole = false;  ///< Only whole numbers
 };
 
 /// Describes a number, or a sequence of numbers: SW_FIELD(m, member, unit, doc, min, max).

@@ -1,28 +1,22 @@
 #pragma once
+#include <strainwave/compiled.hpp>
 #include <strainwave/field.hpp>
-#include <strainwave/kinematic_error/fourier.hpp>
+#include <strainwave/kinematic_error/error.hpp>
 #include <strainwave/math.hpp>
 
 namespace strainwave {
 
-/// The law as the integrator wants it: rearranged for speed where the law knows how.
-template <class Law>
-constexpr auto compiled(const Law& law) {
-    if constexpr (requires { law.compile(); })
-        return law.compile();
-    else
-        return law;
-}
-
-template <class S, class Kinematics, class KinematicError, class Stiffness, class Hysteresis, class FrictionInput,
-          class FrictionOutput>
+template <class S, class Kinematics, class KinematicError, class KinematicNoise, class Stiffness, class Hysteresis,
+          class FrictionInput, class FrictionMesh, class FrictionOutput>
 struct Gear {
     Kinematics kinematics{};
     KinematicError kinematic_error{};
+    KinematicNoise kinematic_noise{};
     Stiffness stiffness{};
     Hysteresis hysteresis{};
     S damping{0.0};
     FrictionInput friction_input{};
+    FrictionMesh friction_mesh{};
     FrictionOutput friction_output{};
     S input_inertia{0.0};
 
@@ -30,14 +24,22 @@ struct Gear {
     static constexpr auto source =
         "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)";
     static constexpr auto doc = R"(
-        One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at both shafts.
+        One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
 
         .. math:: \delta = \theta_{in}/i - \theta_{out} - e(\theta_{in}), \qquad
                   T = T_{stiffness}(\delta) + T_{hysteresis}(\delta, \text{history}) + c\,\dot\delta
 
         T acts on the output and, as T (1/i - e'(theta_in)), on the input. The e' term is the reaction of the error on the
         input: the review derives none (E-R3) and the actuator paper omits it (E-A5), but without it energy is not conserved.
-        Every part is a law of its own; change one with ``gear.replace(hysteresis=...)``.
+        e is the deterministic kinematic error plus the noise, whose amplitude follows the elastic torque and the input speed.
+
+        Friction acts at the input (wave generator), at the mesh, and at the output (bearing). The mesh lies between the
+        kinematics and the spring: it moves with (1/i - e') times the input speed, at the output's scale, transmits T, and
+        what it takes weighs on the input. Every law of friction may stand at every place, each under the load that its place
+        transmits, the angle it stands at and the temperature.
+
+        Every part is a law of its own, from the ideal gear to one with all effects over the whole envelope of speed, load and
+        temperature; change one with ``gear.replace(hysteresis=...)``.
 
         >>> import strainwave as sw
         >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), damping=10.0)
@@ -48,18 +50,23 @@ struct Gear {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, kinematics, "Rigid motion: teeth and fixed member"));
         visit(SW_PART(m, kinematic_error, "Pure kinematic error at the output, over the input angle"));
+        visit(SW_PART(m, kinematic_noise, "Random kinematic error, added to the deterministic one"));
         visit(SW_PART(m, stiffness, "Elastic torque over the twist"));
         visit(SW_PART(m, hysteresis, "Torque that depends on the history of the twist"));
         visit(SW_FIELD(m, damping, "N.m.s/rad", "Torque per rate of twist", 0));
         visit(SW_PART(m, friction_input, "Friction at the wave generator, over the input speed"));
+        visit(SW_PART(m, friction_mesh, "Friction of the mesh, at the output's scale, over the speed of the input referred to it"));
         visit(SW_PART(m, friction_output, "Friction at the output, over the output speed"));
         visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
     }
 
     constexpr auto compile() const {
-        return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), Stiffness, Hysteresis, FrictionInput,
-                    FrictionOutput>{compiled(kinematics), compiled(kinematic_error), stiffness,    hysteresis, damping,
-                                    friction_input,       friction_output,           input_inertia};
+        return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), decltype(compiled(kinematic_noise)),
+                    decltype(compiled(stiffness)), decltype(compiled(hysteresis)), decltype(compiled(friction_input)),
+                    decltype(compiled(friction_mesh)), decltype(compiled(friction_output))>{
+            compiled(kinematics),      compiled(kinematic_error), compiled(kinematic_noise), compiled(stiffness),
+            compiled(hysteresis),      damping,                   compiled(friction_input),  compiled(friction_mesh),
+            compiled(friction_output), input_inertia};
     }
 
     /// How the two shafts stand to each other.
@@ -71,14 +78,27 @@ struct Gear {
     };
 
     /// `transmission_error` is theta_in / i - theta_out; the hysteresis was last brought up to date at `held_twist`.
-    constexpr Mesh mesh(const kinematic_error::Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
-                        const S& output_speed, const typename Hysteresis::State& held, const S& held_twist) const {
-        const kinematic_error::Error<S> error = kinematic_error.at(input_angle);
+    constexpr Mesh mesh(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error, const S& output_speed,
+                        const typename Hysteresis::State& held, const S& held_twist) const {
+        const kinematic_error::Error<S> error = this->error(input_angle, input_speed, transmission_error);
         const S per_input = kinematics.inverse_ratio() - error.slope;
         const S twist = transmission_error - error.value;
         const S twist_rate = per_input * input_speed - output_speed;
         const S torque = stiffness.torque(twist) + hysteresis.torque(held, twist - held_twist) + damping * twist_rate;
         return {error.value, per_input, twist, torque};
+    }
+
+private:
+    /// The noise follows the elastic torque that there is without it, so that neither waits for the other.
+    constexpr kinematic_error::Error<S> error(const Angle<S>& input_angle, const S& input_speed,
+                                              const S& transmission_error) const {
+        kinematic_error::Error<S> error = kinematic_error.at(input_angle);
+        if (kinematic_noise.active()) {
+            const S torque = stiffness.torque(transmission_error - error.value);
+            const kinematic_error::Error<S> noise = kinematic_noise.at(input_angle, torque, input_speed);
+            error = {error.value + noise.value, error.slope + noise.slope};
+        }
+        return error;
     }
 };
 

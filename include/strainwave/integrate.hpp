@@ -23,10 +23,12 @@ private:
         const S da = half * select(late, middle.command_rate, start.command_rate);
         const S db = half * select(late, end.command_rate, middle.command_rate);
         const S bend = S(3.0) * (b - a) - S(2.0) * da - db, turn = S(2.0) * (a - b) + da + db;
-        const S torque_a = select(late, middle.load_torque, start.load_torque);
-        const S torque_b = select(late, end.load_torque, middle.load_torque);
+        const auto straight = [&](S Input<S>::*signal) {
+            const S from = select(late, middle.*signal, start.*signal);
+            return from + x * (select(late, end.*signal, middle.*signal) - from);
+        };
         return {a + x * (da + x * (bend + x * turn)), (da + x * (S(2.0) * bend + S(3.0) * x * turn)) / max(half, S(smallest)),
-                torque_a + x * (torque_b - torque_a)};
+                straight(&Input<S>::load_torque), straight(&Input<S>::temperature)};
     }
 };
 
@@ -118,17 +120,18 @@ constexpr typename Drive::State smooth_step(const Drive& drive, const typename D
                                             const S& dt) {
     const auto y1 = before.motion;
     const auto now = drive.flow(before, y1, u.start);
-    auto x = drive.remembered(before, now.twist);
+    auto x = drive.remembered(before, now.mesh.twist);
     const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
-    const Relaxation<S, typename Drive::Motion> scheme(drive.decay(x), dt);
+    const auto confined = [&](const auto& y) { return drive.confined(y, now.contacts, now.mesh.per_input); };
+    const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y1, now.contacts), dt);
     const auto n1 = scheme.forcing(now.rate, y1);
-    const auto y2 = drive.confined(scheme.halfway(y1, n1));
+    const auto y2 = confined(scheme.halfway(y1, n1));
     const auto n2 = scheme.forcing(rate(y2, u.middle), y2);
-    const auto y3 = drive.confined(scheme.halfway(y1, n2));
+    const auto y3 = confined(scheme.halfway(y1, n2));
     const auto n3 = scheme.forcing(rate(y3, u.middle), y3);
-    const auto y4 = drive.confined(scheme.onward(y2, n3, n1));
+    const auto y4 = confined(scheme.onward(y2, n3, n1));
     const auto n4 = scheme.forcing(rate(y4, u.end), y4);
-    x.motion = drive.confined(scheme.complete(y1, n1, n2, n3, n4));
+    x.motion = drive.renewed(confined(scheme.complete(y1, n1, n2, n3, n4)), now.contacts, now.mesh.per_input);
     return drive.wrapped(x);
 }
 

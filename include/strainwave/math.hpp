@@ -8,22 +8,28 @@
 namespace strainwave {
 
 #if defined(__CUDACC_RTC__)
+using ::atan;
 using ::cos;
 using ::exp;
 using ::fabs;
+using ::log;
 using ::rint;
 using ::sin;
 using ::sqrt;
 #else
+using std::atan;
 using std::cos;
 using std::exp;
 using std::fabs;
+using std::log;
 using std::rint;
 using std::sin;
 using std::sqrt;
 #endif
 
 inline constexpr double pi = 3.14159265358979323846;
+/// exp(-80) vanishes beside 1 in every scalar; further out exp only underflows, slowly.
+inline constexpr double beyond_digits = 80.0;
 
 constexpr double select(bool mask, double a, double b) { return mask ? a : b; }
 constexpr float select(bool mask, float a, float b) { return mask ? a : b; }

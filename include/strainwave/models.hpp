@@ -2,41 +2,70 @@
 #include <strainwave/control/open_loop.hpp>
 #include <strainwave/control/pid.hpp>
 #include <strainwave/friction/coulomb.hpp>
+#include <strainwave/friction/cyclic.hpp>
+#include <strainwave/friction/load_dependent.hpp>
 #include <strainwave/friction/lugre.hpp>
+#include <strainwave/friction/maxwell_slip_friction.hpp>
+#include <strainwave/friction/position_dependent.hpp>
 #include <strainwave/friction/stribeck.hpp>
+#include <strainwave/friction/thermal.hpp>
+#include <strainwave/friction/torque_efficiency.hpp>
 #include <strainwave/friction/viscous.hpp>
+#include <strainwave/hysteresis/bouc_wen.hpp>
 #include <strainwave/hysteresis/fading_memory.hpp>
 #include <strainwave/hysteresis/maxwell_slip.hpp>
+#include <strainwave/hysteresis/preisach.hpp>
+#include <strainwave/hysteresis/regimes.hpp>
 #include <strainwave/kinematic_error/fourier.hpp>
+#include <strainwave/kinematic_error/misalignment.hpp>
+#include <strainwave/kinematic_error/stochastic.hpp>
 #include <strainwave/kinematics.hpp>
 #include <strainwave/load/inertia.hpp>
 #include <strainwave/load/pendulum.hpp>
 #include <strainwave/motor/dc.hpp>
 #include <strainwave/stiffness/cubic.hpp>
 #include <strainwave/stiffness/linear.hpp>
+#include <strainwave/stiffness/multi_compliance.hpp>
+#include <strainwave/stiffness/piecewise.hpp>
 #include <strainwave/stiffness/three_segment.hpp>
 
 /// The closed lists of models. A new model is one header, and one line here. The first of a family is its default.
 namespace strainwave {
 
-template <template <class> class... Law>
+template <template <class...> class... Law>
 struct List {};
+
+namespace detail {
+template <class L, template <class...> class... More>
+struct Extension;
+template <template <class...> class... Law, template <class...> class... More>
+struct Extension<List<Law...>, More...> {
+    using type = List<Law..., More...>;
+};
+}  // namespace detail
+/// A list, and what may stand around its laws.
+template <class L, template <class...> class... More>
+using Extended = typename detail::Extension<L, More...>::type;
 
 namespace kinematics {
 using Models = List<StrainWave, PlainRatio>;
 }
 namespace kinematic_error {
-using Models = List<Fourier>;
-}
+using Models = List<Fourier, Misalignment>;
+using Noises = List<Stochastic>;
+}  // namespace kinematic_error
 namespace friction {
-using Models = List<Viscous, Coulomb, Stribeck, LuGre>;
-}
+using Plain = List<Viscous, Coulomb, Stribeck, PositionDependent, LuGre, MaxwellSlipFriction, LoadDependent, TorqueEfficiency>;
+using Varying = Extended<Plain, Cyclic>;
+using Models = Extended<Varying, Thermal>;
+}  // namespace friction
 namespace stiffness {
-using Models = List<Linear, Cubic, ThreeSegment>;
+using Models = List<Linear, Piecewise, ThreeSegment, Cubic, MultiCompliance>;
 }
 namespace hysteresis {
-using Models = List<MaxwellSlip, FadingMemory>;
-}
+using Models = List<MaxwellSlip, FadingMemory, BoucWen, Preisach, Regimes>;
+using Densities = List<PowerDensity, GridDensity>;
+}  // namespace hysteresis
 namespace motor {
 using Models = List<DC>;
 }

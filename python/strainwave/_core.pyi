@@ -33,14 +33,22 @@ class PassivityWarning(UserWarning):
 
 class Gear:
     """
-    One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at both shafts.
+    One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
 
     .. math:: \\delta = \\theta_{in}/i - \\theta_{out} - e(\\theta_{in}), \\qquad
               T = T_{stiffness}(\\delta) + T_{hysteresis}(\\delta, \\text{history}) + c\\,\\dot\\delta
 
     T acts on the output and, as T (1/i - e'(theta_in)), on the input. The e' term is the reaction of the error on the
     input: the review derives none (E-R3) and the actuator paper omits it (E-A5), but without it energy is not conserved.
-    Every part is a law of its own; change one with ``gear.replace(hysteresis=...)``.
+    e is the deterministic kinematic error plus the noise, whose amplitude follows the elastic torque and the input speed.
+
+    Friction acts at the input (wave generator), at the mesh, and at the output (bearing). The mesh lies between the
+    kinematics and the spring: it moves with (1/i - e') times the input speed, at the output's scale, transmits T, and
+    what it takes weighs on the input. Every law of friction may stand at every place, each under the load that its place
+    transmits, the angle it stands at and the temperature.
+
+    Every part is a law of its own, from the ideal gear to one with all effects over the whole envelope of speed, load and
+    temperature; change one with ``gear.replace(hysteresis=...)``.
 
     >>> import strainwave as sw
     >>> gear = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), damping=10.0)
@@ -51,10 +59,12 @@ class Gear:
     ----------
     kinematics: Rigid motion: teeth and fixed member; default StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline')
     kinematic_error: Pure kinematic error at the output, over the input angle; default Fourier(order=(), amplitude=(), phase=())
+    kinematic_noise: Random kinematic error, added to the deterministic one; default Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0)
     stiffness: Elastic torque over the twist; default Linear(k=10000.0)
     hysteresis: Torque that depends on the history of the twist; default MaxwellSlip(stiffness=(), breakaway=())
     damping: Torque per rate of twist [N.m.s/rad], in [0, inf); default 0.0
     friction_input: Friction at the wave generator, over the input speed; default Viscous(viscous=0.0)
+    friction_mesh: Friction of the mesh, at the output's scale, over the speed of the input referred to it; default Viscous(viscous=0.0)
     friction_output: Friction at the output, over the output speed; default Viscous(viscous=0.0)
     input_inertia: Inertia of the wave generator [kg.m2], in [0, inf); default 0.0
 
@@ -68,9 +78,9 @@ class Gear:
     physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)
     """
 
-    def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Cubic | strainwave.stiffness.ThreeSegment = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., input_inertia: float = ...) -> None: ...
+    def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ...) -> None: ...
 
-    def replace(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Cubic | strainwave.stiffness.ThreeSegment = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre = ..., input_inertia: float = ...) -> Gear:
+    def replace(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ...) -> Gear:
         """The same with the named parameters changed."""
 
     @property
@@ -78,15 +88,19 @@ class Gear:
         """Rigid motion: teeth and fixed member"""
 
     @property
-    def kinematic_error(self) -> strainwave.kinematic_error.Fourier:
+    def kinematic_error(self) -> strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment:
         """Pure kinematic error at the output, over the input angle"""
 
     @property
-    def stiffness(self) -> strainwave.stiffness.Linear | strainwave.stiffness.Cubic | strainwave.stiffness.ThreeSegment:
+    def kinematic_noise(self) -> strainwave.kinematic_error.Stochastic:
+        """Random kinematic error, added to the deterministic one"""
+
+    @property
+    def stiffness(self) -> strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance:
         """Elastic torque over the twist"""
 
     @property
-    def hysteresis(self) -> strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory:
+    def hysteresis(self) -> strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes:
         """Torque that depends on the history of the twist"""
 
     @property
@@ -94,11 +108,17 @@ class Gear:
         """Torque per rate of twist [N.m.s/rad]"""
 
     @property
-    def friction_input(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre:
+    def friction_input(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal:
         """Friction at the wave generator, over the input speed"""
 
     @property
-    def friction_output(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.LuGre:
+    def friction_mesh(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal:
+        """
+        Friction of the mesh, at the output's scale, over the speed of the input referred to it
+        """
+
+    @property
+    def friction_output(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal:
         """Friction at the output, over the output speed"""
 
     @property
@@ -124,6 +144,16 @@ class Gear:
     def save(self, path: str | pathlib.Path, *, name: str, source: str) -> None:
         """Writes a gear file, as `strainwave.save` does."""
 
+    def trace(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), of spring and hysteresis along a slow path of `twist` [rad], shape (n,), from twist 0 and without history.
+        """
+
+    def twist(self, torque: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of `trace`, to rounding, for every spring and hysteresis.
+        """
+
 class Motion:
     """
     Parameters
@@ -134,8 +164,9 @@ class Motion:
     input_speed: Input speed [rad/s]; default 0.0
     transmission_error: theta_in / i - theta_out [rad]; default 0.0
     output_speed: Output speed [rad/s]; default 0.0
-    friction_input: State of the friction at the input; default (0.0,)
-    friction_output: State of the friction at the output; default (0.0,)
+    friction_input: State of the friction at the input; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    friction_mesh: State of the friction of the mesh; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    friction_output: State of the friction at the output; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     Raises
     ------
@@ -143,9 +174,9 @@ class Motion:
     ValueError: a number that is not finite or out of its range
     """
 
-    def __init__(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> None: ...
+    def __init__(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_mesh: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> Motion:
+    def replace(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_mesh: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> Motion:
         """The same with the named parameters changed."""
 
     @property
@@ -177,6 +208,10 @@ class Motion:
         """State of the friction at the input"""
 
     @property
+    def friction_mesh(self) -> tuple[float, ...]:
+        """State of the friction of the mesh"""
+
+    @property
     def friction_output(self) -> tuple[float, ...]:
         """State of the friction at the output"""
 
@@ -198,8 +233,8 @@ class State:
     """
     Parameters
     ----------
-    motion: What flows continuously; default Motion(motor=(0.0,), control=(0.0,), input_angle=0.0, input_speed=0.0, transmission_error=0.0, output_speed=0.0, friction_input=(0.0,), friction_output=(0.0,))
-    hysteresis: Memory of the hysteresis; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    motion: What flows continuously; default Motion(motor=(0.0,), control=(0.0,), input_angle=0.0, input_speed=0.0, transmission_error=0.0, output_speed=0.0, friction_input=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_mesh=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_output=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    hysteresis: Memory of the hysteresis; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     held_twist: Twist at which the hysteresis was last brought up to date [rad]; default 0.0
     turns: Whole revolutions of the input; default 0.0
     sliding_input: Sense of sliding at the input, 0 while it sticks; default 1.0
@@ -301,16 +336,40 @@ def parameters(model: strainwave.friction.Coulomb) -> list[tuple[str, float, str
 def parameters(model: strainwave.friction.Stribeck) -> list[tuple[str, float, str, str, float, float]]: ...
 
 @overload
+def parameters(model: strainwave.friction.PositionDependent) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
 def parameters(model: strainwave.friction.LuGre) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.MaxwellSlipFriction) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.LoadDependent) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.TorqueEfficiency) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.Cyclic) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.friction.Thermal) -> list[tuple[str, float, str, str, float, float]]: ...
 
 @overload
 def parameters(model: strainwave.stiffness.Linear) -> list[tuple[str, float, str, str, float, float]]: ...
 
 @overload
-def parameters(model: strainwave.stiffness.Cubic) -> list[tuple[str, float, str, str, float, float]]: ...
+def parameters(model: strainwave.stiffness.Piecewise) -> list[tuple[str, float, str, str, float, float]]: ...
 
 @overload
 def parameters(model: strainwave.stiffness.ThreeSegment) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.stiffness.Cubic) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.stiffness.MultiCompliance) -> list[tuple[str, float, str, str, float, float]]: ...
 
 @overload
 def parameters(model: strainwave.hysteresis.MaxwellSlip) -> list[tuple[str, float, str, str, float, float]]: ...
@@ -319,7 +378,22 @@ def parameters(model: strainwave.hysteresis.MaxwellSlip) -> list[tuple[str, floa
 def parameters(model: strainwave.hysteresis.FadingMemory) -> list[tuple[str, float, str, str, float, float]]: ...
 
 @overload
-def parameters(model: strainwave.kinematic_error.Fourier) -> list[tuple[str, float, str, str, float, float]]:
+def parameters(model: strainwave.hysteresis.BoucWen) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.hysteresis.Preisach) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.hysteresis.Regimes) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.kinematic_error.Fourier) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.kinematic_error.Misalignment) -> list[tuple[str, float, str, str, float, float]]: ...
+
+@overload
+def parameters(model: strainwave.kinematic_error.Stochastic) -> list[tuple[str, float, str, str, float, float]]:
     """
     Every number of a set of parameters: path, value, unit, doc, lower and upper limit.
     """
@@ -340,16 +414,40 @@ def with_numbers(model: strainwave.friction.Coulomb, numbers: Sequence[float]) -
 def with_numbers(model: strainwave.friction.Stribeck, numbers: Sequence[float]) -> strainwave.friction.Stribeck: ...
 
 @overload
+def with_numbers(model: strainwave.friction.PositionDependent, numbers: Sequence[float]) -> strainwave.friction.PositionDependent: ...
+
+@overload
 def with_numbers(model: strainwave.friction.LuGre, numbers: Sequence[float]) -> strainwave.friction.LuGre: ...
+
+@overload
+def with_numbers(model: strainwave.friction.MaxwellSlipFriction, numbers: Sequence[float]) -> strainwave.friction.MaxwellSlipFriction: ...
+
+@overload
+def with_numbers(model: strainwave.friction.LoadDependent, numbers: Sequence[float]) -> strainwave.friction.LoadDependent: ...
+
+@overload
+def with_numbers(model: strainwave.friction.TorqueEfficiency, numbers: Sequence[float]) -> strainwave.friction.TorqueEfficiency: ...
+
+@overload
+def with_numbers(model: strainwave.friction.Cyclic, numbers: Sequence[float]) -> strainwave.friction.Cyclic: ...
+
+@overload
+def with_numbers(model: strainwave.friction.Thermal, numbers: Sequence[float]) -> strainwave.friction.Thermal: ...
 
 @overload
 def with_numbers(model: strainwave.stiffness.Linear, numbers: Sequence[float]) -> strainwave.stiffness.Linear: ...
 
 @overload
-def with_numbers(model: strainwave.stiffness.Cubic, numbers: Sequence[float]) -> strainwave.stiffness.Cubic: ...
+def with_numbers(model: strainwave.stiffness.Piecewise, numbers: Sequence[float]) -> strainwave.stiffness.Piecewise: ...
 
 @overload
 def with_numbers(model: strainwave.stiffness.ThreeSegment, numbers: Sequence[float]) -> strainwave.stiffness.ThreeSegment: ...
+
+@overload
+def with_numbers(model: strainwave.stiffness.Cubic, numbers: Sequence[float]) -> strainwave.stiffness.Cubic: ...
+
+@overload
+def with_numbers(model: strainwave.stiffness.MultiCompliance, numbers: Sequence[float]) -> strainwave.stiffness.MultiCompliance: ...
 
 @overload
 def with_numbers(model: strainwave.hysteresis.MaxwellSlip, numbers: Sequence[float]) -> strainwave.hysteresis.MaxwellSlip: ...
@@ -358,5 +456,20 @@ def with_numbers(model: strainwave.hysteresis.MaxwellSlip, numbers: Sequence[flo
 def with_numbers(model: strainwave.hysteresis.FadingMemory, numbers: Sequence[float]) -> strainwave.hysteresis.FadingMemory: ...
 
 @overload
-def with_numbers(model: strainwave.kinematic_error.Fourier, numbers: Sequence[float]) -> strainwave.kinematic_error.Fourier:
+def with_numbers(model: strainwave.hysteresis.BoucWen, numbers: Sequence[float]) -> strainwave.hysteresis.BoucWen: ...
+
+@overload
+def with_numbers(model: strainwave.hysteresis.Preisach, numbers: Sequence[float]) -> strainwave.hysteresis.Preisach: ...
+
+@overload
+def with_numbers(model: strainwave.hysteresis.Regimes, numbers: Sequence[float]) -> strainwave.hysteresis.Regimes: ...
+
+@overload
+def with_numbers(model: strainwave.kinematic_error.Fourier, numbers: Sequence[float]) -> strainwave.kinematic_error.Fourier: ...
+
+@overload
+def with_numbers(model: strainwave.kinematic_error.Misalignment, numbers: Sequence[float]) -> strainwave.kinematic_error.Misalignment: ...
+
+@overload
+def with_numbers(model: strainwave.kinematic_error.Stochastic, numbers: Sequence[float]) -> strainwave.kinematic_error.Stochastic:
     """The same models with other numbers, in the order of `parameters`."""

@@ -12,10 +12,12 @@ class PositionDrive:
     """
     A motor, its controller, one strain wave gear and a load.
 
-    .. math:: J_{in} \\ddot\\theta_{in} = K_m i - T\\,(1/i - e') - F_{in}, \\qquad
+    .. math:: J_{in} \\ddot\\theta_{in} = K_m i - (T + F_{mesh})\\,(1/i - e') - F_{in}, \\qquad
               J_{out} \\ddot\\theta_{out} = T - T_{load} - F_{out}
 
-    with J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear, F the friction of each side.
+    with J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear, F the friction of each place.
+    Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
+    told apart: it is reported in proportion to what each can hold.
     Angles are carried relative to the rigid motion, so an hour of rotation is as accurate as a second.
 
     >>> import strainwave as sw
@@ -25,7 +27,7 @@ class PositionDrive:
 
     Parameters
     ----------
-    gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0)
+    gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0)
     motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05)
     control: What turns the command into the motor's voltage; default OpenLoop(gain=1.0)
     load: What the output shaft carries; default Inertia(inertia=0.01)
@@ -80,5 +82,5 @@ class PositionDrive:
     def rest(self) -> strainwave._core.State:
         """The state at rest, untwisted and without history, input angle 0."""
 
-    def step(self, state: strainwave._core.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, dt: float) -> strainwave._core.State:
+    def step(self, state: strainwave._core.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave._core.State:
         """The state `dt` [s] later, the command moving at `command_rate`."""

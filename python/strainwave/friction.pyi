@@ -59,11 +59,35 @@ class Viscous:
     fields: tuple[dict[str, Any], ...]
 
     @overload
-    def steady(self, speed: float) -> float: ...
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-        """Torque [N.m] that opposes steady sliding at `speed` [rad/s]."""
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
 
 class Coulomb:
     """
@@ -129,14 +153,35 @@ class Coulomb:
     fields: tuple[dict[str, Any], ...]
 
     @overload
-    def steady(self, speed: float) -> float: ...
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-        """Torque [N.m] that opposes steady sliding at `speed` [rad/s]."""
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
 
-    def hold(self) -> float:
-        """The largest torque [N.m] it balances at rest."""
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
 
 class Stribeck:
     """
@@ -207,28 +252,205 @@ class Stribeck:
     fields: tuple[dict[str, Any], ...]
 
     @overload
-    def steady(self, speed: float) -> float: ...
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-        """Torque [N.m] that opposes steady sliding at `speed` [rad/s]."""
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
 
-    def hold(self) -> float:
-        """The largest torque [N.m] it balances at rest."""
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+class PositionDependent:
+    """
+    Coulomb friction that varies with the angle, on average and over each turn, set-valued at rest.
+
+    .. math:: F = f(q, v) \\operatorname{sgn} v + b v \\; (v \\ne 0), \\quad
+              |F| \\le \\kappa\\, [f_{aver}(q) + f_{peri}(q)] \\; (v = 0), \\quad
+              f = f_{aver}(q)\\, [1 + (|v| - v_c)\\, \\epsilon] + f_{peri}(q) \\ge 0, \\quad
+              f_{aver} = s_1 q^2 + s_2 q + s_3, \\quad
+              f_{peri} = \\sum_{k=1}^{10} (a_k \\cos k q + b_k \\sin k q)
+
+    with q the angle and v the speed of the place it acts on, s_1 = quadratic, s_2 = linear, s_3 = constant, a_k = cosine and
+    b_k = sine, by their place k = 1, 2 ..., kappa = static_ratio, epsilon = speed_factor, v_c = reference_speed (at which
+    f_aver was measured), b = viscous. A level below zero counts as zero. Document P prints no a_k and b_k.
+
+    Valid for q from domain_start to domain_end. A parabola grows without bound: the one of document P has its minimum,
+    0.0491812523669 N.m, at 120.412377685 rad, and the default domain ends where it is back at its start (E-P8). Beyond it,
+    outside says what f_aver does: ``"clamp"`` keeps the value of the nearer end, ``"periodic"`` repeats the domain,
+    ``"refuse"`` is an error. f_peri repeats with every turn anyway.
+
+    Document P prints the sliding branch with the wrong sign and for v > 0 only (E-P3); its factor 0.0004 needs the unit
+    s/rad (E-P4), and its v_c is no threshold but the reference speed (E-P5); a constant a_0 / 2 could not be told from s_3
+    and is left out (E-P9).
+
+    >>> from strainwave.friction import PositionDependent
+    >>> law = PositionDependent(quadratic=0.0, linear=0.0, constant=0.5, cosine=[0.25], speed_factor=0.0, viscous=0.125)
+    >>> law.steady([2.0, -2.0])
+    array([ 1., -1.])
+
+    Parameters
+    ----------
+    quadratic: Coefficient s_1 of the average friction [N.m/rad2]; default 1.5738e-06
+    linear: Coefficient s_2 of the average friction [N.m/rad]; default -0.00037901
+    constant: Average friction s_3 at angle 0 [N.m]; default 0.072
+    cosine: Amplitudes a_k of cos k q, k = 1, 2 ... [N.m]; default ()
+    sine: Amplitudes b_k of sin k q, k = 1, 2 ... [N.m]; default ()
+    static_ratio: Static over kinetic friction kappa, in [1, inf); default 1.0388
+    speed_factor: Relative rise of the average friction with speed [s/rad], in [0, inf); default 0.0004
+    reference_speed: Speed v_c at which the average friction was measured [rad/s], in [0, inf); default 0.8
+    viscous: Torque per speed, besides [N.m.s/rad], in [0, inf); default 0.0
+    domain_start: Least angle at which the average friction was measured [rad]; default 0.0
+    domain_end: Greatest angle at which the average friction was measured [rad]; default 240.82475536917013
+    outside: What the average friction does beyond its domain, one of ('clamp', 'periodic', 'refuse'); default 'refuse'
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document P, friction model of the motor side; errata E-P3, E-P4, E-P5, E-P8, E-P9
+    """
+
+    def __init__(self, *, quadratic: float = ..., linear: float = ..., constant: float = ..., cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float = ..., domain_end: float = ..., outside: str = ...) -> None: ...
+
+    def replace(self, *, quadratic: float = ..., linear: float = ..., constant: float = ..., cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float = ..., domain_end: float = ..., outside: str = ...) -> PositionDependent:
+        """The same with the named parameters changed."""
+
+    @property
+    def quadratic(self) -> float:
+        """Coefficient s_1 of the average friction [N.m/rad2]"""
+
+    @property
+    def linear(self) -> float:
+        """Coefficient s_2 of the average friction [N.m/rad]"""
+
+    @property
+    def constant(self) -> float:
+        """Average friction s_3 at angle 0 [N.m]"""
+
+    @property
+    def cosine(self) -> tuple[float, ...]:
+        """Amplitudes a_k of cos k q, k = 1, 2 ... [N.m]"""
+
+    @property
+    def sine(self) -> tuple[float, ...]:
+        """Amplitudes b_k of sin k q, k = 1, 2 ... [N.m]"""
+
+    @property
+    def static_ratio(self) -> float:
+        """Static over kinetic friction kappa"""
+
+    @property
+    def speed_factor(self) -> float:
+        """Relative rise of the average friction with speed [s/rad]"""
+
+    @property
+    def reference_speed(self) -> float:
+        """Speed v_c at which the average friction was measured [rad/s]"""
+
+    @property
+    def viscous(self) -> float:
+        """Torque per speed, besides [N.m.s/rad]"""
+
+    @property
+    def domain_start(self) -> float:
+        """Least angle at which the average friction was measured [rad]"""
+
+    @property
+    def domain_end(self) -> float:
+        """Greatest angle at which the average friction was measured [rad]"""
+
+    @property
+    def outside(self) -> str:
+        """What the average friction does beyond its domain"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'position_dependent'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    odd: bool = True
 
 class LuGre:
     """
     Friction of an elastic bristle that bends before it slips: presliding, breakaway, Stribeck fall, viscous rise.
 
     .. math:: \\dot z = v - \\sigma_0 |v| z / G(v), \\quad G(v) = F_c + (F_s - F_c) e^{-(v/v_s)^2}, \\quad
-              F = \\sigma_0 z + \\sigma_1 \\dot z + \\sigma_2 v
+              F = \\sigma_0 z + \\sigma_1(v) \\dot z + \\sigma_2 v, \\quad \\sigma_1(v) = \\sigma_1 e^{-(\\varphi v)^2}
 
-    with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed,
-    sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous.
+    with v the speed of the place it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed,
+    sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous, phi = damping_fading: the reciprocal of the
+    speed v_d at which the bristle's damping has fallen to 1/e, 0 for a constant one.
 
-    Valid for one contact under constant load; leaves out load, position and temperature. Dissipates for every motion only
-    if viscous >= bristle_damping (breakaway / coulomb - 1); a set that violates this is accepted, and ``check()`` warns
-    with both sides.
+    Valid for one contact under constant load; leaves out load, position and temperature. Dissipates for every motion if
+    sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then
+    also necessary. A set that violates this is accepted, and ``check()`` warns with both sides.
 
     >>> from strainwave.friction import LuGre
     >>> LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, viscous=4e-4).steady(1.0)
@@ -240,8 +462,9 @@ class LuGre:
     breakaway: Static friction torque F_s [N.m], in [0, inf); default 0.045
     stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); default 2.0
     bristle_stiffness: Torque per bristle deflection [N.m/rad], in (0, inf); default 50.0
-    bristle_damping: Torque per bristle rate [N.m.s/rad], in [0, inf); default 0.02
+    bristle_damping: Torque per bristle rate, at rest [N.m.s/rad], in [0, inf); default 5e-05
     viscous: Torque per speed [N.m.s/rad], in [0, inf); default 5e-05
+    damping_fading: Reciprocal of the speed at which bristle_damping has fallen to 1/e [s/rad], in [0, inf); default 0.0
 
     Raises
     ------
@@ -250,12 +473,12 @@ class LuGre:
 
     Source
     ------
-    CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000
+    CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000; fading damping: document R
     """
 
-    def __init__(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ...) -> None: ...
+    def __init__(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ..., damping_fading: float = ...) -> None: ...
 
-    def replace(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ...) -> LuGre:
+    def replace(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ..., damping_fading: float = ...) -> LuGre:
         """The same with the named parameters changed."""
 
     @property
@@ -276,11 +499,17 @@ class LuGre:
 
     @property
     def bristle_damping(self) -> float:
-        """Torque per bristle rate [N.m.s/rad]"""
+        """Torque per bristle rate, at rest [N.m.s/rad]"""
 
     @property
     def viscous(self) -> float:
         """Torque per speed [N.m.s/rad]"""
+
+    @property
+    def damping_fading(self) -> float:
+        """
+        Reciprocal of the speed at which bristle_damping has fallen to 1/e [s/rad]
+        """
 
     def __repr__(self) -> str: ...
 
@@ -299,11 +528,28 @@ class LuGre:
     fields: tuple[dict[str, Any], ...]
 
     @overload
-    def steady(self, speed: float) -> float: ...
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-        """Torque [N.m] that opposes steady sliding at `speed` [rad/s]."""
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
 
     class State:
         """
@@ -340,14 +586,719 @@ class LuGre:
 
         fields: tuple[dict[str, Any], ...]
 
-    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
-        Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step.
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
         """
 
     def check(self) -> None:
         """
         Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.
+        """
+
+    odd: bool = True
+
+class MaxwellSlipFriction:
+    """
+    Parallel springs that each stick or slip: presliding hysteresis with non-local memory, Stribeck fall, frictional lag.
+
+    .. math:: F = \\sum_i F_i + \\sigma_2 v, \\quad \\text{sticking: } \\dot F_i = k_i v, \\quad
+              \\text{slipping: } \\dot F_i = \\operatorname{sgn}(v)\\, C \\left(\\alpha_i - |F_i| / s(v)\\right), \\quad
+              s(v) = F_c + (F_s - F_c) e^{-(v/v_s)^2}
+
+    with v the speed of the place it acts on, k_i = stiffness, alpha_i = share over the sum of all shares, F_c = coulomb,
+    F_s = breakaway, v_s = stribeck_speed, C = attraction, sigma_2 = viscous; up to 8 elements, none at all is no dry
+    friction. An element sticks until it carries alpha_i s(v), and slips until the motion stops or turns round. A slipping element follows s(v)
+    with the time constant s/C. A breakaway below coulomb counts as coulomb. Where dry friction is scaled (Cyclic, Thermal),
+    s and C scale, stiffness and time constant do not.
+
+    With breakaway = coulomb no element lags, it is Maxwell's slip with the levels alpha_i F_c, and dissipates for every
+    motion. A Stribeck fall makes the law, as published, able to create energy: an element that slips fast, slows down, and
+    goes back a little while it sticks returns up to alpha_i^2 (F_s - F_c)^2 / (2 k_i) more than it took; ``check()`` warns.
+    Leaves out load, position and temperature.
+
+    >>> from strainwave.friction import MaxwellSlipFriction
+    >>> law = MaxwellSlipFriction(stiffness=[60, 30, 10], share=[0.2, 0.3, 0.5], coulomb=0.05, breakaway=0.05)
+    >>> law.trace([0.0, 1.0, 2.0], [1e-3, 1e-3, 1e-3]).round(6)
+    array([0.   , 0.035, 0.045])
+
+    Parameters
+    ----------
+    stiffness: Stiffness k_i of each element while it sticks [N.m/rad], in (0, inf); default ()
+    share: Share alpha_i of each element in the friction torque, relative to the sum of all, in [0, inf); default ()
+    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); default 0.03
+    breakaway: Static friction torque F_s [N.m], in [0, inf); default 0.03
+    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); default 2.0
+    attraction: Rate C at which slipping elements are drawn to the Stribeck curve [N.m/s], in (0, inf); default 0.3
+    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 5e-05
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    AlBenderLampaertSwevers2005, generalized Maxwell-slip model, slip law with a constant attraction
+    """
+
+    def __init__(self, *, stiffness: float | Sequence[float] = ..., share: float | Sequence[float] = ..., coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., attraction: float = ..., viscous: float = ...) -> None: ...
+
+    def replace(self, *, stiffness: float | Sequence[float] = ..., share: float | Sequence[float] = ..., coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., attraction: float = ..., viscous: float = ...) -> MaxwellSlipFriction:
+        """The same with the named parameters changed."""
+
+    @property
+    def stiffness(self) -> tuple[float, ...]:
+        """Stiffness k_i of each element while it sticks [N.m/rad]"""
+
+    @property
+    def share(self) -> tuple[float, ...]:
+        """
+        Share alpha_i of each element in the friction torque, relative to the sum of all
+        """
+
+    @property
+    def coulomb(self) -> float:
+        """Kinetic friction torque F_c [N.m]"""
+
+    @property
+    def breakaway(self) -> float:
+        """Static friction torque F_s [N.m]"""
+
+    @property
+    def stribeck_speed(self) -> float:
+        """Speed at which the excess F_s - F_c has fallen to 1/e [rad/s]"""
+
+    @property
+    def attraction(self) -> float:
+        """
+        Rate C at which slipping elements are drawn to the Stribeck curve [N.m/s]
+        """
+
+    @property
+    def viscous(self) -> float:
+        """Torque per speed [N.m.s/rad]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'maxwell_slip_friction'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    class State:
+        """
+        Parameters
+        ----------
+        torque: Torque F_i carried by each element [N.m]; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        slipping: 1 for an element that slips, 0 for one that sticks, 0.5 for one about to slip; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+        Raises
+        ------
+        TypeError: an unknown parameter, or one of the wrong kind
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, torque: Sequence[float] = ..., slipping: Sequence[float] = ...) -> None: ...
+
+        def replace(self, *, torque: Sequence[float] = ..., slipping: Sequence[float] = ...) -> MaxwellSlipFriction.State:
+            """The same with the named parameters changed."""
+
+        @property
+        def torque(self) -> tuple[float, ...]:
+            """Torque F_i carried by each element [N.m]"""
+
+        @property
+        def slipping(self) -> tuple[float, ...]:
+            """
+            1 for an element that slips, 0 for one that sticks, 0.5 for one about to slip
+            """
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        name: str = 'maxwell_slip_friction.state'
+
+        fields: tuple[dict[str, Any], ...]
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def check(self) -> None:
+        """
+        Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.
+        """
+
+    odd: bool = True
+
+class LoadDependent:
+    """
+    Loss proportional to the torque transmitted, one ratio for each quadrant, set-valued at rest.
+
+    .. math:: F = \\mu |T| \\operatorname{sgn} v \\quad (v \\ne 0), \\qquad |F| \\le \\mu |T| \\quad (v = 0)
+
+    with v the speed of the place it acts on, T the torque it transmits (load), mu the ratio of the quadrant: if T v > 0 the
+    power flows to the output, and mu = driving_forward for v > 0, driving_reverse for v < 0; if T v < 0 it flows back to
+    the input, and mu = backdriving_forward for v > 0, backdriving_reverse for v < 0. At rest it is the quadrant of the
+    motion that is about to begin.
+
+    T is what arrives on the output's side. The efficiency is therefore 1 / (1 + mu) when driving and 1 - mu when
+    back-driven; with backdriving mu >= 1 the output cannot turn the input: self-locking. Multiplying the stiffness by the
+    efficiency instead creates energy when back-driven, for the input then receives more than the output gives. Leaves out
+    what an idle gear loses.
+
+    >>> from strainwave.friction import LoadDependent
+    >>> LoadDependent(driving_forward=0.25, backdriving_reverse=0.5).steady([10.0, -10.0], load=4.0)
+    array([ 1., -2.])
+
+    Parameters
+    ----------
+    driving_forward: Loss per torque transmitted, at positive speed under positive load, in [0, inf); default 0.0
+    driving_reverse: Loss per torque transmitted, at negative speed under negative load, in [0, inf); default 0.0
+    backdriving_forward: Loss per torque transmitted, at positive speed under negative load, in [0, inf); default 0.0
+    backdriving_reverse: Loss per torque transmitted, at negative speed under positive load, in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    Coulomb1785: friction proportional to load; one ratio for each quadrant, assumed
+    """
+
+    def __init__(self, *, driving_forward: float = ..., driving_reverse: float = ..., backdriving_forward: float = ..., backdriving_reverse: float = ...) -> None: ...
+
+    def replace(self, *, driving_forward: float = ..., driving_reverse: float = ..., backdriving_forward: float = ..., backdriving_reverse: float = ...) -> LoadDependent:
+        """The same with the named parameters changed."""
+
+    @property
+    def driving_forward(self) -> float:
+        """Loss per torque transmitted, at positive speed under positive load"""
+
+    @property
+    def driving_reverse(self) -> float:
+        """Loss per torque transmitted, at negative speed under negative load"""
+
+    @property
+    def backdriving_forward(self) -> float:
+        """Loss per torque transmitted, at positive speed under negative load"""
+
+    @property
+    def backdriving_reverse(self) -> float:
+        """Loss per torque transmitted, at negative speed under positive load"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'load_dependent'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    odd: bool = False
+
+class TorqueEfficiency:
+    """
+    Loss proportional to the torque transmitted, which turns round with the motion over a presliding angle.
+
+    .. math:: \\dot z = (v - |v| z) / h, \\qquad F = \\mu_{avg} |T| z + \\mu_{dif} T z^2 + b v
+
+    with v the speed of the place it acts on, T the torque it transmits (load), z the engagement, +1 or -1 in steady motion,
+    mu_avg = average_loss, mu_dif = difference_loss, h = presliding, b = viscous. In steady motion the loss per torque
+    transmitted is mu_avg + mu_dif when driving (T v > 0) and mu_avg - mu_dif when back-driven: LoadDependent with equal
+    ratios in both senses. mu_avg must not lie below the size of mu_dif, or steady motion would create energy.
+
+    Under constant load it dissipates for every motion, with the stored energy mu_avg T h z^2 / 2 (size of T). Where the
+    load varies, this energy rises and falls with it: a change of load can put in as much, and the motion after it take it
+    out. It does not stick at rest: it yields by about h. Leaves out what an idle gear loses besides b v. The thread's tau
+    is the torque of the motor; T is what arrives on the output's side, so a ratio m found there when driving is
+    m / (1 - m) here.
+
+    >>> from strainwave.friction import TorqueEfficiency
+    >>> TorqueEfficiency(average_loss=0.25, difference_loss=0.05, viscous=0.0).steady([10.0, -10.0], load=4.0)
+    array([ 1.2, -0.8])
+
+    Parameters
+    ----------
+    average_loss: Loss per torque transmitted, mean of driving and back-driving, in [0, inf); default 0.2
+    difference_loss: Half of what driving loses more than back-driving, per torque transmitted; default 0.0
+    presliding: Angle h over which the loss turns round after a reversal [rad], in (0, inf); default 0.01
+    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 5e-05
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    public thread google-deepmind/mujoco#3528, comment of 2026-09-18 (there tau is the electrical torque of the motor)
+    """
+
+    def __init__(self, *, average_loss: float = ..., difference_loss: float = ..., presliding: float = ..., viscous: float = ...) -> None: ...
+
+    def replace(self, *, average_loss: float = ..., difference_loss: float = ..., presliding: float = ..., viscous: float = ...) -> TorqueEfficiency:
+        """The same with the named parameters changed."""
+
+    @property
+    def average_loss(self) -> float:
+        """Loss per torque transmitted, mean of driving and back-driving"""
+
+    @property
+    def difference_loss(self) -> float:
+        """
+        Half of what driving loses more than back-driving, per torque transmitted
+        """
+
+    @property
+    def presliding(self) -> float:
+        """Angle h over which the loss turns round after a reversal [rad]"""
+
+    @property
+    def viscous(self) -> float:
+        """Torque per speed [N.m.s/rad]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'torque_efficiency'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    class State:
+        """
+        Parameters
+        ----------
+        engagement: Engagement z: the sense of motion, as far as friction has followed it; default 0.0
+
+        Raises
+        ------
+        TypeError: an unknown parameter, or one of the wrong kind
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, engagement: float = ...) -> None: ...
+
+        def replace(self, *, engagement: float = ...) -> TorqueEfficiency.State:
+            """The same with the named parameters changed."""
+
+        @property
+        def engagement(self) -> float:
+            """Engagement z: the sense of motion, as far as friction has followed it"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        name: str = 'torque_efficiency.state'
+
+        fields: tuple[dict[str, Any], ...]
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    odd: bool = True
+
+class Cyclic:
+    """
+    Friction that varies with the angle, as the wave generator's contacts do over its turn.
+
+    .. math:: F = f(\\theta)\\, F_{law}, \\qquad f(\\theta) = 1 + \\sum_h A_h \\sin(B_h \\theta + \\varphi_h) \\ge 0
+
+    with theta the angle of the place it acts on, B_h = order, A_h = amplitude relative to the mean, phi_h = phase, law the
+    friction that is modulated: its dry levels (Coulomb, breakaway) and its viscous torque are multiplied, so that a bristle
+    keeps its stiffness. Up to 16 harmonics; where the sum falls below zero, f is zero.
+
+    Document R prints (A + B v) f(theta), which pushes a reversed motion along: it must read (A sgn v + B v) f(theta)
+    (E-R7). With law a Coulomb friction of coulomb = A and viscous = B this is that term.
+
+    >>> from strainwave.friction import Coulomb, Cyclic
+    >>> law = Cyclic(law=Coulomb(coulomb=0.25, viscous=0.0), order=[2], amplitude=[0.5], phase=[0.0])
+    >>> law.steady(1.0, angle=0.25 * 3.141592653589793), law.steady(-1.0, angle=0.25 * 3.141592653589793)
+    (0.375, -0.375)
+
+    Parameters
+    ----------
+    law: The friction that varies; default Viscous(viscous=0.0)
+    order: Order B_h: periods per revolution, in [0, inf); default ()
+    amplitude: Amplitude A_h, relative to the mean friction, in [0, inf); default ()
+    phase: Phase phi_h [rad]; default ()
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document R, section 2, cyclic part of the friction torque; erratum E-R7
+    """
+
+    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
+
+    def replace(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Cyclic:
+        """The same with the named parameters changed."""
+
+    @property
+    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency:
+        """The friction that varies"""
+
+    @property
+    def order(self) -> tuple[float, ...]:
+        """Order B_h: periods per revolution"""
+
+    @property
+    def amplitude(self) -> tuple[float, ...]:
+        """Amplitude A_h, relative to the mean friction"""
+
+    @property
+    def phase(self) -> tuple[float, ...]:
+        """Phase phi_h [rad]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'cyclic'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    class State:
+        """
+        Parameters
+        ----------
+        slot: State of the model chosen, in the order it lists it; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+        Raises
+        ------
+        TypeError: an unknown parameter, or one of the wrong kind
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, slot: Sequence[float] = ...) -> None: ...
+
+        def replace(self, *, slot: Sequence[float] = ...) -> tuple[float, ...]:
+            """The same with the named parameters changed."""
+
+        @property
+        def slot(self) -> tuple[float, ...]:
+            """State of the model chosen, in the order it lists it"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        name: str = 'cyclic.state'
+
+        fields: tuple[dict[str, Any], ...]
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+class Thermal:
+    """
+    Friction that falls as the gear warms up.
+
+    .. math:: F_{dry} \\propto e^{-\\kappa_d (T - T_0)}, \\qquad F_{viscous} \\propto e^{-\\kappa_v (T - T_0)}
+
+    with T the temperature, T_0 = reference_temperature, kappa_d = dry_fall, kappa_v = viscous_fall, law the friction as it
+    is at T_0: its dry levels (Coulomb, breakaway) and its viscous torque are multiplied. The rates are not known from a
+    catalogue; identify them. For the viscous part 0.02 to 0.03 per kelvin is an order of magnitude (assumed). Valid over
+    some tens of kelvin; leaves out that friction heats the gear: the temperature is given.
+
+    >>> from strainwave.friction import Coulomb, Thermal
+    >>> law = Thermal(law=Coulomb(coulomb=0.0, viscous=0.01), viscous_fall=0.025, reference_temperature=293.15)
+    >>> round(float(law.steady(10.0, temperature=333.15)), 9)
+    0.036787944
+
+    Parameters
+    ----------
+    law: The friction at the reference temperature; default Viscous(viscous=0.0)
+    dry_fall: Relative fall kappa_d of dry friction per kelvin [1/K]; default 0.0
+    viscous_fall: Relative fall kappa_v of viscous friction per kelvin [1/K]; default 0.0
+    reference_temperature: Temperature T_0 at which the law was measured [K], in (0, inf); default 293.15
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    exponential fall of lubricant viscosity with temperature (Reynolds1886); rates: the user's
+    """
+
+    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> None: ...
+
+    def replace(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> Thermal:
+        """The same with the named parameters changed."""
+
+    @property
+    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic:
+        """The friction at the reference temperature"""
+
+    @property
+    def dry_fall(self) -> float:
+        """Relative fall kappa_d of dry friction per kelvin [1/K]"""
+
+    @property
+    def viscous_fall(self) -> float:
+        """Relative fall kappa_v of viscous friction per kelvin [1/K]"""
+
+    @property
+    def reference_temperature(self) -> float:
+        """Temperature T_0 at which the law was measured [K]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'thermal'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    class State:
+        """
+        Parameters
+        ----------
+        slot: State of the model chosen, in the order it lists it; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+        Raises
+        ------
+        TypeError: an unknown parameter, or one of the wrong kind
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, slot: Sequence[float] = ...) -> None: ...
+
+        def replace(self, *, slot: Sequence[float] = ...) -> tuple[float, ...]:
+            """The same with the named parameters changed."""
+
+        @property
+        def slot(self) -> tuple[float, ...]:
+            """State of the model chosen, in the order it lists it"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        name: str = 'cyclic.state'
+
+        fields: tuple[dict[str, Any], ...]
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
         """

@@ -168,7 +168,7 @@ class GearSet:
         >>> GearSet.of(sw.Gear(damping=3.0), name="printed", source="assumed").sources["gear.damping"]
         Entry(source='assumed', spread=None, uncertainty=None)
         """
-        models = _members(model) if isinstance(model, PositionDrive) else {"gear": model}
+        models = {part.name: getattr(model, part.name) for part in _parts(model)} if isinstance(model, PositionDrive) else {"gear": model}
         _drive(models)  # refuses what is no gear
         return cls(name=name, sources=dict.fromkeys(_places(models), Entry(source)), **models)
 
@@ -196,7 +196,7 @@ class GearSet:
                 model, entries = _read_table(table, document.get(table.name))
             if model is not None:
                 models[table.path] = model
-                sources |= zip(_numbers(table.path, model), entries, strict=True)
+                sources |= zip(_numbers(table, model), entries, strict=True)
         with _at(f"{path} [ratings]"):
             ratings = _read_ratings(document.get("ratings", {}))
         parts = {table.name: models.pop(table.path) for table in _tables() if table.in_gear}
@@ -318,20 +318,32 @@ class _Table(NamedTuple):
 @cache
 def _tables() -> tuple[_Table, ...]:
     drive = PositionDrive()
-    parts = {f"gear.{name}": part for name, part in _members(drive.gear).items() if hasattr(part, "fields")}
-    return tuple(_table(path, part) for path, part in (parts | _members(drive)).items())
+    return tuple(_table(path, model, part) for path, model in (("gear.", drive.gear), ("", drive)) for part in _parts(model))
 
 
-def _table(path: str, default: Any) -> _Table:
-    root, _, part = path.rpartition(".")
-    of_gear = "gear" in (root, part)
-    idle = all(getattr(default, parameter.name) in (0, ()) for parameter in _parameters(default))
-    kinds: Mapping[str, Any] = next((f for f in _core.families.values() if type(default) in f.values()), {})
-    return _Table(part, path, kinds, absent=default if of_gear and idle else None, required=of_gear and not idle)
+def _table(path: str, model: Any, part: _Part) -> _Table:
+    of_gear = path == "gear." or part.name == "gear"
+    default = getattr(model, part.name)
+    idle = not getattr(default, "active", any(getattr(default, p.name) not in (0, ()) for p in _parameters(default)))
+    kinds = part.options or {}
+    return _Table(part.name, path + part.name, kinds, absent=default if of_gear and idle else None, required=of_gear and not idle)
 
 
-def _members(model: Any) -> dict[str, Any]:
-    return {field["name"]: getattr(model, field["name"]) for field in model.fields}
+def _inner(path: str, model: Any) -> list[_Table]:
+    """The tables of the models that a model, or a class of models, holds; those of a gear stand in the file by themselves."""
+    if path == "gear":
+        return []
+    return [_Table(part.name, f"{path}.{part.name}", part.options, None, required=True) for part in _parts(model)]
+
+
+class _Part(NamedTuple):
+    name: str
+    options: Mapping[str, Any]
+
+
+def _parts(model: Any) -> list[_Part]:
+    """The models that a model, or a class of models, holds, and what they may be chosen from."""
+    return [_Part(field["name"], field["options"]) for field in model.fields if field["kind"] == "part"]
 
 
 class _Parameter(NamedTuple):
@@ -345,13 +357,15 @@ def _parameters(model: Any) -> list[_Parameter]:
     return [_Parameter(*map(field.get, _Parameter._fields)) for field in model.fields if field["kind"] != "part"]
 
 
-def _numbers(path: str, model: Any) -> Iterator[str]:
-    """Path of every number of a model, without those of its parts."""
+def _numbers(table: _Table, model: Any) -> Iterator[str]:
+    """Path of every number of a model, and of the models it holds."""
     for name, kind, _ in _parameters(model):
         if kind == "sequence":
-            yield from (f"{path}.{name}[{i}]" for i in range(len(getattr(model, name))))
+            yield from (f"{table.path}.{name}[{i}]" for i in range(len(getattr(model, name))))
         elif kind != "choice":
-            yield f"{path}.{name}"
+            yield f"{table.path}.{name}"
+    for inner in _inner(table.path, model):
+        yield from _numbers(inner, getattr(model, inner.name))
 
 
 def _filled(models: Mapping[str, Any]) -> Iterator[tuple[_Table, Any]]:
@@ -364,7 +378,7 @@ def _filled(models: Mapping[str, Any]) -> Iterator[tuple[_Table, Any]]:
 
 def _places(models: Mapping[str, Any]) -> Iterator[str]:
     """Path of every number of gear, motor, control and load."""
-    return (place for table, model in _filled(models) for place in _numbers(table.path, model))
+    return (place for table, model in _filled(models) for place in _numbers(table, model))
 
 
 def _drive(models: Mapping[str, Any]) -> PositionDrive:
@@ -419,9 +433,9 @@ def _document(path: Path) -> dict[str, Any]:
 def _read_table(table: _Table, content: dict[str, Any] | None) -> tuple[Any, list[Entry]]:
     """The model that a table holds, and where its numbers come from, in the order of `_numbers`."""
     if content is None:
-        return table.absent, [Entry(NOT_GIVEN) for _ in _numbers("", table.absent)] if table.absent else []
+        return table.absent, [Entry(NOT_GIVEN) for _ in _numbers(table, table.absent)] if table.absent else []
     model, content = _chosen(table, content)
-    checked = _checked(_table_form(model), content)
+    checked = _checked(_table_form(table.path, model), content)
     entries: list[Entry] = []
     for name, kind, unit in _parameters(model):
         if kind != "choice":
@@ -431,6 +445,10 @@ def _read_table(table: _Table, content: dict[str, Any] | None) -> tuple[Any, lis
             values = [quantity.value for quantity in quantities]
             checked[name] = values if kind == "sequence" else values[0]
             entries += [Entry(quantity.source, quantity.spread, quantity.uncertainty) for quantity in quantities]
+    for inner in _inner(table.path, model):
+        with _at(f"{inner.name}:"):
+            checked[inner.name], its_entries = _read_table(inner, checked[inner.name])
+        entries += its_entries
     return model(**checked), entries
 
 
@@ -492,13 +510,16 @@ def _head_form() -> _Form:
 
 
 @cache
-def _table_form(model: Any) -> _Form:
+def _table_form(path: str, model: Any) -> _Form:
     """The keys of a table with the parameters of this class of models."""
-    keys = {parameter.name: (_content(parameter), ...) for parameter in _parameters(model)}
+    keys: dict[str, Any] = {parameter.name: (_content(parameter), ...) for parameter in _parameters(model)}
     examples = {
         parameter.name: f"{parameter.name} = {_example(parameter, getattr(model(), parameter.name))}"
         for parameter in _parameters(model)
     }
+    for inner in _inner(path, model):
+        keys[inner.name] = (dict[str, Any], ...)
+        examples[inner.name] = f"[{inner.path.removeprefix('gear.')}] with {_choice(inner)}"
     return _Form(f"parameter of {model.name}", _schema(model.name, keys), examples)
 
 
@@ -600,6 +621,8 @@ def _text(gear_set: GearSet) -> str:
         if text := getattr(gear_set, key):
             document.add(key, text)
     for table, model in _filled(vars(gear_set)):
+        if model == table.absent and all(gear_set.sources[place].source == NOT_GIVEN for place in _numbers(table, model)):
+            continue
         document.add(table.name, _written(table, model, gear_set.sources))
     if gear_set.ratings:
         ratings = document["ratings"] = tomlkit.table()
@@ -624,6 +647,8 @@ def _written(table: _Table, model: Any, sources: Mapping[str, Entry]) -> Any:
             written.add(name, _inline_sequence(value, unit, entries))
         else:
             written.add(name, _inline(value, unit, sources[place]))
+    for inner in _inner(table.path, model):
+        written.add(inner.name, _written(inner, getattr(model, inner.name), sources))
     return written
 
 

@@ -36,9 +36,9 @@ class Fourier:
     document R, eq. (1a); sign convention: theta_error = theta_in / i - theta_out
     """
 
-    def __init__(self, *, order: Sequence[float] = ..., amplitude: Sequence[float] = ..., phase: Sequence[float] = ...) -> None: ...
+    def __init__(self, *, order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, order: Sequence[float] = ..., amplitude: Sequence[float] = ..., phase: Sequence[float] = ...) -> Fourier:
+    def replace(self, *, order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Fourier:
         """The same with the named parameters changed."""
 
     @property
@@ -82,3 +82,314 @@ class Fourier:
     @overload
     def slope(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """Its derivative [rad/rad] by the input angle."""
+
+    def harmonics(self, highest: int = 8) -> Fourier:
+        """
+        Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.
+        """
+
+class Misalignment:
+    """
+    Kinematic error of a wave generator that sits eccentric and tilted in the circular spline.
+
+    .. math:: e(\\theta) = -\\frac{\\tan\\alpha_t}{r_g} \\operatorname{combine}(\\delta_A, \\delta_B), \\qquad
+              \\delta_A = \\rho(\\theta) - a, \\quad \\delta_B = \\rho(\\theta + \\pi) - a
+
+    .. math:: \\rho(\\psi) = \\frac{u^T Q c + \\sqrt{(u^T Q c)^2 - u^T Q u \\, (c^T Q c - 1)}}{u^T Q u}, \\qquad
+              u = (\\cos\\psi, \\sin\\psi)
+
+    with theta the input angle, a = major_radius, b = minor_radius, alpha_t = pressure_angle, r_g = pitch_radius. The wave
+    generator is an elliptic cylinder with half axes a, b. The plane normal to the input shaft at h = offset from the point
+    about which things tilt cuts it in the ellipse of centre c and matrix Q, both turning with theta; rho is the ellipse's
+    polar radius about the axis of the circular spline, delta_A and delta_B are the displacements of the two lobes. The input
+    shaft stands off the axis of the circular spline by e_1 = housing_eccentricity towards beta_1 = housing_direction and
+    leans towards x and y by beta_2 = housing_tilt_x, beta_3 = housing_tilt_y, all at rest in the housing; the generator
+    stands on the shaft with e_2 = generator_eccentricity, alpha_1 = generator_direction, alpha_2 = generator_tilt_x,
+    alpha_3 = generator_tilt_y, all turning with it. ``combine`` is ``single`` (delta_A: one tooth pair carries), ``mean``
+    (two equally stiff lobes) or ``max`` (the lobe further out carries, and the slope jumps where the lobes change).
+
+    What harmonics can tell: with m = ``eccentricity``, close to (e_1 cos beta_1 + h beta_2, e_1 sin beta_1 + h beta_3), and
+    c = (e_2 cos alpha_1 + h alpha_2, e_2 sin alpha_1 + h alpha_3), the displacement that varies is, to the order that
+    ``leading`` keeps,
+
+    .. math:: \\text{single: } m \\cdot u(\\theta), \\qquad \\text{max: } |c_x + m \\cdot u(\\theta)|, \\qquad
+              \\text{mean: } \\frac{a c_y}{b^2} (m_x \\sin\\theta - m_y \\cos\\theta) + \\frac{a}{4}
+              \\operatorname{Re}\\left[\\left(\\frac{m^2}{b^2} - \\beta^2\\right) e^{-2 j \\theta}\\right]
+
+    with m and beta = beta_2 + j beta_3 in the last bracket read as complex numbers. Of a single lobe only the vector m is
+    identifiable: e_1 is not told from a tilt times h, and a tilt with h = 0 acts in second order only. The misalignment
+    of the generator alone (m = 0, beta = 0) gives a constant and no harmonic at all. Beside that of the housing it acts in
+    products with m or beta, of second order by c_y and of third by its tilts; c_x reaches the harmonics in first order by
+    ``max`` alone, which compares it with m: odd orders appear, and once c_x outgrows m the lobes change no more and what
+    remains is that of ``single``.
+
+    Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. Document A takes e r_g for the
+    radial displacement, of Eq. (2)'s sign; the displacement acts through the flank, with factor tan(alpha_t) / r_g, and
+    against it (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
+
+    >>> from strainwave.kinematic_error import Misalignment
+    >>> round(Misalignment(housing_eccentricity=20e-6, combine="single").error(0.0), 10)
+    -0.0002911762
+
+    Parameters
+    ----------
+    major_radius: Major half axis a of the wave generator [m], in (0, inf); default 0.02525
+    minor_radius: Minor half axis b of the wave generator [m], in (0, inf); default 0.02475
+    pitch_radius: Pitch radius r_g [m], in (0, inf); default 0.025
+    pressure_angle: Pressure angle alpha_t of the teeth [rad], in (0, 1.5]; default 0.3490658503988659
+    offset: Axial distance h of the section from the centre of tilt [m]; default 0.0
+    housing_eccentricity: Distance e_1 of the input shaft from the axis of the circular spline [m], in [0, inf); default 0.0
+    housing_direction: Direction beta_1 of e_1 in the circular spline [rad]; default 0.0
+    housing_tilt_x: Tilt beta_2 of the input shaft towards x of the circular spline [rad], in [-0.5, 0.5]; default 0.0
+    housing_tilt_y: Tilt beta_3 of the input shaft towards y of the circular spline [rad], in [-0.5, 0.5]; default 0.0
+    generator_eccentricity: Distance e_2 of the wave generator from the input shaft [m], in [0, inf); default 0.0
+    generator_direction: Direction alpha_1 of e_2 from the major axis, turning with the shaft [rad]; default 0.0
+    generator_tilt_x: Tilt alpha_2 of the wave generator towards its major axis [rad], in [-0.5, 0.5]; default 0.0
+    generator_tilt_y: Tilt alpha_3 of the wave generator towards its minor axis [rad], in [-0.5, 0.5]; default 0.0
+    combine: How the two lobes decide on the output, one of ('single', 'mean', 'max'); default 'single'
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document A, section Kinematic error, worked out: the document prints no equation; erratum E-A4; `combine` and the default values (teeth of module 0.25 mm, 200 and 202) are assumed
+    """
+
+    def __init__(self, *, major_radius: float = ..., minor_radius: float = ..., pitch_radius: float = ..., pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> None: ...
+
+    def replace(self, *, major_radius: float = ..., minor_radius: float = ..., pitch_radius: float = ..., pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> Misalignment:
+        """The same with the named parameters changed."""
+
+    @property
+    def major_radius(self) -> float:
+        """Major half axis a of the wave generator [m]"""
+
+    @property
+    def minor_radius(self) -> float:
+        """Minor half axis b of the wave generator [m]"""
+
+    @property
+    def pitch_radius(self) -> float:
+        """Pitch radius r_g [m]"""
+
+    @property
+    def pressure_angle(self) -> float:
+        """Pressure angle alpha_t of the teeth [rad]"""
+
+    @property
+    def offset(self) -> float:
+        """Axial distance h of the section from the centre of tilt [m]"""
+
+    @property
+    def housing_eccentricity(self) -> float:
+        """
+        Distance e_1 of the input shaft from the axis of the circular spline [m]
+        """
+
+    @property
+    def housing_direction(self) -> float:
+        """Direction beta_1 of e_1 in the circular spline [rad]"""
+
+    @property
+    def housing_tilt_x(self) -> float:
+        """Tilt beta_2 of the input shaft towards x of the circular spline [rad]"""
+
+    @property
+    def housing_tilt_y(self) -> float:
+        """Tilt beta_3 of the input shaft towards y of the circular spline [rad]"""
+
+    @property
+    def generator_eccentricity(self) -> float:
+        """Distance e_2 of the wave generator from the input shaft [m]"""
+
+    @property
+    def generator_direction(self) -> float:
+        """
+        Direction alpha_1 of e_2 from the major axis, turning with the shaft [rad]
+        """
+
+    @property
+    def generator_tilt_x(self) -> float:
+        """Tilt alpha_2 of the wave generator towards its major axis [rad]"""
+
+    @property
+    def generator_tilt_y(self) -> float:
+        """Tilt alpha_3 of the wave generator towards its minor axis [rad]"""
+
+    @property
+    def combine(self) -> str:
+        """How the two lobes decide on the output"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'misalignment'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def error(self, angle: float) -> float: ...
+
+    @overload
+    def error(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Kinematic error [rad] at input `angle` [rad]."""
+
+    @overload
+    def slope(self, angle: float) -> float: ...
+
+    @overload
+    def slope(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Its derivative [rad/rad] by the input angle."""
+
+    def harmonics(self, highest: int = 8) -> Fourier:
+        """
+        Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.
+        """
+
+    def lobes(self, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Radial displacements delta_A, delta_B [m] of the two lobes at input `angle` [rad], each of the shape of `angle`.
+        """
+
+    def leading(self) -> Fourier:
+        """The harmonics to leading order, in closed form: a Fourier law."""
+
+    @property
+    def eccentricity(self) -> tuple[float, float]:
+        """What harmonics can tell: the vector m, x and y [m]."""
+
+class Stochastic:
+    """
+    Random kinematic error of a given band of orders: smooth, the same for the same seed.
+
+    .. math:: n(\\theta) = a \\sqrt{\\frac{2}{N}} \\sum_{k=1}^{N} \\cos(B_k \\theta + \\varphi_k), \\qquad
+              a = A \\, \\frac{1 + s_\\omega |\\omega|}{1 + s_T |T|} \\, e^{-s_d d}
+
+    with theta the input angle, omega the input speed, T the torque transmitted, A = amplitude, s_omega = speed_sensitivity,
+    s_T = load_sensitivity, s_d = depth_sensitivity, d = insertion_depth of the wave generator in the flexspline. a is the
+    root mean square over many turns. The band from lowest_order to highest_order has N = 32 equal cells; each holds one
+    order B_k, its place in the cell and its phase phi_k drawn by ``seed``. A function of the angle and of nothing that
+    happened before: reproducible, differentiable, independent of the time step, which must resolve the highest order. If the
+    ends of the band are whole numbers, it repeats itself after 16384 input turns at most, 512 in the default band. Every
+    scalar type draws the same orders and phases.
+
+    The review says that the stochastic part falls with load, rises with speed and falls with the insertion depth, but not
+    how: the forms are assumed, and all three are off by default. What it calls stochastic contains the deterministic
+    resonance of the elastic gear too (E-R4), which is not meant here. Its spectrum is flat, its values are close to Gaussian.
+    ``slope`` is the derivative by theta at constant a. Over few turns the root mean square is another one: a record has
+    to span the inverse of a cell's width, in turns, several times.
+
+    >>> from strainwave.kinematic_error import Stochastic
+    >>> noise = Stochastic(amplitude=2e-5, seed=7, load_sensitivity=0.1)
+    >>> noise.error(0.3) == 2.0 * noise.error(0.3, torque=-10.0)
+    True
+
+    Parameters
+    ----------
+    amplitude: Root mean square A at the output, without load and at rest; 0 is no noise [rad], in [0, 1]; default 0.0
+    lowest_order: Lower end of the band: periods per input revolution, in [0, 10000]; default 8.0
+    highest_order: Upper end of the band: periods per input revolution, in (0, 10000]; default 40.0
+    seed: Whole number that says which of all such errors it is, in [0, 16777215]; default 0.0
+    load_sensitivity: How fast the amplitude falls with the torque transmitted [1/(N.m)], in [0, inf); default 0.0
+    speed_sensitivity: How fast the amplitude rises with the input speed [s/rad], in [0, inf); default 0.0
+    insertion_depth: Depth d to which the wave generator is inserted into the flexspline [m], in [0, inf); default 0.0
+    depth_sensitivity: How fast the amplitude falls with the insertion depth [1/m], in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document R, section on the kinematic error, which states directions only: the laws of load, speed and depth and the default band are assumed; spectral representation: ShinozukaDeodatis1991; random numbers: WichmannHill1982
+    """
+
+    def __init__(self, *, amplitude: float = ..., lowest_order: float = ..., highest_order: float = ..., seed: float = ..., load_sensitivity: float = ..., speed_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> None: ...
+
+    def replace(self, *, amplitude: float = ..., lowest_order: float = ..., highest_order: float = ..., seed: float = ..., load_sensitivity: float = ..., speed_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> Stochastic:
+        """The same with the named parameters changed."""
+
+    @property
+    def amplitude(self) -> float:
+        """
+        Root mean square A at the output, without load and at rest; 0 is no noise [rad]
+        """
+
+    @property
+    def lowest_order(self) -> float:
+        """Lower end of the band: periods per input revolution"""
+
+    @property
+    def highest_order(self) -> float:
+        """Upper end of the band: periods per input revolution"""
+
+    @property
+    def seed(self) -> float:
+        """Whole number that says which of all such errors it is"""
+
+    @property
+    def load_sensitivity(self) -> float:
+        """How fast the amplitude falls with the torque transmitted [1/(N.m)]"""
+
+    @property
+    def speed_sensitivity(self) -> float:
+        """How fast the amplitude rises with the input speed [s/rad]"""
+
+    @property
+    def insertion_depth(self) -> float:
+        """
+        Depth d to which the wave generator is inserted into the flexspline [m]
+        """
+
+    @property
+    def depth_sensitivity(self) -> float:
+        """How fast the amplitude falls with the insertion depth [1/m]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'stochastic'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def error(self, angle: float, torque: float = 0.0, speed: float = 0.0) -> float: ...
+
+    @overload
+    def error(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], torque: float = 0.0, speed: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Random kinematic error [rad] at input `angle` [rad], under `torque` [N.m] at `speed` [rad/s] of the input.
+        """
+
+    @overload
+    def slope(self, angle: float, torque: float = 0.0, speed: float = 0.0) -> float: ...
+
+    @overload
+    def slope(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64], torque: float = 0.0, speed: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
+        """Its derivative [rad/rad] by the input angle, at constant amplitude."""
+
+    @property
+    def active(self) -> bool:
+        """Whether there is any."""

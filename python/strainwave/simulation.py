@@ -16,6 +16,7 @@ from strainwave.scenario import Scenario
 
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of the gear's vibration
+ROOM_TEMPERATURE = 293.15  # K
 _TWIST = [name for name, _, _ in _core.outputs].index("twist")
 CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
 
@@ -57,14 +58,46 @@ class Course:
         for start in range(0, len(self.instants) - 1, CHUNK):
             yield Course(self.instants[start : start + CHUNK + 1], self.samples[start : start + CHUNK + 1])
 
-    def inputs(self, command: Scenario, load_torque: Scenario | None) -> Array:
-        """Command, its rate and the load torque at the start, middle and end of each step, shape (n, 3, 3)."""
-        inputs = np.zeros((len(self.instants) - 1, 3, 3))
-        start, end = self.instants[:-1], self.instants[1:]
-        for signal, column in ((command, 0), (load_torque, 2)):
-            if signal is not None:
+
+@dataclass(frozen=True)
+class Excitation:
+    """What acts on a drive from outside: command, torque that holds the output back [N.m], temperature of the gear [K]."""
+
+    command: Scenario
+    load_torque: Scenario | float = 0.0
+    temperature: Scenario | float = ROOM_TEMPERATURE
+
+    def __post_init__(self) -> None:
+        for name in ("load_torque", "temperature"):
+            signal = getattr(self, name)
+            if isinstance(signal, Scenario) and signal.duration != self.command.duration:
+                raise ValueError(
+                    f"{name} lasts {signal.duration} s, command {self.command.duration} s; both must last equally long"
+                )
+            if not isinstance(signal, Scenario) and not np.isfinite(signal):
+                raise ValueError(f"{name} = {signal} must be finite")
+
+    def course(self, dt: float, samples: float | Array | None) -> Course:
+        """The steps that follow it."""
+        signals = (self.command, self.load_torque, self.temperature)
+        breaks = np.concatenate([signal.breaks for signal in signals if isinstance(signal, Scenario)])
+        return Course.through(self.command.duration, dt, dt if samples is None else samples, breaks)
+
+    def first(self) -> Array:
+        """Command, its rate, load torque and temperature at t = 0."""
+        others = (float(s.value(0.0)) if isinstance(s, Scenario) else s for s in (self.load_torque, self.temperature))
+        return np.array([float(self.command.value(0.0)), float(self.command.rate(0.0)), *others])
+
+    def over(self, course: Course) -> Array:
+        """The same at the start, middle and end of each step, shape (n, 3, 4)."""
+        inputs = np.empty((len(course.instants) - 1, 3, 4))
+        start, end = course.instants[:-1], course.instants[1:]
+        for column, signal in ((0, self.command), (2, self.load_torque), (3, self.temperature)):
+            if isinstance(signal, Scenario):
                 _lay_out(inputs[:, :, column], start, end, signal.breaks, signal.value, signal.value_before)
-        _lay_out(inputs[:, :, 1], start, end, command.breaks, command.rate, command.rate_before)
+            else:
+                inputs[:, :, column] = signal
+        _lay_out(inputs[:, :, 1], start, end, self.command.breaks, self.command.rate, self.command.rate_before)
         return inputs
 
 
@@ -74,7 +107,8 @@ def simulate(
     dt: float = 2e-4,
     *,
     sample: float | None = None,
-    load_torque: Scenario | None = None,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
     start: _core.State | None = None,
     progress: bool = False,
 ) -> Recording:
@@ -89,16 +123,19 @@ def simulate(
         dt: largest step [s]
         sample: distance of samples in the recording [s]; `dt` if not given
         load_torque: torque that holds the output back [N.m], besides the load's own
+        temperature: of the gear [K], for friction that depends on it
         start: where the drive starts; at rest, untwisted, if not given
         progress: show a progress bar
 
     Returns:
         Recording with columns time [s], command, input_angle [rad], input_speed [rad/s], output_angle [rad], output_speed
         [rad/s], twist [rad], kinematic_error [rad], transmission_error [rad], torque [N.m], current [A], voltage [V],
-        friction_input [N.m], friction_output [N.m], load_torque [N.m], each of shape (n,); the first sample is at t = 0.
+        friction_input [N.m], friction_mesh [N.m], friction_output [N.m], load_torque [N.m], temperature [K], each of shape
+        (n,); the first sample is at t = 0.
 
     Raises:
-        ValueError: `dt` or `sample` is not positive, or `load_torque` lasts another time than `command`
+        ValueError: `dt` or `sample` is not positive, `load_torque` or `temperature` lasts another time than `command`, or the
+            drive leaves the range in which one of its parts is valid; says which, where and when
         FloatingPointError: the trajectory left the finite numbers, or `dt` cannot follow the gear's vibration; says when,
             and what would do
 
@@ -108,14 +145,15 @@ def simulate(
     >>> run.unit("output_angle"), len(run)
     ('rad', 501)
     """
-    course = _course(command, dt, sample, load_torque)
+    excitation = Excitation(command, load_torque, temperature)
+    course = excitation.course(dt, sample)
     state = drive.rest() if start is None else start
-    pieces = [_core.now(drive, state, _first_inputs(command, load_torque))]
+    pieces = [_core.now(drive, state, excitation.first())]
     with _progress(progress, len(course.instants) - 1) as shown:
         for number, chunk in enumerate(course.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
             outputs, state = _core.simulate(
-                drive, state, chunk.instants, chunk.inputs(command, load_torque), chunk.samples[1:], report
+                drive, state, chunk.instants, excitation.over(chunk), chunk.samples[1:], report
             )
             pieces.append(outputs)
     return _recording(drive, course, np.concatenate(pieces, axis=1), dt)
@@ -127,7 +165,8 @@ def simulate_many(
     dt: float = 2e-4,
     *,
     sample: float | None = None,
-    load_torque: Scenario | None = None,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
     progress: bool = False,
 ) -> list[Recording]:
     """Runs drives that differ in numbers alone through one command, several to a vector register.
@@ -136,7 +175,7 @@ def simulate_many(
 
     Args:
         drives: drives that choose the same models with equally many elements
-        command, dt, sample, load_torque, progress: as for `simulate`
+        command, dt, sample, load_torque, temperature, progress: as for `simulate`
 
     Returns:
         one Recording a drive, in their order
@@ -152,11 +191,12 @@ def simulate_many(
     """
     if not drives:
         return []
-    course = _course(command, dt, sample, load_torque)
-    first = np.stack([_core.now(drive, drive.rest(), _first_inputs(command, load_torque)) for drive in drives])
+    excitation = Excitation(command, load_torque, temperature)
+    course = excitation.course(dt, sample)
+    first = np.stack([_core.now(drive, drive.rest(), excitation.first()) for drive in drives])
     with _progress(progress, len(drives) * (len(course.instants) - 1)) as shown:
         outputs = _core.simulate_packed(
-            list(drives), course.instants, course.inputs(command, load_torque), course.samples[1:], shown
+            list(drives), course.instants, excitation.over(course), course.samples[1:], shown
         )
     whole = np.concatenate((first, outputs), axis=2)
     return [_recording(drive, course, member, dt) for drive, member in zip(drives, whole, strict=True)]
@@ -168,7 +208,8 @@ def derivatives(
     numbers: Sequence[int],
     dt: float,
     samples: float | Array,
-    load_torque: Scenario | None = None,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
 ) -> tuple[Recording, Array]:
     """A run from rest and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
 
@@ -179,11 +220,12 @@ def derivatives(
     Returns:
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
-    course = _course(command, dt, samples, load_torque)
+    excitation = Excitation(command, load_torque, temperature)
+    course = excitation.course(dt, samples)
     outputs, slopes = _core.differentiate(
-        drive, course.instants, course.inputs(command, load_torque), course.samples[1:], list(numbers)
+        drive, course.instants, excitation.over(course), course.samples[1:], list(numbers)
     )
-    first, first_slopes = _core.now_derivatives(drive, _first_inputs(command, load_torque), list(numbers))
+    first, first_slopes = _core.now_derivatives(drive, excitation.first(), list(numbers))
     run = _recording(drive, course, np.concatenate((first, outputs), axis=1), dt)
     return run, np.concatenate((first_slopes, slopes), axis=2)
 
@@ -205,17 +247,6 @@ def _lay_out(
     columns[ends, 2] = before(end[ends])
 
 
-def _course(command: Scenario, dt: float, samples: float | Array | None, load_torque: Scenario | None) -> Course:
-    breaks = command.breaks
-    if load_torque is not None:
-        if load_torque.duration != command.duration:
-            raise ValueError(
-                f"load_torque lasts {load_torque.duration} s, command {command.duration} s; both must last equally long"
-            )
-        breaks = np.concatenate((breaks, load_torque.breaks))
-    return Course.through(command.duration, dt, dt if samples is None else samples, breaks)
-
-
 def _positive(name: str, value: float) -> None:
     if not 0.0 < value < np.inf:
         raise ValueError(f"{name} = {value} s must lie in (0, inf)")
@@ -225,11 +256,6 @@ def _grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
     grid = step * np.arange(int(duration / step) + 2)
     return np.append(grid[grid < duration - tolerance], duration)
-
-
-def _first_inputs(command: Scenario, load_torque: Scenario | None) -> Array:
-    load = 0.0 if load_torque is None else float(load_torque.value(0.0))
-    return np.array([float(command.value(0.0)), float(command.rate(0.0)), load])
 
 
 def _recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -> Recording:
@@ -255,7 +281,8 @@ def _check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
     amplitude each step at 1.
     """
     gear = drive.gear
-    stiffness = gear.stiffness.tangent(twist) + float(np.sum(gear.hysteresis.stiffness))
+    small = 1e-9 * max(abs(twist), 1e-9)
+    stiffness = _steepest(gear.stiffness, twist) + float(gear.hysteresis.trace([0.0, small])[-1]) / small
     ratio, input_inertia = gear.kinematics.ratio, drive.motor.inertia + gear.input_inertia
     frequency = float(np.sqrt(stiffness * (1.0 / drive.load.inertia + 1.0 / (ratio**2 * input_inertia))))
     if dt * frequency > COARSEST:
@@ -263,6 +290,11 @@ def _check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
             f"dt = {dt:g} s is too coarse for this drive: its gear vibrates at {frequency:.4g} rad/s at a twist of "
             f"{twist:.3g} rad; take dt = {COARSEST / frequency:.2g} s or less"
         )
+
+
+def _steepest(stiffness: object, twist: float) -> float:
+    """The largest stiffness [N.m/rad] up to a twist; a spring need not harden."""
+    return float(np.max(stiffness.tangent(np.linspace(0.0, twist, 65))))  # type: ignore[attr-defined]
 
 
 @contextmanager

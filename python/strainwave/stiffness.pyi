@@ -86,24 +86,26 @@ class Linear:
     def energy(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """Elastic energy [J] at `twist` [rad]."""
 
-class Cubic:
+class Piecewise:
     """
-    A spring that stiffens smoothly under load.
+    A spring that turns stiffer at one twist: two straight segments, odd in the twist.
 
-    .. math:: T = a_1 \\delta + a_3 \\delta^3
+    .. math:: T = k_1 \\delta + k_2 \\operatorname{sgn}(\\delta) \\max(|\\delta| - \\delta_k, 0)
 
-    with delta the twist, a_1 = a1 > 0, a_3 = a3 >= 0. Odd and strictly increasing, so every torque has one twist. Valid
-    over the range it was fitted on; beyond, the cubic stiffens faster than any gear.
+    with delta the twist, k_1 = k1, k_2 = k2, delta_k = knee. Document R prints k_2 as if it were the slope of the second
+    segment; its own formula adds it, so the slope above the knee is k1 + k2 (E-R9). To match a slope K above the knee, set
+    k2 = K - k1. The slope jumps at the knee; at the knee itself it is k1. Leaves out the soft centre and the hysteresis.
 
-    >>> from strainwave.stiffness import Cubic
-    >>> spring = Cubic(a1=1.2e4, a3=1e9)
-    >>> round(spring.twist(spring.torque(1e-3)), 12)
-    0.001
+    >>> from strainwave.stiffness import Piecewise
+    >>> spring = Piecewise(k1=8000.0, k2=2000.0, knee=0.001)
+    >>> spring.torque(0.003), spring.tangent(0.003)
+    (28.0, 10000.0)
 
     Parameters
     ----------
-    a1: Stiffness at zero twist [N.m/rad], in (0, inf); default 10000.0
-    a3: Hardening [N.m/rad3], in [0, inf); default 0.0
+    k1: Stiffness up to the knee [N.m/rad], in (0, inf); default 8000.0
+    k2: What the stiffness above the knee exceeds k1 by [N.m/rad], in [0, inf); default 2000.0
+    knee: Twist of the knee [rad], in [0, inf); default 0.001
 
     Raises
     ------
@@ -112,21 +114,25 @@ class Cubic:
 
     Source
     ------
-    document R, section 3, cubic polynomial; Tuttle1992
+    document R, section 3, piecewise linear; erratum E-R9
     """
 
-    def __init__(self, *, a1: float = ..., a3: float = ...) -> None: ...
+    def __init__(self, *, k1: float = ..., k2: float = ..., knee: float = ...) -> None: ...
 
-    def replace(self, *, a1: float = ..., a3: float = ...) -> Cubic:
+    def replace(self, *, k1: float = ..., k2: float = ..., knee: float = ...) -> Piecewise:
         """The same with the named parameters changed."""
 
     @property
-    def a1(self) -> float:
-        """Stiffness at zero twist [N.m/rad]"""
+    def k1(self) -> float:
+        """Stiffness up to the knee [N.m/rad]"""
 
     @property
-    def a3(self) -> float:
-        """Hardening [N.m/rad3]"""
+    def k2(self) -> float:
+        """What the stiffness above the knee exceeds k1 by [N.m/rad]"""
+
+    @property
+    def knee(self) -> float:
+        """Twist of the knee [rad]"""
 
     def __repr__(self) -> str: ...
 
@@ -138,7 +144,7 @@ class Cubic:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
-    name: str = 'cubic'
+    name: str = 'piecewise'
 
     source: str = ...
 
@@ -244,6 +250,205 @@ class ThreeSegment:
     name: str = 'three_segment'
 
     source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def torque(self, twist: float) -> float: ...
+
+    @overload
+    def torque(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Torque [N.m] at `twist` [rad]."""
+
+    @overload
+    def twist(self, torque: float) -> float: ...
+
+    @overload
+    def twist(self, torque: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Twist [rad] at `torque` [N.m], the inverse of `torque`."""
+
+    @overload
+    def tangent(self, twist: float) -> float: ...
+
+    @overload
+    def tangent(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Stiffness dT/d(twist) [N.m/rad] at `twist` [rad]."""
+
+    @overload
+    def energy(self, twist: float) -> float: ...
+
+    @overload
+    def energy(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Elastic energy [J] at `twist` [rad]."""
+
+class Cubic:
+    """
+    A spring that stiffens smoothly under load.
+
+    .. math:: T = a_1 \\delta + a_3 \\delta^3
+
+    with delta the twist, a_1 = a1 > 0, a_3 = a3 >= 0. Odd and strictly increasing, so every torque has one twist. Valid
+    over the range it was fitted on; beyond, the cubic stiffens faster than any gear.
+
+    >>> from strainwave.stiffness import Cubic
+    >>> spring = Cubic(a1=1.2e4, a3=1e9)
+    >>> round(spring.twist(spring.torque(1e-3)), 12)
+    0.001
+
+    Parameters
+    ----------
+    a1: Stiffness at zero twist [N.m/rad], in (0, inf); default 10000.0
+    a3: Hardening [N.m/rad3], in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document R, section 3, cubic polynomial; Tuttle1992
+    """
+
+    def __init__(self, *, a1: float = ..., a3: float = ...) -> None: ...
+
+    def replace(self, *, a1: float = ..., a3: float = ...) -> Cubic:
+        """The same with the named parameters changed."""
+
+    @property
+    def a1(self) -> float:
+        """Stiffness at zero twist [N.m/rad]"""
+
+    @property
+    def a3(self) -> float:
+        """Hardening [N.m/rad3]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'cubic'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def torque(self, twist: float) -> float: ...
+
+    @overload
+    def torque(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Torque [N.m] at `twist` [rad]."""
+
+    @overload
+    def twist(self, torque: float) -> float: ...
+
+    @overload
+    def twist(self, torque: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Twist [rad] at `torque` [N.m], the inverse of `torque`."""
+
+    @overload
+    def tangent(self, twist: float) -> float: ...
+
+    @overload
+    def tangent(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Stiffness dT/d(twist) [N.m/rad] at `twist` [rad]."""
+
+    @overload
+    def energy(self, twist: float) -> float: ...
+
+    @overload
+    def energy(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Elastic energy [J] at `twist` [rad]."""
+
+class MultiCompliance:
+    """
+    Flexspline and wave generator in series, each a spring that hardens until it gives way no further.
+
+    .. math:: \\delta = \\frac{\\arctan(C_f T)}{C_f K_{f0}}
+              + \\operatorname{sgn}(T) \\frac{1 - e^{-C_w |T| / N}}{N C_w K_{w0}}, \\qquad
+              \\frac{d\\delta}{dT} = \\frac{1}{K_{f0} (1 + (C_f T)^2)} + \\frac{e^{-C_w |T| / N}}{N^2 K_{w0}}
+
+    with delta the twist, K_f0 = flexspline_stiffness and C_f = flexspline_hardening at the output, K_w0 =
+    wave_generator_stiffness and C_w = wave_generator_hardening at the input, where the torque is T / N, N = reduction: the
+    ratio of the gear, without its sign. A hardening of 0 is a linear spring. If neither is 0 the twist has the bound
+    pi / (2 C_f K_f0) + 1 / (N C_w K_w0), beyond which there is no torque: the law is then not valid. Hardens without
+    end, more steeply than any gear well before the bound.
+
+    In a compiled model torque rises up to max(1e6 / C_f, 40 N / C_w), at most 1e18 N.m, and stays there, from within
+    1e-6 of the bound on. Elastic only: the friction torque that document R puts inside belongs to a law of friction or
+    hysteresis, where it is passive (E-R14). The defaults are assumed.
+
+    >>> from strainwave.stiffness import MultiCompliance
+    >>> spring = MultiCompliance(flexspline_stiffness=8000.0, flexspline_hardening=0.02, wave_generator_stiffness=2.0,
+    ...                          wave_generator_hardening=1.5, reduction=100.0)
+    >>> round(spring.torque(0.003), 10)
+    18.3471285987
+
+    Parameters
+    ----------
+    flexspline_stiffness: Stiffness K_f0 of the flexspline at zero torque [N.m/rad], in (0, inf); default 8000.0
+    flexspline_hardening: Hardening C_f of the flexspline per torque at the output [1/(N.m)], in [0, inf); default 0.02
+    wave_generator_stiffness: Stiffness K_w0 of the wave generator at zero torque, at the input [N.m/rad], in (0, inf); default 2.0
+    wave_generator_hardening: Hardening C_w of the wave generator per torque at the input [1/(N.m)], in [0, inf); default 1.5
+    reduction: Ratio N of the gear, without its sign, in [1, inf); default 100.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, or one of the wrong kind
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document R, section 4c; erratum E-R14
+    """
+
+    def __init__(self, *, flexspline_stiffness: float = ..., flexspline_hardening: float = ..., wave_generator_stiffness: float = ..., wave_generator_hardening: float = ..., reduction: float = ...) -> None: ...
+
+    def replace(self, *, flexspline_stiffness: float = ..., flexspline_hardening: float = ..., wave_generator_stiffness: float = ..., wave_generator_hardening: float = ..., reduction: float = ...) -> MultiCompliance:
+        """The same with the named parameters changed."""
+
+    @property
+    def flexspline_stiffness(self) -> float:
+        """Stiffness K_f0 of the flexspline at zero torque [N.m/rad]"""
+
+    @property
+    def flexspline_hardening(self) -> float:
+        """Hardening C_f of the flexspline per torque at the output [1/(N.m)]"""
+
+    @property
+    def wave_generator_stiffness(self) -> float:
+        """
+        Stiffness K_w0 of the wave generator at zero torque, at the input [N.m/rad]
+        """
+
+    @property
+    def wave_generator_hardening(self) -> float:
+        """Hardening C_w of the wave generator per torque at the input [1/(N.m)]"""
+
+    @property
+    def reduction(self) -> float:
+        """Ratio N of the gear, without its sign"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    name: str = 'multi_compliance'
+
+    source: str = 'document R, section 4c; erratum E-R14'
 
     fields: tuple[dict[str, Any], ...]
 

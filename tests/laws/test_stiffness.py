@@ -52,14 +52,14 @@ def test_stiffness_is_positive(spring: Any, torque: float) -> None:
 def test_tangent_is_the_slope_of_the_torque(spring: Any, torque: float) -> None:
     """No spring's slope turns round within so short a step."""
     twist = spring.twist(torque)
-    ends = (twist, twist * (1.0 + STEP))
+    ends = (twist, spring.twist(torque * (1.0 + STEP)))
     assert mean_lies_between_the_ends(ends, tuple(map(spring.torque, ends)), tuple(map(spring.tangent, ends)))
 
 
 @given(springs, torques)
 def test_torque_is_the_slope_of_the_energy(spring: Any, torque: float) -> None:
     twist = spring.twist(torque)
-    ends = (twist, twist * (1.0 + STEP))
+    ends = (twist, spring.twist(torque * (1.0 + STEP)))
     assert mean_lies_between_the_ends(ends, tuple(map(spring.energy, ends)), tuple(map(spring.torque, ends)))
 
 

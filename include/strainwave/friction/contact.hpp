@@ -1,35 +1,164 @@
 #pragma once
-#include <strainwave/field.hpp>
+#include <strainwave/angle.hpp>
+#include <strainwave/condition.hpp>
 #include <strainwave/math.hpp>
 
-/// Friction torque opposes the motion of the side it acts on.
+/// Friction torque opposes the motion of the place it acts on: the input shaft, the mesh or the output shaft.
 namespace strainwave::friction {
 
-/// How the two surfaces of a side move against each other.
+inline constexpr double room_temperature = 293.15;  // K
+
+/// How the two surfaces of a place move against each other, and under what.
 template <class S>
 struct Contact {
-    S speed{0.0};    ///< rad/s
-    S sliding{1.0};  ///< Sense of sliding of a set-valued law: -1, 1, or 0 while it sticks
+    S speed{0.0};                    ///< rad/s
+    S sliding{1.0};                  ///< Sense of sliding of a set-valued law: -1, 1, or 0 while it sticks
+    Angle<S> angle{};                ///< Where the place stands
+    S load{0.0};                     ///< Torque it transmits [N.m]: load * speed is the power that flows to the output
+    S temperature{room_temperature}; ///< K
+    S dry{1.0};                      ///< Factor on the torque levels of dry friction
+    S dry_most{1.0};                 ///< The largest it can become
+    S viscous{1.0};                  ///< Factor on viscous friction
 
-    /// Sliding at `speed`, as a measurement at constant speed has it.
-    static constexpr Contact at(const S& speed) { return {speed, sign(speed)}; }
+    /// The same with dry and viscous friction multiplied.
+    constexpr Contact scaled(const S& dry_factor, const S& dry_factor_at_most, const S& viscous_factor) const {
+        Contact contact = *this;
+        contact.dry = dry * dry_factor;
+        contact.dry_most = dry_most * dry_factor_at_most;
+        contact.viscous = viscous * viscous_factor;
+        return contact;
+    }
+    constexpr Contact moving(const S& at_speed) const {
+        Contact contact = *this;
+        contact.speed = at_speed;
+        return contact;
+    }
+    constexpr Contact pushed(const S& towards) const {
+        Contact contact = *this;
+        contact.sliding = towards;
+        return contact;
+    }
+    /// Sliding the way its speed has it, as in a measurement at constant speed.
+    constexpr Contact steady() const { return pushed(sign(speed)); }
 };
 
-/// A law that can hold a side at rest: while it sticks it balances any torque up to `hold()`.
+/// A law that can hold its place at rest: while it sticks it balances any torque up to `hold(contact)`, which pushes towards
+/// `contact.sliding`.
 template <class Law>
-concept SetValued = requires(const Law& law) { law.hold(); };
+concept SetValued = requires(const Law& law) { law.hold({}); };
 
 /// A law with internal state that relaxes: rate = forcing - decay * state.
 template <class Law>
-concept Bristle = requires(const Law& law) { law.decay({}); };
+concept Bristle = requires(const Law& law, const typename Law::State& x) { law.decay(x, {}); };
 
-/// Torque [N.m] that opposes steady sliding at `speed` [rad/s], all transients gone.
+/// A law that is another, under a contact it modulates.
+template <class Law>
+concept Modulation = requires(const Law& law) {
+    law.law;
+    law.modulated({});
+};
+
+// The verbs of friction, for plain laws and modulated ones, with or without memory.
+
+/// Torque [N.m] that opposes the motion.
 template <class Law, class S>
-constexpr S steady(const Law& law, const S& speed) {
-    if constexpr (requires { law.settled(speed); })
-        return law.torque(law.settled(speed), Contact<S>::at(speed));
+constexpr S torque(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>)
+        return torque(law.law, x, law.modulated(contact));
     else
-        return law.torque({}, Contact<S>::at(speed));
+        return law.torque(x, contact);
+}
+
+template <class Law>
+constexpr bool set_valued(const Law& law) {
+    if constexpr (Modulation<Law>)
+        return set_valued(law.law);
+    else if constexpr (requires { law.set_valued(); })
+        return law.set_valued();
+    else
+        return SetValued<Law>;
+}
+
+/// The largest torque [N.m] balanced at rest; none by a law that is not set-valued.
+template <class Law, class S>
+constexpr S hold(const Law& law, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>)
+        return hold(law.law, law.modulated(contact));
+    else if constexpr (SetValued<Law>)
+        return law.hold(contact);
+    else
+        return S(0.0);
+}
+
+template <class Law, class S>
+constexpr typename Law::State rate(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>)
+        return rate(law.law, x, law.modulated(contact));
+    else if constexpr (Bristle<Law>)
+        return law.rate(x, contact);
+    else
+        return {};
+}
+
+/// How fast each member of the state forgets itself [1/s].
+template <class Law, class S>
+constexpr typename Law::State decay(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>)
+        return decay(law.law, x, law.modulated(contact));
+    else if constexpr (Bristle<Law>)
+        return law.decay(x, contact);
+    else
+        return {};
+}
+
+/// The state within what it can ever reach.
+template <class Law, class S>
+constexpr typename Law::State confined(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>)
+        return confined(law.law, x, law.modulated(contact));
+    else if constexpr (Bristle<Law>)
+        return law.confined(x, contact);
+    else
+        return x;
+}
+
+/// The state with what is either so or so, and stays that way over a step, decided anew.
+template <class Law, class S>
+constexpr typename Law::State renewed(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>)
+        return renewed(law.law, x, law.modulated(contact));
+    else if constexpr (requires { law.renewed(x, contact); })
+        return law.renewed(x, contact);
+    else
+        return x;
+}
+
+/// The state after `dt` [s] under one contact.
+template <class Law, class S>
+constexpr typename Law::State advance(const Law& law, const typename Law::State& x, const Contact<S>& contact, const S& dt) {
+    if constexpr (Modulation<Law>)
+        return advance(law.law, x, law.modulated(contact), dt);
+    else if constexpr (Bristle<Law>)
+        return law.advance(x, contact, dt);
+    else
+        return x;
+}
+
+/// The state of a contact that has long been sliding.
+template <class Law, class S>
+constexpr typename Law::State settled(const Law& law, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>)
+        return settled(law.law, law.modulated(contact));
+    else if constexpr (requires { law.settled(contact); })
+        return law.settled(contact);
+    else
+        return {};
+}
+
+/// Torque [N.m] that opposes steady sliding, all transients gone.
+template <class Law, class S>
+constexpr S steady(const Law& law, const Contact<S>& contact) {
+    return torque(law, settled(law, contact), contact.steady());
 }
 
 }  // namespace strainwave::friction

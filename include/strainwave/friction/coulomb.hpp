@@ -35,11 +35,11 @@ struct Coulomb {
 
     /// Torque that opposes sliding, in N.m.
     constexpr S torque(const State&, const Contact<S>& contact) const {
-        return contact.sliding * coulomb + viscous * contact.speed;
+        return contact.sliding * contact.dry * coulomb + contact.viscous * viscous * contact.speed;
     }
 
     /// The largest torque it balances at rest, in N.m.
-    constexpr S hold() const { return max(breakaway, coulomb); }
+    constexpr S hold(const Contact<S>& contact) const { return contact.dry * max(breakaway, coulomb); }
 };
 
 }  // namespace strainwave::friction

@@ -10,23 +10,26 @@ struct LuGre {
     S breakaway{0.045};
     S stribeck_speed{2.0};
     S bristle_stiffness{50.0};
-    S bristle_damping{0.02};
+    S bristle_damping{5e-5};
     S viscous{5e-5};
+    S damping_fading{0.0};
 
     static constexpr auto name = "lugre";
-    static constexpr auto source = "CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000";
+    static constexpr auto source = "CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000; fading damping: document R";
+    static constexpr bool odd = true;
     static constexpr auto doc = R"(
         Friction of an elastic bristle that bends before it slips: presliding, breakaway, Stribeck fall, viscous rise.
 
         .. math:: \dot z = v - \sigma_0 |v| z / G(v), \quad G(v) = F_c + (F_s - F_c) e^{-(v/v_s)^2}, \quad
-                  F = \sigma_0 z + \sigma_1 \dot z + \sigma_2 v
+                  F = \sigma_0 z + \sigma_1(v) \dot z + \sigma_2 v, \quad \sigma_1(v) = \sigma_1 e^{-(\varphi v)^2}
 
-        with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed,
-        sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous.
+        with v the speed of the place it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed,
+        sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous, phi = damping_fading: the reciprocal of the
+        speed v_d at which the bristle's damping has fallen to 1/e, 0 for a constant one.
 
-        Valid for one contact under constant load; leaves out load, position and temperature. Dissipates for every motion only
-        if viscous >= bristle_damping (breakaway / coulomb - 1); a set that violates this is accepted, and ``check()`` warns
-        with both sides.
+        Valid for one contact under constant load; leaves out load, position and temperature. Dissipates for every motion if
+        sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then
+        also necessary. A set that violates this is accepted, and ``check()`` warns with both sides.
 
         >>> from strainwave.friction import LuGre
         >>> LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, viscous=4e-4).steady(1.0)
@@ -38,8 +41,9 @@ struct LuGre {
         visit(SW_FIELD(m, breakaway, "N.m", "Static friction torque F_s", 0));
         visit(SW_FIELD(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
         visit(SW_FIELD(m, bristle_stiffness, "N.m/rad", "Torque per bristle deflection", smallest));
-        visit(SW_FIELD(m, bristle_damping, "N.m.s/rad", "Torque per bristle rate", 0));
+        visit(SW_FIELD(m, bristle_damping, "N.m.s/rad", "Torque per bristle rate, at rest", 0));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
+        visit(SW_FIELD(m, damping_fading, "s/rad", "Reciprocal of the speed at which bristle_damping has fallen to 1/e", 0));
     }
 
     struct State {
@@ -51,45 +55,72 @@ struct LuGre {
         }
     };
 
-    /// The bristle of a contact that has long been sliding at `speed` [rad/s].
-    constexpr State settled(const S& speed) const { return {sign(speed) * sliding_torque(speed) / bristle_stiffness}; }
+    /// The bristle of a contact that has long been sliding.
+    constexpr State settled(const Contact<S>& contact) const { return {sign(contact.speed) * reach(contact)}; }
 
     /// Torque that opposes the motion, in N.m, for the bristle as it stands.
     constexpr S torque(const State& x, const Contact<S>& contact) const {
-        return bristle_stiffness * x.deflection + bristle_damping * rate(x, contact).deflection + viscous * contact.speed;
+        return bristle_stiffness * x.deflection + damping(contact.speed) * rate(x, contact).deflection +
+               contact.viscous * viscous * contact.speed;
     }
 
     /// Rate of the bristle [rad/s].
     constexpr State rate(const State& x, const Contact<S>& contact) const {
-        return {contact.speed - decay(contact).deflection * x.deflection};
+        return {contact.speed - abs(contact.speed) * (x.deflection / reach(contact))};
     }
 
     /// How fast the bristle forgets [1/s].
-    constexpr State decay(const Contact<S>& contact) const {
-        return {min(bristle_stiffness * abs(contact.speed) / max(sliding_torque(contact.speed), S(smallest)), S(fastest))};
-    }
+    constexpr State decay(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / reach(contact)}; }
 
     /// No motion bends the bristle beyond max(F_s, F_c) / sigma_0, whatever the history: an exact invariant.
-    constexpr State confined(const State& x) const {
-        const S limit = max(breakaway, coulomb) / bristle_stiffness;
+    constexpr State confined(const State& x, const Contact<S>& contact) const {
+        const S limit = max(contact.dry_most * max(breakaway, coulomb) / bristle_stiffness, reach(contact));
         return {clip(x.deflection, -limit, limit)};
     }
 
-    /// The bristle after `dt` [s] at constant `speed` [rad/s]: the exact solution, so any step is stable.
-    constexpr State advance(const State& x, const S& speed, const S& dt) const {
-        const S slipping = settled(speed).deflection;
-        return {slipping + (x.deflection - slipping) * exp(-decay({speed}).deflection * dt)};
+    /// The bristle after `dt` [s] under one contact: the exact solution, so any step is stable.
+    constexpr State advance(const State& x, const Contact<S>& contact, const S& dt) const {
+        const S slipping = settled(contact).deflection;
+        return {slipping + (x.deflection - slipping) * exp(-decay(x, contact).deflection * dt)};
     }
 
-    /// Dissipates for every motion if and only if this holds.
+    /// Elastic energy [J] held by the bristle.
+    constexpr S stored(const State& x) const { return S(0.5) * bristle_stiffness * x.deflection * x.deflection; }
+
+    /// Dissipates for every motion if this holds; a bristle of constant damping that starts to slip hardest, only if.
     constexpr Condition<S> passivity() const {
-        return {"viscous", viscous, "bristle_damping (breakaway / coulomb - 1)",
-                bristle_damping * (breakaway / max(coulomb, S(smallest)) - S(1.0)), "N.m.s/rad"};
+        return {"viscous", viscous, "the largest over v of bristle_damping(v) (breakaway / G(v) - 1)",
+                bristle_damping * largest_surplus(), "N.m.s/rad"};
     }
 
 private:
-    static constexpr double fastest = 1e30;  // 1/s: keeps the limit of no friction at all finite in every scalar
-    constexpr S sliding_torque(const S& speed) const { return stribeck_curve(coulomb, breakaway, stribeck_speed, speed); }
+    constexpr S damping(const S& speed) const {
+        if (!any(damping_fading > S(0.0))) return bristle_damping;
+        const S faded = damping_fading * speed;
+        return bristle_damping * exp(-min(faded * faded, S(beyond_digits)));
+    }
+
+    /// How far steady sliding bends the bristle [rad]. Without any dry friction it still bends a little, so that it forgets
+    /// within 2^-100 s: slower than never, and finite in every scalar.
+    constexpr S reach(const Contact<S>& contact) const {
+        constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s; a power of two, for exact division
+        const S torque = contact.dry * stribeck_curve(coulomb, breakaway, stribeck_speed, contact.speed);
+        return max(torque / bristle_stiffness, max(abs(contact.speed) / S(fastest), S(smallest)));
+    }
+
+    /// The largest y^r (F_s / (F_c + D y) - 1) over y = exp(-(v/v_s)^2) in [0, 1], with D = F_s - F_c, r = (v_s/v_d)^2. It lies at
+    /// the root of r D y^2 + (F_s - r (D - F_c)) y - r F_c, here divided by 1 + r. Where D < 0, at rest.
+    constexpr S largest_surplus() const {
+        const S excess = breakaway - coulomb, ratio = stribeck_speed * damping_fading;
+        const S r = min(ratio * ratio, S(1e12));  // further out the surplus is nil
+        const S share = r / (S(1.0) + r), a = share * excess, c = share * coulomb;
+        const S b = breakaway / (S(1.0) + r) - share * (excess - coulomb);
+        const S root = sqrt(max(b * b + S(4.0) * a * c, S(smallest)));
+        const S inner = select(b > S(0.0), S(2.0) * c / max(b + root, S(smallest)), (root - b) / max(S(2.0) * a, S(smallest)));
+        const S y = select(excess < S(0.0), S(1.0), min(inner, S(1.0)));
+        const S level = max(coulomb + excess * y, S(smallest));
+        return exp(r * log(max(y, S(smallest)))) * (max(breakaway, coulomb) / level - S(1.0));
+    }
 };
 
 }  // namespace strainwave::friction

@@ -3,9 +3,6 @@
 
 namespace strainwave::friction {
 
-/// exp(-80) vanishes beside 1 in every scalar; further out exp only underflows, slowly.
-inline constexpr double beyond_digits = 80.0;
-
 /// Sliding torque that falls from `breakaway` to `coulomb` as the speed passes `stribeck_speed`.
 template <class S>
 constexpr S stribeck_curve(const S& coulomb, const S& breakaway, const S& stribeck_speed, const S& speed) {
@@ -47,11 +44,12 @@ struct Stribeck {
 
     /// Torque that opposes sliding, in N.m.
     constexpr S torque(const State&, const Contact<S>& contact) const {
-        return contact.sliding * stribeck_curve(coulomb, breakaway, stribeck_speed, contact.speed) + viscous * contact.speed;
+        return contact.sliding * contact.dry * stribeck_curve(coulomb, breakaway, stribeck_speed, contact.speed) +
+               contact.viscous * viscous * contact.speed;
     }
 
     /// The largest torque it balances at rest, in N.m.
-    constexpr S hold() const { return max(breakaway, coulomb); }
+    constexpr S hold(const Contact<S>& contact) const { return contact.dry * max(breakaway, coulomb); }
 };
 
 }  // namespace strainwave::friction

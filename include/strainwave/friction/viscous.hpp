@@ -28,7 +28,7 @@ struct Viscous {
     using State = Stateless<S>;
 
     /// Torque that opposes the motion, in N.m.
-    constexpr S torque(const State&, const Contact<S>& contact) const { return viscous * contact.speed; }
+    constexpr S torque(const State&, const Contact<S>& contact) const { return contact.viscous * viscous * contact.speed; }
 };
 
 }  // namespace strainwave::friction

@@ -4,55 +4,123 @@
 
 namespace strainwave::hysteresis {
 
+namespace detail {
+
+/// 1 / (k + 2)!, alternating: the series of (x - 1 + e^-x) / x^2, cut where x <= 1/2 needs no more.
+inline constexpr double decay_series[] = {
+    1.0 / 2,       -1.0 / 6,      1.0 / 24,        -1.0 / 120,        1.0 / 720,           -1.0 / 5040,         1.0 / 40320,
+    -1.0 / 362880, 1.0 / 3628800, -1.0 / 39916800, 1.0 / 479001600.0, -1.0 / 6227020800.0, 1.0 / 87178291200.0,
+};
+
+}  // namespace detail
+
+/// e^(-rate p) integrated over a path of length p, once and twice; without loss of digits on short paths.
+template <class S>
+struct Decayed {
+    S once;
+    S twice;
+
+    static constexpr Decayed along_path(const S& rate, const S& path) {
+        constexpr double handover = 0.5, vanishing = 80.0;  // exp(-80) vanishes beside 1 in every scalar
+        const S x = rate * path, small = min(x, S(handover));
+        S series{0.0};
+        for (int k = static_cast<int>(sizeof(detail::decay_series) / sizeof(double)) - 1; k >= 0; --k)
+            series = series * small + S(detail::decay_series[k]);
+        const S settled = (S(1.0) - exp(-min(x, S(vanishing)))) / rate;
+        return {select(x < S(handover), path * (S(1.0) - small * series), settled),
+                select(x < S(handover), path * path * series, (path - settled) / rate)};
+    }
+};
+
 template <class S>
 struct FadingMemory {
-    S stiffness{0.0};
-    S forgetting{1e3};
+    static constexpr int capacity = 8;
+
+    Sequence<S, capacity> stiffness{};
+    Sequence<S, capacity> forgetting{};
 
     static constexpr auto name = "fading_memory";
     static constexpr auto source = "document R, section 4a; Dahl1968 (order 1); erratum E-R10";
     static constexpr auto doc = R"(
         Hysteresis that forgets exponentially with the twist travelled.
 
-        .. math:: dT = A\, d\delta - \alpha T |d\delta|
+        .. math:: T = \sum_j T_j, \quad dT_j = A_j\, d\delta - \alpha_j T_j |d\delta|
 
-        with delta the twist, A = stiffness, alpha = forgetting. Exact over any monotone step: with s the sense of motion,
-        T approaches s A / alpha as exp(-alpha |Delta delta|). Rate-independent: document R calls it rate-dependent (E-R10).
-        Identical with Dahl's model of order 1. Its minor loops do not close, unlike those of a gear: prefer MaxwellSlip where
-        small reversals matter.
+        with delta the twist, A_j = stiffness, alpha_j = forgetting, up to 8 parallel branches; none at all is no hysteresis.
+        The branches sum up to the memory kernel Phi(u) = sum A_j exp(-alpha_j u) of the twist travelled u. Exact over any
+        monotone step: with s the sense of motion, T_j approaches s A_j / alpha_j as exp(-alpha_j |Delta delta|). The elastic
+        energy is sum T_j^2 / (2 A_j); alpha_j T_j^2 / A_j is lost per twist travelled, in either sense.
+
+        Rate-independent: document R calls it rate-dependent (E-R10). One branch is Dahl's model of order 1, and BoucWen with
+        sharpness 1 and shape 1. Its minor loops do not close, unlike those of a gear: prefer MaxwellSlip where small reversals
+        matter.
 
         >>> from strainwave.hysteresis import FadingMemory
         >>> FadingMemory(stiffness=1000.0, forgetting=2000.0).trace([0.0, 0.002, -0.001]).round(6)
         array([ 0.      ,  0.490842, -0.497544]))";
 
+    static constexpr bool odd = true;
+    static constexpr bool return_point_memory = false;
+    static constexpr bool congruent = false;
+    static constexpr bool masing = false;
+
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, stiffness, "N.m/rad", "Stiffness A right after a reversal from zero torque", 0));
-        visit(SW_FIELD(m, forgetting, "1/rad", "Rate alpha at which the twist travelled is forgotten", smallest));
+        visit(SW_FIELD(m, stiffness, "N.m/rad", "Stiffness A_j of each branch right after a reversal from zero torque", smallest));
+        visit(SW_FIELD(m, forgetting, "1/rad", "Rate alpha_j at which each branch forgets the twist travelled", smallest));
+    }
+
+    constexpr const char* problem() const {
+        return stiffness.count == forgetting.count ? nullptr : "stiffness and forgetting must have equally many elements";
     }
 
     struct State {
-        S held{0.0};
+        Array<S, capacity> held{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, held, "N.m", "Torque T held"));
+            visit(SW_FIELD(m, held, "N.m", "Torque T_j held by each branch"));
         }
     };
 
     /// The memory after the twist has moved by `increment` [rad], monotonically.
     constexpr State advance(const State& x, const S& increment) const {
-        const S settled = sign(increment) * stiffness / forgetting;
-        return {settled + (x.held - settled) * exp(-forgetting * abs(increment))};
+        State next{};
+        for (int j = 0; j < stiffness.count; ++j) next.held[j] = held(x, j, increment);
+        return next;
     }
 
     /// Torque [N.m] once the twist has moved by `increment` [rad]; the state stays as it is.
-    constexpr S torque(const State& x, const S& increment) const { return advance(x, increment).held; }
+    constexpr S torque(const State& x, const S& increment) const {
+        S sum{0.0};
+        for (int j = 0; j < stiffness.count; ++j) sum = sum + held(x, j, increment);
+        return sum;
+    }
 
     /// Work [J] put in while the twist moves by `increment` [rad], monotonically.
     constexpr S work(const State& x, const S& increment) const {
-        const S settled = stiffness / forgetting, sense = sign(increment), path = abs(increment);
-        return settled * path + (sense * x.held - settled) * (S(1.0) - exp(-forgetting * path)) / forgetting;
+        const S path = abs(increment);
+        S sum{0.0};
+        for (int j = 0; j < stiffness.count; ++j)
+            sum = sum + x.held[j] * increment + rise(x, j, increment) * Decayed<S>::along_path(forgetting[j], path).twice;
+        return sum;
+    }
+
+    /// Elastic energy [J] held by the branches.
+    constexpr S stored(const State& x) const {
+        S energy{0.0};
+        for (int j = 0; j < stiffness.count; ++j) energy = energy + x.held[j] * x.held[j] / (S(2.0) * stiffness[j]);
+        return energy;
+    }
+
+private:
+    /// Slope of the torque [N.m/rad], in the sense of the motion, as the motion starts.
+    constexpr S rise(const State& x, int j, const S& increment) const {
+        return stiffness[j] - forgetting[j] * along(increment, x.held[j]);
+    }
+    constexpr S held(const State& x, int j, const S& increment) const {
+        const S once = Decayed<S>::along_path(forgetting[j], abs(increment)).once;
+        return x.held[j] + along(increment, rise(x, j, increment) * once);
     }
 };
 

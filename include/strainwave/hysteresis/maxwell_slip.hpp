@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/field.hpp>
+#include <strainwave/hysteresis/prandtl_ishlinskii.hpp>
 #include <strainwave/math.hpp>
 
 namespace strainwave::hysteresis {
@@ -29,6 +30,8 @@ struct MaxwellSlip {
         >>> gear = MaxwellSlip(stiffness=[1000, 600, 300, 100], breakaway=[0.5, 0.9, 0.9, 0.6])
         >>> gear.trace([0.0, 0.004, -0.002]).round(12)
         array([ 0. ,  2.7, -2.5]))";
+
+    static constexpr bool odd = true, return_point_memory = true, congruent = true, masing = true;
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -82,7 +85,54 @@ struct MaxwellSlip {
         return energy;
     }
 
+    /// Twist over torque of these elements in parallel with a `spring` [N.m/rad], exactly. The spring, the slope that remains once
+    /// all elements slip, must be positive.
+    constexpr PrandtlIshlinskii<S> inverse(const S& spring) const {
+        const Elements sorted = by_slip();
+        Array<S, capacity + 1> slope{};  // of the virgin curve, once so many elements slip
+        slope[stiffness.count] = max(spring, S(smallest));
+        for (int i = stiffness.count; i > 0; --i) slope[i - 1] = slope[i] + sorted.stiffness[i - 1];
+
+        PrandtlIshlinskii<S> plays{};
+        plays.threshold.count = plays.weight.count = stiffness.count + 1;
+        plays.weight[0] = S(1.0) / slope[0];
+        S slip{0.0};
+        for (int i = 0; i < stiffness.count; ++i) {
+            plays.threshold[i + 1] = plays.threshold[i] + slope[i] * (sorted.slip[i] - slip);
+            plays.weight[i + 1] = S(1.0) / slope[i + 1] - S(1.0) / slope[i];
+            slip = sorted.slip[i];
+        }
+        return plays;
+    }
+
 private:
+    static_assert(PrandtlIshlinskii<S>::capacity == capacity + 1);
+
+    struct Elements {
+        Array<S, capacity> slip{}, stiffness{};
+    };
+    /// The elements by the twist at which they slip. Every lane has its own order: odd-even transposition.
+    constexpr Elements by_slip() const {
+        Elements e{};
+        for (int i = 0; i < stiffness.count; ++i) {
+            e.slip[i] = breakaway[i] / stiffness[i];
+            e.stiffness[i] = stiffness[i];
+        }
+        for (int round = 0; round < stiffness.count; ++round)
+            for (int i = round % 2; i + 1 < stiffness.count; i += 2) {
+                const auto wrong = e.slip[i + 1] < e.slip[i];
+                exchange(e.slip[i], e.slip[i + 1], wrong);
+                exchange(e.stiffness[i], e.stiffness[i + 1], wrong);
+            }
+        return e;
+    }
+    template <class Mask>
+    static constexpr void exchange(S& a, S& b, const Mask& wanted) {
+        const S first = select(wanted, b, a), second = select(wanted, a, b);
+        a = first;
+        b = second;
+    }
+
     constexpr S held(const State& x, int i, const S& increment) const {
         return clip(x.torque[i] + stiffness[i] * increment, -breakaway[i], breakaway[i]);
     }

@@ -66,6 +66,8 @@ struct Dual {
         const double y = strainwave::exp(x.value);
         return chain(x, y, y);
     }
+    friend Dual log(const Dual& x) { return chain(x, strainwave::log(x.value), 1.0 / x.value); }
+    friend Dual atan(const Dual& x) { return chain(x, strainwave::atan(x.value), 1.0 / (1.0 + x.value * x.value)); }
     friend Dual sqrt(const Dual& x) {
         const double y = strainwave::sqrt(x.value);
         return chain(x, y, 0.5 / y);

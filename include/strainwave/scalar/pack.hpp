@@ -59,16 +59,10 @@ struct Pack {
         const Pack magic(6755399441055744.0);
         return (x + magic) - magic;
     }
-    friend Pack sqrt(const Pack& x) {
-        Pack y;
-        for (int i = 0; i < n; ++i) y.set(i, strainwave::sqrt(x[i]));
-        return y;
-    }
-    friend Pack exp(const Pack& x) {
-        Pack y;
-        for (int i = 0; i < n; ++i) y.set(i, strainwave::exp(x[i]));
-        return y;
-    }
+    friend Pack sqrt(const Pack& x) { return each(x, [](double lane) { return strainwave::sqrt(lane); }); }
+    friend Pack exp(const Pack& x) { return each(x, [](double lane) { return strainwave::exp(lane); }); }
+    friend Pack log(const Pack& x) { return each(x, [](double lane) { return strainwave::log(lane); }); }
+    friend Pack atan(const Pack& x) { return each(x, [](double lane) { return strainwave::atan(lane); }); }
     friend SinCos<Pack> sincos(const Pack& x) {
         SinCos<Pack> y{};
         for (int i = 0; i < n; ++i) {
@@ -82,6 +76,14 @@ struct Pack {
     friend Pack cos(const Pack& x) { return sincos(x).cos; }
     /// Whole in every lane, and the same.
     friend int whole(const Pack& x, int highest) { return all(x == Pack(x[0])) ? strainwave::whole(x[0], highest) : 0; }
+
+private:
+    template <class F>
+    static Pack each(const Pack& x, F&& f) {
+        Pack y;
+        for (int i = 0; i < n; ++i) y.set(i, f(x[i]));
+        return y;
+    }
 };
 
 }  // namespace strainwave

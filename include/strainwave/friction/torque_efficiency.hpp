@@ -1,0 +1,97 @@
+#pragma once
+#include <strainwave/friction/contact.hpp>
+
+namespace strainwave::friction {
+
+template <class S>
+struct TorqueEfficiency {
+    S average_loss{0.2};
+    S difference_loss{0.0};
+    S presliding{0.01};
+    S viscous{5e-5};
+
+    static constexpr auto name = "torque_efficiency";
+    static constexpr auto source =
+        "public thread google-deepmind/mujoco#3528, comment of 2026-09-18 (there tau is the electrical torque of the motor)";
+    static constexpr bool odd = true;
+    static constexpr auto doc = R"(
+        Loss proportional to the torque transmitted, which turns round with the motion over a presliding angle.
+
+        .. math:: \dot z = (v - |v| z) / h, \qquad F = \mu_{avg} |T| z + \mu_{dif} T z^2 + b v
+
+        with v the speed of the place it acts on, T the torque it transmits (load), z the engagement, +1 or -1 in steady motion,
+        mu_avg = average_loss, mu_dif = difference_loss, h = presliding, b = viscous. In steady motion the loss per torque
+        transmitted is mu_avg + mu_dif when driving (T v > 0) and mu_avg - mu_dif when back-driven: LoadDependent with equal
+        ratios in both senses. mu_avg must not lie below the size of mu_dif, or steady motion would create energy.
+
+        Under constant load it dissipates for every motion, with the stored energy mu_avg T h z^2 / 2 (size of T). Where the
+        load varies, this energy rises and falls with it: a change of load can put in as much, and the motion after it take it
+        out. It does not stick at rest: it yields by about h. Leaves out what an idle gear loses besides b v. The thread's tau
+        is the torque of the motor; T is what arrives on the output's side, so a ratio m found there when driving is
+        m / (1 - m) here.
+
+        >>> from strainwave.friction import TorqueEfficiency
+        >>> TorqueEfficiency(average_loss=0.25, difference_loss=0.05, viscous=0.0).steady([10.0, -10.0], load=4.0)
+        array([ 1.2, -0.8]))";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, average_loss, "1", "Loss per torque transmitted, mean of driving and back-driving", 0));
+        visit(SW_FIELD(m, difference_loss, "1", "Half of what driving loses more than back-driving, per torque transmitted"));
+        visit(SW_FIELD(m, presliding, "rad", "Angle h over which the loss turns round after a reversal", smallest));
+        visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
+    }
+
+    constexpr const char* problem() const {
+        return all(average_loss >= abs(difference_loss)) ? nullptr : "average_loss must not lie below the size of difference_loss";
+    }
+
+    struct State {
+        S engagement{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, engagement, "1", "Engagement z: the sense of motion, as far as friction has followed it"));
+        }
+    };
+
+    /// The engagement of a contact that has long been sliding.
+    constexpr State settled(const Contact<S>& contact) const { return {sign(contact.speed)}; }
+
+    /// Torque that opposes the motion, in N.m, for the engagement as it stands.
+    constexpr S torque(const State& x, const Contact<S>& contact) const {
+        const S z = x.engagement, loss = average_loss * abs(contact.load) * z + difference_loss * contact.load * z * z;
+        return contact.dry * loss + contact.viscous * viscous * contact.speed;
+    }
+
+    /// Rate of the engagement [1/s].
+    constexpr State rate(const State& x, const Contact<S>& contact) const {
+        return {(contact.speed - abs(contact.speed) * x.engagement) / angle(contact)};
+    }
+
+    /// How fast the engagement forgets [1/s].
+    constexpr State decay(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / angle(contact)}; }
+
+    /// No motion engages more than fully: an exact invariant.
+    constexpr State confined(const State& x, const Contact<S>&) const { return {clip(x.engagement, S(-1.0), S(1.0))}; }
+
+    /// The engagement after `dt` [s] under one contact: the exact solution.
+    constexpr State advance(const State& x, const Contact<S>& contact, const S& dt) const {
+        const S full = settled(contact).engagement;
+        return {full + (x.engagement - full) * exp(-decay(x, contact).engagement * dt)};
+    }
+
+    /// Energy [J] held by the engagement under this load.
+    constexpr S stored(const State& x, const Contact<S>& contact) const {
+        return S(0.5) * contact.dry * average_loss * abs(contact.load) * presliding * x.engagement * x.engagement;
+    }
+
+private:
+    /// `presliding`, unless the engagement followed faster than numbers can tell.
+    constexpr S angle(const Contact<S>& contact) const {
+        constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s: 2^100, finite in every scalar
+        return max(presliding, abs(contact.speed) / S(fastest));
+    }
+};
+
+}  // namespace strainwave::friction

@@ -1,0 +1,82 @@
+#pragma once
+#include <strainwave/angle.hpp>
+#include <strainwave/math.hpp>
+
+namespace strainwave {
+
+/// sum_h A_h sin(B_h theta + phi_h), arranged for speed: one sine and cosine, then the whole orders by angle addition.
+template <class S, int capacity>
+struct Harmonics {
+    static constexpr int highest = 32;
+    using Waves = Array<S, 4>;  ///< what multiplies the sine and cosine of one order and of the next: four equal lanes
+
+    struct Sum {
+        S value, slope;
+    };
+
+    Array<Waves, highest / 2> value{}, slope{};
+    int top = 0;
+    Sequence<S, capacity> order{}, amplitude{}, phase{};
+
+    static constexpr Harmonics of(const Sequence<S, capacity>& order, const Sequence<S, capacity>& amplitude,
+                                  const Sequence<S, capacity>& phase) {
+        Harmonics sum{};
+        for (int h = 0; h < order.count; ++h) {
+            const int n = whole(order[h], highest);
+            if (n > 0)
+                sum.add_whole(n, order[h], amplitude[h], phase[h]);
+            else
+                sum.add(order[h], amplitude[h], phase[h]);
+        }
+        return sum;
+    }
+
+    constexpr Sum at(const Angle<S>& angle) const {
+        Sum sum{};
+        if (top > 0) sum = whole_orders(sincos(angle.within));
+        for (int h = 0; h < order.count; ++h) {
+            const S turned = order[h] * angle.turns;
+            const SinCos<S> p = sincos(order[h] * angle.within + phase[h] + S(2.0 * pi) * (turned - rint(turned)));
+            sum.value = sum.value + amplitude[h] * p.sin;
+            sum.slope = sum.slope + amplitude[h] * order[h] * p.cos;
+        }
+        return sum;
+    }
+
+private:
+    constexpr void add_whole(int n, const S& order_, const S& amplitude_, const S& phase_) {
+        const SinCos<S> p = sincos(phase_);
+        const int pair = (n - 1) / 2, s = 2 * ((n - 1) % 2), c = s + 1;
+        value[pair][s] = value[pair][s] + amplitude_ * p.cos;
+        value[pair][c] = value[pair][c] + amplitude_ * p.sin;
+        slope[pair][s] = -order_ * value[pair][c];
+        slope[pair][c] = order_ * value[pair][s];
+        top = top > n ? top : n;
+    }
+    constexpr void add(const S& order_, const S& amplitude_, const S& phase_) {
+        const int i = order.count++;
+        amplitude.count = phase.count = order.count;
+        order[i] = order_;
+        amplitude[i] = amplitude_;
+        phase[i] = phase_;
+    }
+
+    /// sin(n x) and cos(n x) by the Chebyshev recurrence f(n + 2) = 2 cos(2 x) f(n) - f(n - 2), two orders at a time: half as
+    /// many steps wait for each other.
+    constexpr Sum whole_orders(const SinCos<S>& base) const {
+        const S twice = base.sin + base.sin, sine = twice * base.cos, cosine = S(1.0) - twice * base.sin;
+        const S step = cosine + cosine;
+        Waves before{{-base.sin, base.cos, S(0.0), S(1.0)}}, wave{{base.sin, base.cos, sine, cosine}}, values{}, slopes{};
+        for (int n = 0; 2 * n < top; ++n)
+            for (int k = 0; k < 4; ++k) {
+                values[k] = values[k] + value[n][k] * wave[k];
+                slopes[k] = slopes[k] + slope[n][k] * wave[k];
+                const S next = step * wave[k] - before[k];
+                before[k] = wave[k];
+                wave[k] = next;
+            }
+        return {(values[0] + values[1]) + (values[2] + values[3]), (slopes[0] + slopes[1]) + (slopes[2] + slopes[3])};
+    }
+};
+
+}  // namespace strainwave

@@ -1,0 +1,188 @@
+#pragma once
+#include <strainwave/kinematic_error/error.hpp>
+#include <strainwave/math.hpp>
+
+namespace strainwave::kinematic_error {
+
+/// Pseudo-random numbers of three small congruential generators (WichmannHill1982). No number in it exceeds 2^24, so that
+/// every scalar, float included, draws the very same.
+template <class S>
+struct WichmannHill {
+    static constexpr double highest_seed = 16777215.0;
+
+    S x{1.0}, y{1.0}, z{1.0};
+
+    /// Neighbouring seeds share nothing: each component is stirred into the next, modulo another prime.
+    static constexpr WichmannHill seeded(const S& seed) {
+        const S number = clip(rint(detached(seed)), S(0.0), S(highest_seed));
+        const S high = rint(number / S(4096.0)), low = number - S(4096.0) * high;
+        WichmannHill drawn{low + S(2049.0), high + S(1.0), S(1.0)};
+        for (int i = 0; i < 16; ++i) {
+            drawn.x = positive(modulo(S(171.0) * drawn.x + drawn.y, 30269.0));
+            drawn.y = positive(modulo(S(172.0) * drawn.y + drawn.z, 30307.0));
+            drawn.z = positive(modulo(S(170.0) * drawn.z + drawn.x, 30323.0));
+        }
+        return drawn;
+    }
+
+    constexpr void advance() {
+        x = modulo(S(171.0) * x, 30269.0);
+        y = modulo(S(172.0) * y, 30307.0);
+        z = modulo(S(170.0) * z, 30323.0);
+    }
+
+    /// The next number, within [-1/2, 1/2].
+    constexpr S share() {
+        advance();
+        const S sum = x / S(30269.0) + y / S(30307.0) + z / S(30323.0);
+        return sum - rint(sum);
+    }
+
+    /// The next whole number in [0, 256).
+    constexpr S byte() {
+        advance();
+        return modulo(part(x, 30269.0) + part(y, 30307.0) + part(z, 30323.0), 256.0);
+    }
+
+private:
+    /// For whole numbers in [0, 2^24 - divisor].
+    static constexpr S modulo(const S& number, double divisor) {
+        const S rest = number - S(divisor) * rint(number / S(divisor));
+        return select(rest < S(0.0), rest + S(divisor), rest);
+    }
+    /// Which 256th of [0, divisor) the number lies in.
+    static constexpr S part(const S& number, double divisor) {
+        const S scaled = S(256.0) * number;
+        return (scaled - modulo(scaled, divisor)) / S(divisor);
+    }
+    /// A component that is 0 would stay 0.
+    static constexpr S positive(const S& number) { return max(number, S(1.0)); }
+};
+
+template <class S>
+struct Stochastic {
+    static constexpr int waves = 32;
+
+    S amplitude{0.0};
+    S lowest_order{8.0};
+    S highest_order{40.0};
+    S seed{0.0};
+    S load_sensitivity{0.0};
+    S speed_sensitivity{0.0};
+    S insertion_depth{0.0};
+    S depth_sensitivity{0.0};
+
+    static constexpr auto name = "stochastic";
+    static constexpr auto source =
+        "document R, section on the kinematic error, which states directions only: the laws of load, speed and depth and the "
+        "default band are assumed; spectral representation: ShinozukaDeodatis1991; random numbers: WichmannHill1982";
+    static constexpr auto doc = R"(
+        Random kinematic error of a given band of orders: smooth, the same for the same seed.
+
+        .. math:: n(\theta) = a \sqrt{\frac{2}{N}} \sum_{k=1}^{N} \cos(B_k \theta + \varphi_k), \qquad
+                  a = A \, \frac{1 + s_\omega |\omega|}{1 + s_T |T|} \, e^{-s_d d}
+
+        with theta the input angle, omega the input speed, T the torque transmitted, A = amplitude, s_omega = speed_sensitivity,
+        s_T = load_sensitivity, s_d = depth_sensitivity, d = insertion_depth of the wave generator in the flexspline. a is the
+        root mean square over many turns. The band from lowest_order to highest_order has N = 32 equal cells; each holds one
+        order B_k, its place in the cell and its phase phi_k drawn by ``seed``. A function of the angle and of nothing that
+        happened before: reproducible, differentiable, independent of the time step, which must resolve the highest order. If the
+        ends of the band are whole numbers, it repeats itself after 16384 input turns at most, 512 in the default band. Every
+        scalar type draws the same orders and phases.
+
+        The review says that the stochastic part falls with load, rises with speed and falls with the insertion depth, but not
+        how: the forms are assumed, and all three are off by default. What it calls stochastic contains the deterministic
+        resonance of the elastic gear too (E-R4), which is not meant here. Its spectrum is flat, its values are close to Gaussian.
+        ``slope`` is the derivative by theta at constant a. Over few turns the root mean square is another one: a record has
+        to span the inverse of a cell's width, in turns, several times.
+
+        >>> from strainwave.kinematic_error import Stochastic
+        >>> noise = Stochastic(amplitude=2e-5, seed=7, load_sensitivity=0.1)
+        >>> noise.error(0.3) == 2.0 * noise.error(0.3, torque=-10.0)
+        True)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, amplitude, "rad", "Root mean square A at the output, without load and at rest; 0 is no noise", 0, 1));
+        visit(SW_FIELD(m, lowest_order, "1", "Lower end of the band: periods per input revolution", 0, 1e4));
+        visit(SW_FIELD(m, highest_order, "1", "Upper end of the band: periods per input revolution", smallest, 1e4));
+        visit(SW_FIELD(m, seed, "1", "Whole number that says which of all such errors it is", 0, 16777215, true));
+        visit(SW_FIELD(m, load_sensitivity, "1/(N.m)", "How fast the amplitude falls with the torque transmitted", 0));
+        visit(SW_FIELD(m, speed_sensitivity, "s/rad", "How fast the amplitude rises with the input speed", 0));
+        visit(SW_FIELD(m, insertion_depth, "m", "Depth d to which the wave generator is inserted into the flexspline", 0));
+        visit(SW_FIELD(m, depth_sensitivity, "1/m", "How fast the amplitude falls with the insertion depth", 0));
+    }
+
+    constexpr const char* problem() const {
+        return all(highest_order > lowest_order) ? nullptr : "highest_order must exceed lowest_order";
+    }
+
+    struct Compiled {
+        bool engaged = false;
+        S amplitude{0.0}, load_sensitivity{0.0}, speed_sensitivity{0.0};
+        Array<S, waves> order{}, fraction{}, phase{};
+
+        constexpr bool active() const { return engaged; }
+
+        /// Root mean square [rad] under `torque` [N.m], at `speed` [rad/s]. Far beyond any gear it levels off: never infinite.
+        constexpr S rms(const S& torque, const S& speed) const {
+            const S rise = min(speed_sensitivity * abs(speed), S(1e30)), fall = min(load_sensitivity * abs(torque), S(1e30));
+            return amplitude * (S(1.0) + rise) / (S(1.0) + fall);
+        }
+
+        constexpr Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const {
+            Error<S> sum{};
+            if (!engaged) return sum;
+            for (int k = 0; k < waves; ++k) {
+                const S turned = fraction[k] * angle.turns;
+                const SinCos<S> p = sincos(order[k] * angle.within + phase[k] + S(2.0 * pi) * (turned - rint(turned)));
+                sum.value = sum.value + p.cos;
+                sum.slope = sum.slope - order[k] * p.sin;
+            }
+            const S each = S(0.25) * rms(torque, speed);  // sqrt(2 / 32)
+            return {each * sum.value, each * sum.slope};
+        }
+    };
+
+    /// Whether it makes any difference, or could be sought to make one.
+    constexpr bool active() const {
+        if constexpr (differentiates<S>)
+            for (const auto& sought : amplitude.slope)
+                if (sought != 0.0) return true;
+        return any(amplitude > S(0.0));
+    }
+
+    constexpr S rms(const S& torque, const S& speed) const { return scaled().rms(torque, speed); }
+
+    constexpr Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const {
+        return compile().at(angle, torque, speed);
+    }
+
+    /// The same sum, its orders and phases drawn once.
+    constexpr Compiled compile() const {
+        Compiled sum = scaled();
+        sum.engaged = active();
+        if (!sum.engaged) return sum;
+        const S cell = (highest_order - lowest_order) / S(waves);
+        auto random = WichmannHill<S>::seeded(seed);
+        for (int k = 0; k < waves; ++k) {
+            // Places with few digits: if the ends of the band have few, every scalar rounds none of the orders.
+            const S place = S(k) + (random.byte() + S(0.5)) / S(256.0);
+            sum.order[k] = lowest_order + place * cell;
+            sum.fraction[k] = sum.order[k] - rint(sum.order[k]);
+            sum.phase[k] = S(2.0 * pi) * random.share();
+        }
+        return sum;
+    }
+
+private:
+    constexpr Compiled scaled() const {
+        Compiled sum{};
+        sum.amplitude = amplitude * exp(-min(depth_sensitivity * insertion_depth, S(beyond_digits)));
+        sum.load_sensitivity = load_sensitivity;
+        sum.speed_sensitivity = speed_sensitivity;
+        return sum;
+    }
+};
+
+}  // namespace strainwave::kinematic_error
