@@ -233,6 +233,14 @@ void inverse_verbs(nb::class_<M>& c) {
             nb::arg("torque"), nb::arg("state") = typename M::State{},
             nb::sig("def trace(self, torque: " SW_NUMBERS ", state: State = ...) -> " SW_ARRAY),
             "Twist [rad], shape (n,), along a path of `torque` [N.m], shape (n,), from rest at its first point.");
+        c.def(
+            "advance",
+            [](const M& m, nb::handle torque, const typename M::State& state) {
+                return follow(m, state, path_of(torque, "torque"), [](const auto&, double, std::size_t) {});
+            },
+            nb::arg("torque"), nb::arg("state") = typename M::State{},
+            nb::sig("def advance(self, torque: " SW_NUMBERS ", state: State = ...) -> State"),
+            "The state at the end of a path of `torque` [N.m].");
     }
 }
 

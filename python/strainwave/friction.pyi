@@ -610,9 +610,9 @@ class MaxwellSlipFriction:
 
     with v the speed of the place it acts on, k_i = stiffness, alpha_i = share over the sum of all shares, F_c = coulomb,
     F_s = breakaway, v_s = stribeck_speed, C = attraction, sigma_2 = viscous; up to 8 elements, none at all is no dry
-    friction. An element sticks until it carries alpha_i s(v), and slips until the motion stops or turns round. A slipping element follows s(v)
-    with the time constant s/C. A breakaway below coulomb counts as coulomb. Where dry friction is scaled (Cyclic, Thermal),
-    s and C scale, stiffness and time constant do not.
+    friction. An element sticks until it carries alpha_i s(v), and slips until the motion stops or turns round. A slipping
+    element follows s(v) with the time constant s/C. A breakaway below coulomb counts as coulomb. Where dry friction is
+    scaled (Cyclic, Thermal), s and C scale, stiffness and time constant do not.
 
     With breakaway = coulomb no element lags, it is Maxwell's slip with the levels alpha_i F_c, and dissipates for every
     motion. A Stribeck fall makes the law, as published, able to create energy: an element that slips fast, slows down, and

@@ -114,6 +114,9 @@ class PrandtlIshlinskii:
         Twist [rad], shape (n,), along a path of `torque` [N.m], shape (n,), from rest at its first point.
         """
 
+    def advance(self, torque: Sequence[float] | numpy.typing.NDArray[numpy.float64], state: State = ...) -> State:
+        """The state at the end of a path of `torque` [N.m]."""
+
 class PowerDensity:
     """
     Preisach density that falls with the width of the window as a power: a loop with three parameters.

@@ -46,7 +46,7 @@ def test_two_losses_and_their_mean_and_half_difference_are_the_same_thing(
     law = TorqueEfficiency(average_loss=loss[0], difference_loss=loss[1], viscous=0.0)
     with_load, against_load = (abs(law.steady(math.copysign(1.0, load) * v, load=load)) for v in (speed, -speed))
     assert with_load + against_load == pytest.approx(2.0 * loss[0] * abs(load), rel=1e-13, abs=1e-300)
-    assert with_load - against_load == pytest.approx(2.0 * loss[1] * abs(load), abs=1e-14 * loss[0] * abs(load))
+    assert with_load - against_load == pytest.approx(2.0 * loss[1] * abs(load), abs=1e-14 * loss[0] * abs(load) + 1e-300)
 
 
 def test_the_loss_builds_up_over_the_presliding_angle() -> None:

@@ -28,8 +28,9 @@ TURN = np.linspace(0.0, 2.0 * math.pi, 721)
 def test_slope_is_the_derivative_of_the_error(error: Any, angle: float) -> None:
     h = 1e-5
     outer, inner = (np.diff(error.error([angle - d, angle + d]))[0] / (2.0 * d) for d in (2.0 * h, h))
-    steepest = np.abs(error.slope(TURN)).max()
-    assert error.slope(angle) == pytest.approx((4.0 * inner - outer) / 3.0, rel=1e-8, abs=1e-8 * steepest)
+    steepest, largest = np.abs(error.slope(TURN)).max(), np.abs(error.error(TURN)).max()
+    slack = 1e-8 * steepest + 1e-15 * largest / h + 2.0 * abs(outer - inner)  # where it has a corner, the two differ
+    assert error.slope(angle) == pytest.approx((4.0 * inner - outer) / 3.0, rel=0.0, abs=slack)
 
 
 @given(errors, st.lists(angles, min_size=1, max_size=4))
@@ -74,4 +75,4 @@ def test_an_error_is_as_exact_after_many_turns_as_its_orders_are(error: Fourier,
         share = float(Fraction(order) * turns % 1)
         expected += amplitude * math.sin(order * angle + phase + 2.0 * math.pi * share)
         rounding += amplitude * (1e-13 + (0.0 if order.is_integer() else 2.0 * math.pi * math.ulp(order * turns)))
-    assert _core.now(drive, turned, np.zeros(3))[column, 0] == pytest.approx(expected, rel=0.0, abs=rounding)
+    assert _core.now(drive, turned, np.array([0.0, 0.0, 0.0, 293.15]))[column, 0] == pytest.approx(expected, rel=0.0, abs=rounding)

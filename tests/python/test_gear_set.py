@@ -115,9 +115,9 @@ def test_a_table_left_out_does_nothing_and_says_so(folder: Path) -> None:
     assert not gear.hysteresis.trace([0.0, 1e-3]).any()
     assert gear.damping == gear.input_inertia == 0.0
     not_given = {path for path, entry in gear_set.sources.items() if entry == Entry("not given")}
-    assert not_given == {
-        "gear.friction_input.viscous", "gear.friction_output.viscous", "gear.damping", "gear.input_inertia",
-    }  # fmt: skip
+    noise = {f"gear.kinematic_noise.{field['name']}" for field in gear.kinematic_noise.fields}
+    friction = {f"gear.friction_{place}.viscous" for place in ("input", "mesh", "output")}
+    assert not_given == noise | friction | {"gear.damping", "gear.input_inertia"}
     gear_set.save("again.toml")
     assert GearSet.read("again.toml") == gear_set
 
