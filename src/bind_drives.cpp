@@ -1,7 +1,7 @@
 #include <nanobind/stl/function.h>
 
-#include "verbs.hpp"
 #include "simulate.hpp"
+#include "verbs.hpp"
 
 namespace strainwave::host {
 
@@ -217,9 +217,9 @@ void bind_drives(nb::module_& core) {
         try {
             std::rethrow_exception(thrown);
         } catch (const OutOfBounds& error) {
-            PyErr_SetString(PyExc_ValueError, (std::string(error.part) + ": " + outside(error.domain) + "; first at t = " +
-                                               with_unit(error.time, "s"))
-                                                  .c_str());
+            PyErr_SetString(
+                PyExc_ValueError,
+                (std::string(error.part) + ": " + outside(error.domain) + "; first at t = " + with_unit(error.time, "s")).c_str());
         }
     });
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
@@ -229,15 +229,16 @@ void bind_drives(nb::module_& core) {
         "rest", [](const Drive& self) { return self.rest(); }, "The state at rest, untwisted and without history, input angle 0.");
     drive.def(
         "step",
-        [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque, double temperature,
-           double dt) {
+        [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque,
+           double temperature, double dt) {
             const auto at = [&](double share) {
                 return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
             };
             return step<double>(self, self.consistent(state), Interval<double>{at(0.0), at(0.5), at(1.0)}, dt);
         },
         nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
-        nb::arg("temperature") = friction::room_temperature, nb::arg("dt"), "The state `dt` [s] later, the command moving at `command_rate`.");
+        nb::arg("temperature") = friction::room_temperature, nb::arg("dt"),
+        "The state `dt` [s] later, the command moving at `command_rate`.");
 
     nb::list outputs;
     const Output<double> output{};

@@ -51,8 +51,8 @@ void observe_derivatives(const Drive& drive, const Input<double>& u, const std::
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
-        write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque), Slope(u.temperature)}), first, parameters.size(),
-              0, 1, out, slopes);
+        write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque), Slope(u.temperature)}),
+              first, parameters.size(), 0, 1, out, slopes);
     }
 }
 

@@ -2,8 +2,8 @@
 
 namespace strainwave::host {
 
-Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, double* out,
-                                       std::size_t kept, const Pause& pause) {
+Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, double* out, std::size_t kept,
+                      const Pause& pause) {
     std::size_t k = 0;
     const auto record = [&](const Output<double>& output) {
         const auto values = flattened<double>(output);

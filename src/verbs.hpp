@@ -97,7 +97,8 @@ kinematic_error::Fourier<double> harmonics_of(const M& m, int highest) {
     constexpr int points = 4096;
     kinematic_error::Fourier<double> found{};
     if (highest < 1 || highest > found.capacity)
-        throw nb::value_error(("highest = " + std::to_string(highest) + " must lie in [1, " + std::to_string(found.capacity) + "]").c_str());
+        throw nb::value_error(
+            ("highest = " + std::to_string(highest) + " must lie in [1, " + std::to_string(found.capacity) + "]").c_str());
     found.order.count = found.amplitude.count = found.phase.count = highest;
     const auto law = compiled(m);
     std::vector<double> error(points);
@@ -105,7 +106,7 @@ kinematic_error::Fourier<double> harmonics_of(const M& m, int highest) {
     for (int n = 1; n <= highest; ++n) {
         double sine = 0.0, cosine = 0.0;
         for (int i = 0; i < points; ++i) {
-            const double angle = 2.0 * pi * ((long long)(n) * i % points) / points - n * pi;
+            const double angle = 2.0 * pi * ((long long)(n)*i % points) / points - n * pi;
             sine += error[i] * std::sin(angle);
             cosine += error[i] * std::cos(angle);
         }
@@ -143,8 +144,7 @@ void error_verbs(nb::class_<M>& c) {
             },
             nb::arg("angle"), nb::sig("def lobes(self, angle: " SW_NUMBER_OR ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
             "Radial displacements delta_A, delta_B [m] of the two lobes at input `angle` [rad], each of the shape of `angle`.");
-        c.def("leading", [](const M& m) { return m.leading(); },
-              "The harmonics to leading order, in closed form: a Fourier law.");
+        c.def("leading", [](const M& m) { return m.leading(); }, "The harmonics to leading order, in closed form: a Fourier law.");
         c.def_prop_ro(
             "eccentricity", [](const M& m) { return nb::make_tuple(m.eccentricity().x, m.eccentricity().y); },
             nb::sig("def eccentricity(self) -> tuple[float, float]"), "What harmonics can tell: the vector m, x and y [m].");
@@ -161,15 +161,18 @@ void noise_verbs(nb::class_<M>& c) {
                                    ", torque: float = 0.0, speed: float = 0.0) -> " + result)),
                       doc);
             };
-            define([what](const M& m, double angle, double torque, double speed) { return what(compiled(m).at(turned(angle), torque, speed)); },
+            define([what](const M& m, double angle, double torque,
+                          double speed) { return what(compiled(m).at(turned(angle), torque, speed)); },
                    "float", "float");
-            define([what](const M& m, nb::handle angle, double torque, double speed) {
-                const auto x = numbers(angle, "angle");
-                const auto law = compiled(m);
-                auto [out, y] = like(x);
-                for (std::size_t i = 0; i < x.size(); ++i) y[i] = what(law.at(turned(x.data()[i]), torque, speed));
-                return out;
-            }, SW_NUMBERS, SW_ARRAY);
+            define(
+                [what](const M& m, nb::handle angle, double torque, double speed) {
+                    const auto x = numbers(angle, "angle");
+                    const auto law = compiled(m);
+                    auto [out, y] = like(x);
+                    for (std::size_t i = 0; i < x.size(); ++i) y[i] = what(law.at(turned(x.data()[i]), torque, speed));
+                    return out;
+                },
+                SW_NUMBERS, SW_ARRAY);
         };
         verb("error", "Random kinematic error [rad] at input `angle` [rad], under `torque` [N.m] at `speed` [rad/s] of the input.",
              [](const auto& error) { return error.value; });
@@ -215,7 +218,9 @@ void inverse_verbs(nb::class_<M>& c) {
             "inverse",
             [](const M& m, double spring) {
                 if (!(spring > 0.0 && std::isfinite(spring)))
-                    throw nb::value_error(("spring = " + with_unit(spring, "N.m/rad") + " must lie in (0, inf): the inverse needs a positive final slope").c_str());
+                    throw nb::value_error(("spring = " + with_unit(spring, "N.m/rad") +
+                                           " must lie in (0, inf): the inverse needs a positive final slope")
+                                              .c_str());
                 return m.inverse(spring);
             },
             nb::arg("spring"),
@@ -227,7 +232,8 @@ void inverse_verbs(nb::class_<M>& c) {
             [](const M& m, nb::handle torque, const typename M::State& state) {
                 const auto path = path_of(torque, "torque");
                 auto [out, twist] = like(path);
-                follow(m, state, path, [&, y = twist](const auto& x, double increment, std::size_t i) { y[i] = m.twist(x, increment); });
+                follow(m, state, path,
+                       [&, y = twist](const auto& x, double increment, std::size_t i) { y[i] = m.twist(x, increment); });
                 return out;
             },
             nb::arg("torque"), nb::arg("state") = typename M::State{},
@@ -311,8 +317,8 @@ struct Series {
     double operator[](std::size_t i) const { return values.data()[values.ndim() == 0 ? 0 : i]; }
 };
 
-#define SW_CONTACT_DOC                                                                                                         \
-    "under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and "  \
+#define SW_CONTACT_DOC                                                                                                        \
+    "under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and " \
     "`temperature` [K]. The law looks at what it depends on."
 
 /// A function f(law, contact, x) of one number and the contact, for numbers or arrays that broadcast.
@@ -324,8 +330,10 @@ void over_contacts(nb::class_<M>& c, const char* name, const char* argument, con
         return f(law, contact, x);
     };
     const auto define = [&](auto verb, const char* type, const char* result) {
-        const char* rest = kept(std::string(", angle: ") + type + " = 0.0, load: " + type + " = 0.0, temperature: " + type + " = 293.15) -> " + result);
-        const char* sig = kept(std::string("def ") + name + "(self, " + argument + ": " + type + (otherwise ? " = 1.0" : "") + rest);
+        const char* rest = kept(std::string(", angle: ") + type + " = 0.0, load: " + type + " = 0.0, temperature: " + type +
+                                " = 293.15) -> " + result);
+        const char* sig =
+            kept(std::string("def ") + name + "(self, " + argument + ": " + type + (otherwise ? " = 1.0" : "") + rest);
         const auto angle = nb::arg("angle") = 0.0, load = nb::arg("load") = 0.0,
                    temperature = nb::arg("temperature") = friction::room_temperature;
         if (otherwise)
@@ -333,22 +341,29 @@ void over_contacts(nb::class_<M>& c, const char* name, const char* argument, con
         else
             c.def(name, verb, nb::arg(argument), angle, load, temperature, nb::sig(sig), doc);
     };
-    define([at, argument](const M& m, double x, double angle, double load, double temperature) {
-        for (const auto& [given, called] : {std::pair(x, argument), {angle, "angle"}, {load, "load"}, {temperature, "temperature"}})
-            if (!std::isfinite(given)) throw nb::value_error((std::string(called) + " = " + shortest(given) + " is not finite").c_str());
-        return at(m, x, angle, load, temperature);
-    }, "float", "float");
-    define([at, argument](const M& m, nb::handle x, nb::handle angle, nb::handle load, nb::handle temperature) {
-        const nb::tuple given = nb::make_tuple(numbers(x, argument), numbers(angle, "angle"), numbers(load, "load"),
-                                               numbers(temperature, "temperature"));
-        std::vector<Argument> each;
-        for (nb::handle one : nb::list(nb::module_::import_("numpy").attr("broadcast_arrays")(*given))) each.push_back(numbers(one, argument));
-        const auto law = compiled(m);
-        auto [out, y] = like(each[0]);
-        for (std::size_t i = 0; i < each[0].size(); ++i)
-            y[i] = at(law, each[0].data()[i], each[1].data()[i], each[2].data()[i], each[3].data()[i]);
-        return out;
-    }, SW_NUMBER_OR, SW_ARRAY);
+    define(
+        [at, argument](const M& m, double x, double angle, double load, double temperature) {
+            for (const auto& [given, called] :
+                 {std::pair(x, argument), {angle, "angle"}, {load, "load"}, {temperature, "temperature"}})
+                if (!std::isfinite(given))
+                    throw nb::value_error((std::string(called) + " = " + shortest(given) + " is not finite").c_str());
+            return at(m, x, angle, load, temperature);
+        },
+        "float", "float");
+    define(
+        [at, argument](const M& m, nb::handle x, nb::handle angle, nb::handle load, nb::handle temperature) {
+            const nb::tuple given = nb::make_tuple(numbers(x, argument), numbers(angle, "angle"), numbers(load, "load"),
+                                                   numbers(temperature, "temperature"));
+            std::vector<Argument> each;
+            for (nb::handle one : nb::list(nb::module_::import_("numpy").attr("broadcast_arrays")(*given)))
+                each.push_back(numbers(one, argument));
+            const auto law = compiled(m);
+            auto [out, y] = like(each[0]);
+            for (std::size_t i = 0; i < each[0].size(); ++i)
+                y[i] = at(law, each[0].data()[i], each[1].data()[i], each[2].data()[i], each[3].data()[i]);
+            return out;
+        },
+        SW_NUMBER_OR, SW_ARRAY);
 }
 
 template <class M>
@@ -397,8 +412,9 @@ void friction_verbs(nb::class_<M>& c) {
             "`angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for "
             "a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A "
             "law that sticks shows no torque at rest: what it holds depends on what drives it.";
-#define SW_TRACE "def trace(self, time: " SW_NUMBERS ", speed: " SW_NUMBERS ", angle: float = 0.0, load: " SW_NUMBER_OR \
-                 " = 0.0, temperature: " SW_NUMBER_OR " = 293.15"
+#define SW_TRACE                                                                                           \
+    "def trace(self, time: " SW_NUMBERS ", speed: " SW_NUMBERS ", angle: float = 0.0, load: " SW_NUMBER_OR \
+    " = 0.0, temperature: " SW_NUMBER_OR " = 293.15"
         if constexpr (std::is_empty_v<State>) {
             c.def(
                 "trace",
@@ -414,8 +430,9 @@ void friction_verbs(nb::class_<M>& c) {
                   nb::sig(SW_TRACE ", state: State = ...) -> " SW_ARRAY), doc);
         }
         if constexpr (requires(const M& m) { m.passivity(); })
-            c.def("check", [](const M& m) { check_passivity(m); },
-                  "Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.");
+            c.def(
+                "check", [](const M& m) { check_passivity(m); },
+                "Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.");
     }
 }
 

@@ -11,7 +11,7 @@ template <class S>
 struct Input {
     S command{0.0};
     S command_rate{0.0};
-    S load_torque{0.0};                            ///< N.m, added to the load's own
+    S load_torque{0.0};                         ///< N.m, added to the load's own
     S temperature{friction::room_temperature};  ///< K
 
     template <class Self, class Visit>
@@ -204,7 +204,8 @@ struct PositionDrive {
         rate.motor = motor.rate(y.motor, voltage, y.input_speed);
         rate.control = control.rate(y.control, reference);
         rate.input_angle = y.input_speed;
-        rate.input_speed = moving(at.input, flow.input_balance - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
+        rate.input_speed =
+            moving(at.input, flow.input_balance - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
         rate.output_speed = moving(at.output, flow.output_balance - output.sliding) / inertia_of(load);
         rate.friction_input = friction::rate(gear.friction_input, y.friction_input, at.input);
@@ -335,8 +336,7 @@ struct PositionDrive {
                 reported(gear.friction_input, y.friction_input, now.contacts.input, held(now.input_balance, hold_input(now))),
                 reported(gear.friction_mesh, y.friction_mesh, now.contacts.mesh,
                          along(now.mesh.per_input, held(now.input_balance, hold_input(now)))),
-                reported(gear.friction_output, y.friction_output, now.contacts.output,
-                         held(now.output_balance, hold_output(now))),
+                reported(gear.friction_output, y.friction_output, now.contacts.output, held(now.output_balance, hold_output(now))),
                 load_torque,
                 u.temperature};
     }
@@ -370,7 +370,8 @@ private:
         const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse;
         Contacts at{};
         at.input = {y.input_speed, x.sliding_input, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, u.temperature};
-        at.mesh = {y.input_speed * mesh.per_input, along(mesh.per_input, x.sliding_input), {rigid, turns}, mesh.torque, u.temperature};
+        at.mesh = {
+            y.input_speed * mesh.per_input, along(mesh.per_input, x.sliding_input), {rigid, turns}, mesh.torque, u.temperature};
         at.output = {y.output_speed, x.sliding_output, {rigid - y.transmission_error, turns}, mesh.torque, u.temperature};
         return at;
     }
@@ -403,9 +404,7 @@ private:
     }
 
     /// A side that sticks does not accelerate.
-    static constexpr S moving(const Contact& contact, const S& torque) {
-        return select(contact.sliding == S(0.0), S(0.0), torque);
-    }
+    static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
 
     /// The share of its hold that a side which sticks makes use of, with the sense of what it balances.
     static constexpr S held(const S& balance, const S& hold) { return balance / max(hold, S(smallest)); }

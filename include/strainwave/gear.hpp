@@ -64,8 +64,10 @@ struct Gear {
         return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), decltype(compiled(kinematic_noise)),
                     decltype(compiled(stiffness)), decltype(compiled(hysteresis)), decltype(compiled(friction_input)),
                     decltype(compiled(friction_mesh)), decltype(compiled(friction_output))>{
-            compiled(kinematics),      compiled(kinematic_error), compiled(kinematic_noise), compiled(stiffness),
-            compiled(hysteresis),      damping,                   compiled(friction_input),  compiled(friction_mesh),
+            compiled(kinematics),      compiled(kinematic_error),
+            compiled(kinematic_noise), compiled(stiffness),
+            compiled(hysteresis),      damping,
+            compiled(friction_input),  compiled(friction_mesh),
             compiled(friction_output), input_inertia};
     }
 

@@ -23,7 +23,7 @@ private:
         const S da = half * select(late, middle.command_rate, start.command_rate);
         const S db = half * select(late, end.command_rate, middle.command_rate);
         const S bend = S(3.0) * (b - a) - S(2.0) * da - db, turn = S(2.0) * (a - b) + da + db;
-        const auto straight = [&](S Input<S>::*signal) {
+        const auto straight = [&](S Input<S>::* signal) {
             const S from = select(late, middle.*signal, start.*signal);
             return from + x * (select(late, end.*signal, middle.*signal) - from);
         };

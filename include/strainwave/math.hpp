@@ -47,6 +47,18 @@ constexpr S detached(const S& x) {
     return x;
 }
 
+/// The numbers that tables of constants for a scalar are made of: its own kind, so that none is converted at run time.
+template <class S>
+struct RealOf {
+    using type = double;
+};
+template <>
+struct RealOf<float> {
+    using type = float;
+};
+template <class S>
+using Real = typename RealOf<S>::type;
+
 /// The whole number that `x` is, if it lies in [1, highest]; else 0.
 template <class S>
 constexpr int whole(const S& x, int highest) {

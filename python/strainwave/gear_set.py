@@ -192,7 +192,7 @@ class GearSet:
         with _at(f"{path}"):
             _checked(_head_form(), document)
         for table in _tables():
-            with _at(f"{path} [{table.name}]"):
+            with _at(f"{path}"):
                 model, entries = _read_table(table, document.get(table.name))
             if model is not None:
                 models[table.path] = model
@@ -314,6 +314,11 @@ class _Table(NamedTuple):
     def in_gear(self) -> bool:
         return self.path.startswith("gear.")
 
+    @property
+    def header(self) -> str:
+        """As the file writes it."""
+        return f"[{self.path.removeprefix('gear.')}]"
+
 
 @cache
 def _tables() -> tuple[_Table, ...]:
@@ -434,22 +439,23 @@ def _read_table(table: _Table, content: dict[str, Any] | None) -> tuple[Any, lis
     """The model that a table holds, and where its numbers come from, in the order of `_numbers`."""
     if content is None:
         return table.absent, [Entry(NOT_GIVEN) for _ in _numbers(table, table.absent)] if table.absent else []
-    model, content = _chosen(table, content)
-    checked = _checked(_table_form(table.path, model), content)
     entries: list[Entry] = []
-    for name, kind, unit in _parameters(model):
-        if kind != "choice":
-            given = checked[name]
-            with _at(f"{name}:"):
-                quantities = [Quantity(**entry).to(unit) for entry in (given if kind == "sequence" else [given])]
-            values = [quantity.value for quantity in quantities]
-            checked[name] = values if kind == "sequence" else values[0]
-            entries += [Entry(quantity.source, quantity.spread, quantity.uncertainty) for quantity in quantities]
+    with _at(table.header):
+        model, content = _chosen(table, content)
+        checked = _checked(_table_form(table.path, model), content)
+        for name, kind, unit in _parameters(model):
+            if kind != "choice":
+                given = checked[name]
+                with _at(f"{name}:"):
+                    quantities = [Quantity(**entry).to(unit) for entry in (given if kind == "sequence" else [given])]
+                values = [quantity.value for quantity in quantities]
+                checked[name] = values if kind == "sequence" else values[0]
+                entries += [Entry(quantity.source, quantity.spread, quantity.uncertainty) for quantity in quantities]
     for inner in _inner(table.path, model):
-        with _at(f"{inner.name}:"):
-            checked[inner.name], its_entries = _read_table(inner, checked[inner.name])
+        checked[inner.name], its_entries = _read_table(inner, checked[inner.name])
         entries += its_entries
-    return model(**checked), entries
+    with _at(table.header):
+        return model(**checked), entries
 
 
 def _chosen(table: _Table, content: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
@@ -519,7 +525,7 @@ def _table_form(path: str, model: Any) -> _Form:
     }
     for inner in _inner(path, model):
         keys[inner.name] = (dict[str, Any], ...)
-        examples[inner.name] = f"[{inner.path.removeprefix('gear.')}] with {_choice(inner)}"
+        examples[inner.name] = f"{inner.header} with {_choice(inner)}"
     return _Form(f"parameter of {model.name}", _schema(model.name, keys), examples)
 
 

@@ -76,6 +76,8 @@ class Excitation:
                 )
             if not isinstance(signal, Scenario) and not np.isfinite(signal):
                 raise ValueError(f"{name} = {signal} must be finite")
+        if not isinstance(self.temperature, Scenario):
+            _check_temperature(self.temperature)
 
     def course(self, dt: float, samples: float | Array | None) -> Course:
         """The steps that follow it."""
@@ -97,6 +99,7 @@ class Excitation:
                 _lay_out(inputs[:, :, column], start, end, signal.breaks, signal.value, signal.value_before)
             else:
                 inputs[:, :, column] = signal
+        _check_temperature(float(inputs[:, :, 3].min()))
         _lay_out(inputs[:, :, 1], start, end, self.command.breaks, self.command.rate, self.command.rate_before)
         return inputs
 
@@ -134,8 +137,8 @@ def simulate(
         (n,); the first sample is at t = 0.
 
     Raises:
-        ValueError: `dt` or `sample` is not positive, `load_torque` or `temperature` lasts another time than `command`, or the
-            drive leaves the range in which one of its parts is valid; says which, where and when
+        ValueError: `dt`, `sample` or `temperature` is not positive, `load_torque` or `temperature` lasts another time than
+            `command`, or the drive leaves the range in which one of its parts is valid; says which, where and when
         FloatingPointError: the trajectory left the finite numbers, or `dt` cannot follow the gear's vibration; says when,
             and what would do
 
@@ -250,6 +253,11 @@ def _lay_out(
 def _positive(name: str, value: float) -> None:
     if not 0.0 < value < np.inf:
         raise ValueError(f"{name} = {value} s must lie in (0, inf)")
+
+
+def _check_temperature(lowest: float) -> None:
+    if lowest <= 0.0:
+        raise ValueError(f"temperature = {lowest:g} K must lie in (0, inf); 20 degC are 293.15 K")
 
 
 def _grid(step: float, duration: float, tolerance: float) -> Array:

@@ -21,8 +21,17 @@ COLUMNS = [name for name, _, _ in _core.outputs]
 
 STRIBECK = sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5)
 COULOMB = sw.friction.Coulomb(coulomb=3.0, breakaway=4.0, viscous=0.5)
+NOISE = sw.kinematic_error.Stochastic(
+    amplitude=1.5e-5, seed=11, load_sensitivity=0.02, speed_sensitivity=0.01, insertion_depth=1e-3, depth_sensitivity=50.0
+)
 SMOOTH = DRIVE.replace(
-    gear=DRIVE.gear.replace(input_inertia=1e-5), control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05)
+    gear=DRIVE.gear.replace(
+        input_inertia=1e-5,
+        kinematic_noise=NOISE,
+        friction_input=DRIVE.gear.friction_input.replace(damping_fading=0.2),
+        friction_mesh=sw.friction.Viscous(viscous=0.3),
+    ),
+    control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05)
 )  # no number of it is zero, so that each can be varied by a share of itself
 DRIVES = {
     "bristle": SMOOTH,

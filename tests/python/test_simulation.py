@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import threading
 import time
@@ -14,7 +15,7 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core, simulation
-from strainwave.simulation import Course, derivatives
+from strainwave.simulation import ROOM_TEMPERATURE, Course, Excitation, derivatives
 
 from tests.reference_drive import DRIVE, command
 
@@ -62,18 +63,30 @@ def test_steps_are_as_long_as_asked_where_nothing_asks_for_more() -> None:
 def test_a_jump_between_two_steps_is_seen_by_the_second_alone(dt: float, multiple: int) -> None:
     """Also where floating point puts the jump, written in decimals, beside the multiple: 5 * 3e-4 < 0.0015."""
     jump = round(dt * multiple, 12)
-    course = sw.scenario.step(1.0, duration=jump + 2.0 * dt, start=jump)
-    inputs = Course.through(course.duration, dt, dt, course.breaks).inputs(course, None)[:, :, 0]
+    excitation = Excitation(sw.scenario.step(1.0, duration=jump + 2.0 * dt, start=jump))
+    inputs = excitation.over(excitation.course(dt, None))[:, :, 0]
     assert inputs.tolist() == multiple * [[0.0] * 3] + 2 * [[1.0] * 3]
 
 
 def test_inputs_are_the_left_limits_at_the_end_of_a_step() -> None:
     load = sw.scenario.step(5.0, duration=0.4, start=0.2)
-    course = Course.through(0.4, 0.1, 0.1, load.breaks)
-    inputs = course.inputs(sw.scenario.ramp(2.0, duration=0.4), load)
+    warming = sw.scenario.step(20.0, duration=0.4, start=0.3) + sw.scenario.constant(290.0, duration=0.4)
+    excitation = Excitation(sw.scenario.ramp(2.0, duration=0.4), load, warming)
+    inputs = excitation.over(excitation.course(0.1, None))
     assert inputs[:, :, 0] == pytest.approx(2.0 * np.array([[0, 5, 10], [10, 15, 20], [20, 25, 30], [30, 35, 40]]) / 100)
     assert inputs[:, :, 1] == pytest.approx(np.full((4, 3), 2.0))
     assert inputs[:, :, 2].tolist() == [[0.0] * 3, [0.0] * 3, [5.0] * 3, [5.0] * 3]
+    assert inputs[:, :, 3].tolist() == [[290.0] * 3, [290.0] * 3, [290.0] * 3, [310.0] * 3]
+    assert excitation.first().tolist() == [0.0, 2.0, 0.0, 290.0]
+
+
+def test_load_torque_and_temperature_may_be_numbers() -> None:
+    numbers = Excitation(HELD, 3.0, 310.0)
+    lines = Excitation(HELD, sw.scenario.constant(3.0, 0.25), sw.scenario.constant(310.0, 0.25))
+    course = numbers.course(0.1, None)
+    assert np.array_equal(numbers.over(course), lines.over(course))
+    assert np.array_equal(numbers.first(), lines.first())
+    assert Excitation(HELD).first().tolist() == [0.02, 0.0, 0.0, ROOM_TEMPERATURE]
 
 
 # Runs
@@ -120,10 +133,11 @@ def test_a_run_laid_out_in_pieces_is_one_run(drive: sw.drives.PositionDrive, mon
 
 @drives
 def test_a_run_goes_on_where_another_ended_to_the_last_bit(drive: sw.drives.PositionDrive) -> None:
-    course = Course.through(0.25, DT, DT, HELD.breaks)
+    excitation = Excitation(HELD)
+    course = excitation.course(DT, None)
     half = len(course.instants) // 2
     first, middle = _core.simulate(
-        drive, drive.rest(), course.instants[: half + 1], course.inputs(HELD, None)[:half], course.samples[1 : half + 1]
+        drive, drive.rest(), course.instants[: half + 1], excitation.over(course)[:half], course.samples[1 : half + 1]
     )
     rest = sw.scenario.constant(0.02, 0.25 - course.instants[half])
     whole, second = sw.simulate(drive, HELD, DT), sw.simulate(drive, rest, DT, start=middle)
@@ -136,7 +150,7 @@ def test_steps_by_hand_are_the_steps_of_a_run() -> None:
     state = STICKING.rest()
     for _ in range(200):
         state = STICKING.step(state, command=0.02, dt=DT)
-    by_hand = _core.now(STICKING, state, np.array([0.02, 0.0, 0.0]))[:, 0]
+    by_hand = _core.now(STICKING, state, Excitation(HELD).first())[:, 0]
     run = sw.simulate(STICKING, sw.scenario.constant(0.02, 200 * DT), DT)
     assert by_hand == pytest.approx([run[name][-1] for name in COLUMNS], rel=1e-12)
 
@@ -151,6 +165,154 @@ def test_many_drives_come_back_in_their_order() -> None:
     assert sw.simulate_many([], command(0.02)) == []
 
 
+# Friction at three places, noise and temperature
+
+MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4)
+RATIOS = {"driving_forward": 0.1, "driving_reverse": 0.15, "backdriving_forward": 0.2, "backdriving_reverse": 0.25}
+
+
+def open_loop(**parts: object) -> sw.drives.PositionDrive:
+    """A motor at the voltage commanded, a gear of ratio 20 without kinematic error, a disc."""
+    gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=20.0), stiffness=sw.stiffness.Linear(k=1e4), damping=5.0)
+    return sw.drives.PositionDrive(gear=gear.replace(**parts), motor=MOTOR, load=sw.loads.Inertia(inertia=0.05))
+
+
+def settled(drive: sw.drives.PositionDrive, voltage: float, load_torque: float) -> dict[str, float]:
+    """The last sample of a run, many time constants long."""
+    run = sw.simulate(drive, sw.scenario.constant(voltage, 1.0), load_torque=load_torque, sample=0.1)
+    assert run["output_speed"][-2:] == pytest.approx([run["output_speed"][-1]] * 2, rel=1e-12)
+    return {name: float(run[name][-1]) for name in run.names}
+
+
+@pytest.mark.parametrize(
+    ("quadrant", "voltage", "load_torque"),
+    [
+        ("driving_forward", 24.0, 3.0),
+        ("driving_reverse", -24.0, -3.0),
+        ("backdriving_forward", 0.0, -30.0),
+        ("backdriving_reverse", 0.0, 30.0),
+    ],
+)
+def test_the_efficiency_of_a_mesh_is_that_of_its_quadrant(quadrant: str, voltage: float, load_torque: float) -> None:
+    """1 / (1 + mu) when driving, 1 - mu when back-driven, as friction.LoadDependent says of itself."""
+    end = settled(open_loop(friction_mesh=sw.friction.LoadDependent(**RATIOS)), voltage, load_torque)
+    at_input, at_output = MOTOR.torque_constant * end["current"] * end["input_speed"], load_torque * end["output_speed"]
+    assert (end["output_speed"] > 0.0) == quadrant.endswith("forward")
+    assert (at_output > 0.0) == quadrant.startswith("driving")
+    ratio = RATIOS[quadrant]
+    efficiency = at_output / at_input if at_output > 0.0 else at_input / at_output
+    assert efficiency == pytest.approx(1.0 / (1.0 + ratio) if at_output > 0.0 else 1.0 - ratio, rel=1e-10)
+
+
+@pytest.mark.parametrize("load_torque", [30.0, -30.0])
+def test_a_mesh_that_loses_more_than_comes_back_locks_itself(load_torque: float) -> None:
+    ratios = {"driving_forward": 0.1, "driving_reverse": 0.1}
+    locking = sw.friction.LoadDependent(**ratios, backdriving_forward=1.01, backdriving_reverse=1.01)
+    run = sw.simulate(open_loop(friction_mesh=locking), sw.scenario.constant(0.0, 1.0), load_torque=load_torque)
+    assert not run["input_speed"].any()
+    assert run["twist"][-1] == pytest.approx(load_torque / 1e4, rel=1e-9)
+    yielding = locking.replace(backdriving_forward=0.99, backdriving_reverse=0.99)
+    run = sw.simulate(open_loop(friction_mesh=yielding), sw.scenario.constant(0.0, 1.0), load_torque=load_torque)
+    assert run["input_speed"][-1] * load_torque < 0.0
+
+
+def test_what_the_motor_gives_goes_to_the_load_and_to_the_friction_of_each_place() -> None:
+    laws = {
+        "friction_input": sw.friction.LuGre(coulomb=0.03, breakaway=0.03, bristle_damping=0.01, viscous=1e-4),
+        "friction_mesh": sw.friction.LoadDependent(**RATIOS),
+        "friction_output": sw.friction.Stribeck(coulomb=1.0, breakaway=1.5, stribeck_speed=0.1, viscous=0.2),
+    }
+    end = settled(open_loop(**laws), 24.0, 3.0)
+    shares = {
+        "load": 3.0 * end["output_speed"],
+        "friction_input": end["friction_input"] * end["input_speed"],
+        "friction_mesh": end["friction_mesh"] * end["input_speed"] / 20.0,
+        "friction_output": end["friction_output"] * end["output_speed"],
+    }
+    assert min(shares.values()) > 0.5
+    assert MOTOR.torque_constant * end["current"] * end["input_speed"] == pytest.approx(sum(shares.values()), rel=1e-10)
+    assert end["torque"] == pytest.approx(3.0 + end["friction_output"], rel=1e-10)
+    for place, law in laws.items():
+        speed = end["input_speed"] if place == "friction_input" else end["output_speed"]
+        assert end[place] == pytest.approx(law.steady(speed, load=end["torque"]), rel=1e-9)
+
+
+def test_friction_follows_the_temperature_of_the_gear() -> None:
+    """Exact at every sample: viscous friction has no memory."""
+    law = sw.friction.Thermal(law=sw.friction.Viscous(viscous=2e-3), viscous_fall=0.025, reference_temperature=293.15)
+    warming = sw.scenario.ramp(40.0, 1.0) + sw.scenario.constant(283.15, 1.0)
+    voltage = sw.scenario.constant(12.0, 1.0)
+    run = sw.simulate(open_loop(friction_input=law), voltage, temperature=warming, sample=0.01)
+    assert run["temperature"] == pytest.approx(warming.value(run["time"]), rel=1e-15)
+    friction = 2e-3 * np.exp(-0.025 * (run["temperature"] - 293.15)) * run["input_speed"]
+    assert run["friction_input"] == pytest.approx(friction, rel=1e-13)
+    cold, warm = run["friction_input"][[20, -1]] / run["input_speed"][[20, -1]]
+    assert warm / cold == pytest.approx(np.exp(-0.025 * 0.8 * 40.0), rel=1e-12)
+    room = sw.simulate(open_loop(friction_input=law), voltage)
+    assert same(room, sw.simulate(open_loop(friction_input=law), voltage, temperature=ROOM_TEMPERATURE))
+    assert same(room, sw.simulate(open_loop(friction_input=law.law), voltage))
+
+
+def test_drives_side_by_side_and_derivatives_see_mesh_and_temperature_too() -> None:
+    law = sw.friction.Thermal(law=sw.friction.Coulomb(coulomb=0.01, breakaway=0.012, viscous=1e-3), viscous_fall=0.03)
+    drive = open_loop(friction_input=law, friction_mesh=sw.friction.LoadDependent(**RATIOS))
+    arguments = {"load_torque": 3.0, "temperature": sw.scenario.ramp(100.0, 0.3) + sw.scenario.constant(293.15, 0.3)}
+    voltage = sw.scenario.sine(24.0, 5.0, 0.3)
+    alone = sw.simulate(drive, voltage, dt=1e-4, sample=1e-3, **arguments)
+    (packed,) = sw.simulate_many([drive], voltage, dt=1e-4, sample=1e-3, **arguments)
+    dual, _ = derivatives(drive, voltage, [0], 1e-4, 1e-3, **arguments)
+    for name in ("input_speed", "friction_mesh", "temperature"):
+        size = np.abs(alone[name]).max()
+        assert size > 0.0
+        assert np.abs(dual[name] - alone[name]).max() <= 1e-12 * size, name
+        # set-valued friction is stepped to its events by one run alone; side by side in smooth midpoint steps
+        assert np.abs(packed[name] - alone[name]).max() <= PACKED * size, name
+
+
+def test_noise_is_the_error_of_its_seed() -> None:
+    noise = sw.kinematic_error.Stochastic(amplitude=2e-5, seed=7)
+    run = sw.simulate(open_loop(kinematic_noise=noise), sw.scenario.constant(12.0, 0.5), sample=1e-3)
+    assert run["kinematic_error"] == pytest.approx(noise.error(run["input_angle"]), rel=0.0, abs=1e-12 * 2e-5)
+    assert same(run, sw.simulate(open_loop(kinematic_noise=noise), sw.scenario.constant(12.0, 0.5), sample=1e-3))
+    other = sw.simulate(open_loop(kinematic_noise=noise.replace(seed=8)), sw.scenario.constant(12.0, 0.5), sample=1e-3)
+    assert np.corrcoef(run["kinematic_error"], other["kinematic_error"])[0, 1] < 0.5
+    silent = sw.simulate(open_loop(), sw.scenario.constant(12.0, 0.5))
+    assert not silent["kinematic_error"].any()
+
+
+def test_a_drive_that_leaves_the_domain_of_a_part_is_refused_with_part_numbers_and_time() -> None:
+    """The place and the time are those at which the same run, not refused, is first beyond."""
+    law = sw.friction.PositionDependent(quadratic=0.0, linear=0.0, constant=0.05, domain_start=-1.0, domain_end=20.0)
+    voltage = sw.scenario.constant(12.0, 0.5)
+    free = sw.simulate(open_loop(friction_input=law.replace(outside="clamp")), voltage)
+    beyond = int(np.argmax(free["input_angle"] > 20.0))
+    drive = open_loop(friction_input=law)
+    for run in (
+        lambda: sw.simulate(drive, voltage),
+        lambda: sw.simulate_many([drive] * 3, voltage),
+        lambda: derivatives(drive, voltage, [0], 2e-4, 1e-2),
+    ):
+        with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = ") as refusal:
+            run()
+        words = re.fullmatch(
+            r"gear\.friction_input: angle = (\S+) rad lies outside of \[-1, 20\] rad; widen domain_start to domain_end, "
+            r"or set outside to 'clamp' or 'periodic'; first at t = (\S+) s",
+            str(refusal.value),
+        )
+        assert words, refusal.value
+        assert float(words[1]) == pytest.approx(free["input_angle"][beyond], rel=1e-9)
+        assert float(words[2]) == pytest.approx(free["time"][beyond], rel=1e-12)
+    assert len(sw.simulate(drive, sw.scenario.constant(12.0, free["time"][beyond - 1]))) == beyond
+
+
+@pytest.mark.parametrize("place", ["friction_input", "friction_mesh", "friction_output"])
+def test_the_place_that_is_out_of_its_domain_is_named_also_inside_another_law(place: str) -> None:
+    law = sw.friction.PositionDependent(quadratic=0.0, linear=0.0, constant=0.0, domain_start=-1.0, domain_end=0.5)
+    wrapped = sw.friction.Thermal(law=sw.friction.Cyclic(law=law))
+    with pytest.raises(ValueError, match=rf"^gear\.{place}: angle = 0\.5\d* rad lies outside of \[-1, 0\.5\] rad; .*; first at"):
+        sw.simulate(open_loop(**{place: wrapped}), sw.scenario.constant(12.0, 1.0))
+
+
 # Refusals
 
 
@@ -163,9 +325,18 @@ def test_a_step_or_a_sample_that_is_not_positive_is_refused(name: str, value: fl
         sw.simulate_many([DRIVE], command(0.1), **{name: value})
 
 
-def test_a_load_torque_of_another_length_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^load_torque lasts 0\.2 s, command 0\.1 s; both must last equally long$"):
-        sw.simulate(DRIVE, command(0.1), load_torque=sw.scenario.constant(1.0, 0.2))
+@pytest.mark.parametrize("name", ["load_torque", "temperature"])
+def test_a_load_torque_or_a_temperature_of_another_length_or_not_finite_is_refused(name: str) -> None:
+    with pytest.raises(ValueError, match=rf"^{name} lasts 0\.2 s, command 0\.1 s; both must last equally long$"):
+        sw.simulate(DRIVE, command(0.1), **{name: sw.scenario.constant(300.0, 0.2)})
+    with pytest.raises(ValueError, match=rf"^{name} = nan must be finite$"):
+        sw.simulate_many([DRIVE], command(0.1), **{name: float("nan")})
+
+
+@pytest.mark.parametrize("temperature", [-20.0, sw.scenario.step(-313.15, 0.1, start=0.07) + sw.scenario.constant(293.15, 0.1)])
+def test_a_temperature_below_absolute_zero_is_refused(temperature: sw.scenario.Scenario | float) -> None:
+    with pytest.raises(ValueError, match=r"^temperature = -20 K must lie in \(0, inf\); 20 degC are 293\.15 K$"):
+        sw.simulate(DRIVE, command(0.1), temperature=temperature)
 
 
 def test_drives_of_different_models_do_not_run_side_by_side() -> None:
@@ -196,8 +367,9 @@ def test_a_run_that_diverges_says_when_and_returns_nothing(drive: sw.drives.Posi
 
 
 def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
-    course = Course.through(10.0, DT, 1.0, np.empty(0))
-    arguments = (DRIVE, DRIVE.rest(), course.instants, course.inputs(command(10.0), None), course.samples[1:])
+    excitation = Excitation(command(10.0))
+    course = excitation.course(DT, 1.0)
+    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:])
     counted: list[int] = []
     _core.simulate(*arguments, counted.append)
     assert counted == sorted(set(counted))
@@ -217,8 +389,9 @@ def test_a_progress_bar_changes_nothing() -> None:
 
 def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    course = Course.through(300.0, DT, 10.0, np.empty(0))
-    inputs = course.inputs(sw.scenario.constant(0.1, 300.0), None)
+    excitation = Excitation(sw.scenario.constant(0.1, 300.0))
+    course = excitation.course(DT, 10.0)
+    inputs = excitation.over(course)
     pressed: list[float] = []
 
     def press() -> None:

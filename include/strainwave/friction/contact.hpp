@@ -11,14 +11,14 @@ inline constexpr double room_temperature = 293.15;  // K
 /// How the two surfaces of a place move against each other, and under what.
 template <class S>
 struct Contact {
-    S speed{0.0};                    ///< rad/s
-    S sliding{1.0};                  ///< Sense of sliding of a set-valued law: -1, 1, or 0 while it sticks
-    Angle<S> angle{};                ///< Where the place stands
-    S load{0.0};                     ///< Torque it transmits [N.m]: load * speed is the power that flows to the output
-    S temperature{room_temperature}; ///< K
-    S dry{1.0};                      ///< Factor on the torque levels of dry friction
-    S dry_most{1.0};                 ///< The largest it can become
-    S viscous{1.0};                  ///< Factor on viscous friction
+    S speed{0.0};                     ///< rad/s
+    S sliding{1.0};                   ///< Sense of sliding of a set-valued law: -1, 1, or 0 while it sticks
+    Angle<S> angle{};                 ///< Where the place stands
+    S load{0.0};                      ///< Torque it transmits [N.m]: load * speed is the power that flows to the output
+    S temperature{room_temperature};  ///< K
+    S dry{1.0};                       ///< Factor on the torque levels of dry friction
+    S dry_most{1.0};                  ///< The largest it can become
+    S viscous{1.0};                   ///< Factor on viscous friction
 
     /// The same with dry and viscous friction multiplied.
     constexpr Contact scaled(const S& dry_factor, const S& dry_factor_at_most, const S& viscous_factor) const {

@@ -59,10 +59,18 @@ struct Pack {
         const Pack magic(6755399441055744.0);
         return (x + magic) - magic;
     }
-    friend Pack sqrt(const Pack& x) { return each(x, [](double lane) { return strainwave::sqrt(lane); }); }
-    friend Pack exp(const Pack& x) { return each(x, [](double lane) { return strainwave::exp(lane); }); }
-    friend Pack log(const Pack& x) { return each(x, [](double lane) { return strainwave::log(lane); }); }
-    friend Pack atan(const Pack& x) { return each(x, [](double lane) { return strainwave::atan(lane); }); }
+    friend Pack sqrt(const Pack& x) {
+        return each(x, [](double lane) { return strainwave::sqrt(lane); });
+    }
+    friend Pack exp(const Pack& x) {
+        return each(x, [](double lane) { return strainwave::exp(lane); });
+    }
+    friend Pack log(const Pack& x) {
+        return each(x, [](double lane) { return strainwave::log(lane); });
+    }
+    friend Pack atan(const Pack& x) {
+        return each(x, [](double lane) { return strainwave::atan(lane); });
+    }
     friend SinCos<Pack> sincos(const Pack& x) {
         SinCos<Pack> y{};
         for (int i = 0; i < n; ++i) {

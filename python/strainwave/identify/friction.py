@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import friction
-from strainwave._core import Gear
+from strainwave._core import Gear, PassivityWarning
 from strainwave.identify.experiment import FrictionTable
 from strainwave.identify.fit import Fit, fit
 
@@ -18,6 +19,7 @@ Array = NDArray[np.float64]
 FOLDS = 20  # a table is cut into at most so many parts, each predicted once from the others
 KINETIC = ("coulomb", "viscous")
 FALLING = ("coulomb", "breakaway", "stribeck_speed", "viscous")
+LAWS = friction.Viscous, friction.Coulomb, friction.Stribeck, friction.LuGre  # that a table of torque over speed can tell
 
 
 @dataclass(frozen=True)
@@ -63,15 +65,20 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
         better by more than 5 %
 
     Raises:
-        ValueError: fewer than four speeds
+        ValueError: fewer than four speeds, or a law of the gear that depends on more than speed
     """
+    if not isinstance(gear.friction_input, LAWS):
+        names = [law.name for law in LAWS]
+        raise ValueError(
+            f"a friction table cannot be fitted to {gear.friction_input.name} friction; "
+            f"it can to {', '.join(names[:-1])} or {names[-1]}, so start from a gear with one of these at the input"
+        )
     speeds = len(np.unique(table.speed))
     if speeds < 4:
         raise ValueError(f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}")
-    law = gear.friction_input
     candidates = [_straight(table, gear)]
-    if isinstance(law, friction.Stribeck | friction.LuGre) and speeds > len(FALLING) + 1:
-        straight = law.replace(coulomb=candidates[0].coulomb, viscous=candidates[0].viscous)
+    straight = candidates[0].fit.gear.friction_input
+    if isinstance(straight, friction.Stribeck | friction.LuGre) and speeds > len(FALLING) + 1:
         candidates.append(_falling(table, gear, straight))
     best = min(candidate.error for candidate in candidates)
     return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates)))
@@ -92,7 +99,8 @@ def _straight(table: FrictionTable, gear: Gear) -> Candidate:
 def _falling(table: FrictionTable, gear: Gear, straight: friction.Stribeck | friction.LuGre) -> Candidate:
     speed = np.abs(table.speed[table.speed != 0.0])
     middle = float(np.sqrt(speed.min() * speed.max()))
-    start = straight.replace(breakaway=1.5 * straight.coulomb, stribeck_speed=middle)
+    with warnings.catch_warnings(action="ignore", category=PassivityWarning):  # a start need not be passive
+        start = straight.replace(breakaway=1.5 * straight.coulomb, stribeck_speed=middle)
     return _candidate("with a fall at low speed", table, gear.replace(friction_input=start), FALLING)
 
 

@@ -208,12 +208,23 @@ def _parts(twin: Twin) -> Iterator[Part]:
         if model is not None:
             law = (type(model).__doc__ or "").partition("\n")[0] if part != "gear" else ""
             parameters = [_parameter(gear_set, path, verdicts.get(path)) for path in paths]
-            yield Part(_words(part), law, model.source, parameters or [_absent(gear_set, part)])
+            if not parameters and not any(path.startswith(f"{part}.") for path in gear_set.sources):
+                parameters = [_absent(gear_set, part)]
+            yield Part(_words(part), law, model.source, parameters)
 
 
 def _part_paths(gear_set: GearSet) -> list[str]:
-    parts = [f"gear.{member['name']}" for member in gear_set.gear.fields if member["kind"] == "part"]
-    return [*parts, "gear", "motor", "control", "load"]
+    rest = [path for part in ("motor", "control", "load") for path in (part, *_inside(part, getattr(gear_set, part)))]
+    return [*_inside("gear", gear_set.gear), "gear", *rest]
+
+
+def _inside(path: str, model: Any) -> Iterator[str]:
+    """Paths of the parts of a model, each followed by those of its own parts."""
+    for member in model.fields if model is not None else ():
+        if member["kind"] == "part":
+            inner = f"{path}.{member['name']}"
+            yield inner
+            yield from _inside(inner, getattr(model, member["name"]))
 
 
 def _parameter(gear_set: GearSet, path: str, verdict: Verdict | None) -> Parameter:
@@ -274,7 +285,8 @@ def _name(gear_set: GearSet, path: str) -> str:
 
 
 def _words(part: str) -> str:
-    return part.rpartition(".")[2].replace("_", " ").capitalize()
+    """What a part is called: "Friction input, law" of gear.friction_input.law."""
+    return part.removeprefix("gear.").replace(".", ", ").replace("_", " ").capitalize()
 
 
 # ---- What is not known, and what contradicts what --------------------------------------------------------------------
