@@ -1,11 +1,12 @@
-"""The theory pages: what each model says of itself, its parameters, and the curve of its own example."""
+"""The theory pages: what each model says of itself, its parameters, and what it does."""
 
 from __future__ import annotations
 
 import ast
 import doctest
 import re
-from itertools import pairwise
+from collections.abc import Callable, Sequence
+from itertools import groupby, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,22 +14,30 @@ import numpy as np
 import strainwave as sw
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 from strainwave import _core
 
+Array = NDArray[np.float64]
 Model = type[Any]
-ABOUT = {
-    "kinematic_noise": "Random kinematic error, beside the deterministic one.",
-    "density": "Densities of Preisach's hysteresis.",
-}
+Draw = Callable[[Axes], None]
+
+ERRATA = Path(__file__).with_name("errata.md")
+LINE = 66  # characters of a formula that fit on a line
+SPACE = 5  # characters between its parts
 
 
 def write(folder: Path) -> None:
-    """One page a family, one for gear and drive, with their figures."""
+    """One page a module of models, one for gear and drive, with their figures."""
     folder.mkdir()
-    for family, models in _core.families.items():
-        about = getattr(sw, family).__doc__ if hasattr(sw, family) else ABOUT[family]
-        page(folder, family, about, list(models.values()))
+    every = [(module_of(model), family, model) for family, models in _core.families.items() for model in models.values()]
+    every.sort(key=lambda entry: (entry[0], entry[0] != entry[1]))  # of its own family first, then what stands beside it
+    for name, entries in groupby(every, key=lambda entry: entry[0]):
+        page(folder, name, getattr(sw, name).__doc__, [model for _, _, model in entries])
     page(folder, "gear_and_drive", "How the parts go together.", [sw.Gear, sw.drives.PositionDrive])
+
+
+def module_of(model: Model) -> str:
+    return str(model.__module__).rpartition(".")[2]
 
 
 def page(folder: Path, name: str, about: str, models: list[Model]) -> None:
@@ -39,12 +48,35 @@ def page(folder: Path, name: str, about: str, models: list[Model]) -> None:
 
 def section(folder: Path, model: Model) -> str:
     words, _, _ = (model.__doc__ or "").partition("\n\nParameters\n---")
-    parts = [f"## {model.__name__}", markdown(words), parameters(model), f"*Source:* {escaped(model.source)}"]
-    example = constructed(model, words)
-    if example is not None and (figure := drawn(example)):
+    parts = [f"## {model.__name__}", markdown(words), parameters(model), f"*Source:* {linked(model.source)}"]
+    shown = SHOWN.get(model.name) or {"": constructed(model, words)}
+    if figure := drawn(shown):
         figure.savefig(folder / f"{model.name}.svg")
-        parts.append(f"![curve of the example]({model.name}.svg)\n\n*The model of the example,* `{example!r}`")
+        parts.append(f"![what {model.__name__} does]({model.name}.svg)\n\n*Shown:* {caption(shown)}")
     return "\n\n".join(parts)
+
+
+def caption(shown: dict[str, Any]) -> str:
+    """What a figure shows, in the words that make it."""
+    return "; ".join(f"{escaped(label)} `{call(model)}`".strip() for label, model in shown.items())
+
+
+def call(model: Any) -> str:
+    """The call that makes a model, without what has its default."""
+    plain = type(model)()
+    numbers = {field["name"]: getattr(model, field["name"]) for field in model.fields}
+    told = {name: value for name, value in numbers.items() if value != getattr(plain, name)}
+    words = (f"{name}={call(value) if hasattr(value, 'fields') else said(value)}" for name, value in told.items())
+    return f"{type(model).__name__}({', '.join(words)})"
+
+
+def said(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(said(number) for number in value)}]"
+    return f"{value:g}" if isinstance(value, float) else repr(value)
+
+
+# ---- Words -----------------------------------------------------------------------------------------------------------
 
 
 def markdown(words: str) -> str:
@@ -54,34 +86,82 @@ def markdown(words: str) -> str:
 
 def block(text: str) -> str:
     if text.startswith(".. math::"):
-        return f"$$\n{' '.join(text.removeprefix('.. math::').split())}\n$$"
+        return "\n\n".join(f"$$\n{line}\n$$" for line in lines(" ".join(text.removeprefix(".. math::").split())))
     if text.startswith(">>>"):
         return f"```pycon\n{text}\n```"
-    return escaped(text)
+    return linked(text)
+
+
+def lines(formula: str) -> list[str]:
+    """A formula, broken after commas where it is wider than the page; subscripts that are words stand upright."""
+    upright = re.sub(r"_\{([a-z]{2,})\}", r"_{\\mathrm{\1}}", formula)
+    found: list[str] = []
+    for part in re.split(r"(?<=,)\s*\\q?quad\s*", upright):
+        if found and width(found[-1]) + SPACE + width(part) <= LINE:
+            found[-1] += rf" \qquad {part}"
+        else:
+            found.append(part)
+    return found
+
+
+def width(formula: str) -> int:
+    """About how many characters a formula is wide: a command is one, unless it only arranges others."""
+    words = re.sub(r"\\(operatorname|mathrm|text|frac|sqrt|left|right|dot|;|,)", "", formula)
+    return len(re.sub(r"[\s{}_^]", "", re.sub(r"\\[a-zA-Z]+", "x", words)))
 
 
 def escaped(text: str) -> str:
-    """Plain words as Markdown shows them; what stands in double backticks stays code."""
-    return re.sub(r"(``.*?``)|([\\`*_\[\]<>#|$])", lambda found: found[1] or "\\" + found[2], text)
+    """Plain words as Markdown shows them; what stands in backticks stays code."""
+    return re.sub(r"(``.*?``|`[^`]+`)|([\\`*_\[\]<>#|$])", lambda found: found[1] or "\\" + found[2], text)
+
+
+def linked(text: str) -> str:
+    """The same, with errata as links."""
+    return re.sub(r"\bE-[RPAT]\d+\b", lambda found: f"[{found[0]}](../errata.md#{ANCHORS[found[0]]})", escaped(text))
+
+
+def anchors() -> dict[str, str]:
+    """Where each erratum stands on its page, as MyST names headings."""
+    headings = re.findall(r"^### ((E-\w+) .*)$", ERRATA.read_text(encoding="utf-8"), re.MULTILINE)
+    plain = {number: re.sub(r"\$[^$]*\$|[*]", "", title) for title, number in headings}
+    return {number: re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for number, title in plain.items()}
+
+
+ANCHORS = anchors()
+
+# ---- Parameters ------------------------------------------------------------------------------------------------------
 
 
 def parameters(model: Model) -> str:
     rows = ["| parameter | unit | default | limits | meaning |", "|---|---|---|---|---|"]
     for field in model.fields:
-        name = field["name"]
-        cells = (field["unit"] or "—", default(model, name), limits(model, name), field["doc"])
-        rows.append(f"| `{name}` | " + " | ".join(escaped(cell) for cell in cells) + " |")
+        cells = (field["unit"] or "—", default(model, field["name"]), limits(model, field), field["doc"])
+        rows.append(f"| `{field['name']}` | " + " | ".join(escaped(cell) for cell in cells) + " |")
     return "\n".join(rows)
 
 
 def default(model: Model, name: str) -> str:
     value = getattr(model(), name)
-    return type(value).__name__ if hasattr(value, "fields") else str(value)
+    if hasattr(value, "fields"):
+        return type(value).__name__
+    if isinstance(value, tuple):
+        return "none" if not value else ", ".join(f"{number:g}" for number in value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def limits(model: Model, name: str) -> str:
-    found = re.search(rf"^{name}: .*, in ([(\[].*[)\]]); default", model.__doc__ or "", re.MULTILINE)
-    return found[1] if found else "—"
+def limits(model: Model, field: dict[str, Any]) -> str:
+    """Limits that do not break, or what may be chosen."""
+    if field["kind"] == "part":
+        kinds = set((field["options"] or {}).values())
+        families = [family.replace("_", " ") for family, members in _core.families.items() if kinds == set(members.values())]
+        return f"any {families[0]}" if families else "—"
+    if field["options"]:
+        return ", ".join(field["options"])
+    found = re.search(rf"^{field['name']}: .*, in ([(\[].*[)\]]); default", model.__doc__ or "", re.MULTILINE)
+    return found[1].replace(" ", "\N{NO-BREAK SPACE}") if found else "—"
+
+
+# ---- What the figures show -------------------------------------------------------------------------------------------
 
 
 def constructed(model: Model, words: str) -> Any:
@@ -94,88 +174,253 @@ def constructed(model: Model, words: str) -> Any:
     return None
 
 
-# ---- Figures: whatever can be drawn of a model, by what it can be asked ----------------------------------------------
+def preisach(density: Any) -> sw.hysteresis.Preisach:
+    return sw.hysteresis.Preisach(density=density)
 
 
-def drawn(model: Any) -> Figure | None:
-    curves = [draw for verbs, draw in CURVES.items() if all(hasattr(model, verb) for verb in verbs)]
-    if not curves:
+# In place of the example, where others show more; several are drawn together.
+SHOWN: dict[str, dict[str, Any]] = {
+    "fourier": {"": sw.kinematic_error.Fourier(order=[1, 2, 4], amplitude=[5e-5, 2e-4, 4e-5], phase=[0.0, 0.3, 1.1])},
+    "misalignment": {
+        f"{name}:": sw.kinematic_error.Misalignment(
+            housing_eccentricity=20e-6, generator_eccentricity=10e-6, generator_direction=0.9, combine=name
+        )
+        for name in ("single", "max", "mean")
+    },
+    "position_dependent": {"": sw.friction.PositionDependent()},
+    "load_dependent": {
+        "": sw.friction.LoadDependent(
+            driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.3
+        )
+    },
+    "cyclic": {"": sw.friction.Cyclic(law=sw.friction.Stribeck(), order=[1, 2], amplitude=[0.1, 0.3], phase=[0.0, 1.0])},
+    "thermal": {
+        "": sw.friction.Thermal(
+            law=sw.friction.Coulomb(coulomb=0.03, breakaway=0.04, viscous=2e-3), dry_fall=0.005, viscous_fall=0.025
+        )
+    },
+    "bouc_wen": {
+        f"n = {n:g}:": sw.hysteresis.BoucWen(stiffness=1000.0, saturation=0.5, sharpness=n, shape=0.5) for n in (1.0, 2.0, 8.0)
+    },
+    "power_density": {
+        f"p = {p:g}:": preisach(sw.hysteresis.PowerDensity(limit=1e-3, saturation=1.0, exponent=p)) for p in (2.0, 4.0, 8.0)
+    },
+    "grid_density": {
+        "symmetric:": preisach(sw.hysteresis.GridDensity(limit=1e-3, weight=[0.2, 0.3, 0.2])),
+        "not symmetric:": preisach(sw.hysteresis.GridDensity(limit=1e-3, weight=[0.6, 0.1, 0.0])),
+    },
+    "preisach": {"": preisach(sw.hysteresis.PowerDensity(limit=1e-3, saturation=1.0, exponent=2.0))},
+    "regimes": {"": sw.hysteresis.Regimes()},
+    "multi_compliance": {"": sw.stiffness.MultiCompliance()},
+}
+
+
+def drawn(shown: dict[str, Any]) -> Figure | None:
+    """Every panel that has something to show of the models, side by side."""
+    models = [(label.rstrip(":"), model) for label, model in shown.items() if model is not None]
+    panels = [panel for draw in PANELS if models for panel in draw(models)]
+    if not panels:
         return None
-    figure = Figure(figsize=(4.5 * len(curves), 3.0), layout="constrained")
-    for draw, axes in zip(curves, figure.subplots(1, len(curves), squeeze=False)[0], strict=True):
-        draw(model, axes)
+    size = (4.6 if len(panels) == 1 else 8.6 if len(panels) == 2 else 10.5, 3.0)
+    figure = Figure(figsize=size, layout="constrained")
+    for panel, axes in zip(panels, figure.subplots(1, len(panels), squeeze=False)[0], strict=True):
+        axes.locator_params(axis="x", nbins=6)
+        panel(axes)
         axes.grid(alpha=0.3)
+        if any(not line.get_label().startswith("_") for line in axes.lines):
+            axes.legend(fontsize="small")
     return figure
 
 
-def error(model: Any, axes: Axes) -> None:
-    angle = np.linspace(0.0, 2.0 * np.pi, 721)
-    axes.plot(np.degrees(angle), 1e3 * model.error(angle))
-    axes.set(xlabel="input angle [deg]", ylabel="error at the output [mrad]")
+Shown = Sequence[tuple[str, Any]]  # label and model
 
+
+def having(*verbs: str) -> Callable[[Callable[[Shown], list[Draw]]], Callable[[Shown], list[Draw]]]:
+    """Panels for models that can be asked all of these."""
+
+    def only(draw: Callable[[Shown], list[Draw]]) -> Callable[[Shown], list[Draw]]:
+        return lambda models: draw(models) if all(hasattr(models[0][1], verb) for verb in verbs) else []
+
+    return only
+
+
+def prefixed(largest: float, unit: str) -> tuple[float, str]:
+    """A factor and a unit with prefix, in which the largest value is easily read."""
+    for factor, prefix in ((1.0, ""), (1e3, "m"), (1e6, "µ")):
+        if largest * factor >= 0.1:
+            return factor, prefix + unit
+    return 1e9, "n" + unit
+
+
+# ---- Kinematic error -------------------------------------------------------------------------------------------------
+
+TURN = np.linspace(0.0, 2.0 * np.pi, 721)
+
+
+@having("error", "slope")
+def error(models: Shown) -> list[Draw]:
+    """Over a turn, under no load and some; those of very different size in panels of their own."""
+    size = {label: float(np.ptp(model.error(TURN))) for label, model in models}
+    large = [(label, model) for label, model in models if size[label] > 1e-2 * max(size.values())]
+    small = [(label, model) for label, model in models if size[label] <= 1e-2 * max(size.values())]
+
+    def together(some: Shown) -> Draw:
+        def draw(axes: Axes) -> None:
+            factor, unit = prefixed(max(size[label] for label, _ in some), "rad")
+            for label, model in some:
+                sensitive = getattr(model, "load_sensitivity", 0.0) > 0.0
+                axes.plot(np.degrees(TURN), factor * model.error(TURN), label=label or ("without load" if sensitive else None))
+                if sensitive:
+                    axes.plot(np.degrees(TURN), factor * model.error(TURN, torque=10.0), label="under 10 N.m")
+            axes.set(xlabel="input angle [deg]", ylabel=f"error at the output [{unit}]", xticks=np.arange(0, 361, 60))
+
+        return draw
+
+    return [together(some) for some in (large, small) if some]
+
+
+@having("error", "seed")
+def spectrum(models: Shown) -> list[Draw]:
+    """Over 512 turns, after which the default band repeats."""
+
+    def draw(axes: Axes) -> None:
+        turns, points = 512, 128
+        angle = 2.0 * np.pi * np.arange(turns * points) / points
+        amplitude = 2.0 * np.abs(np.fft.rfft(models[0][1].error(angle))) / len(angle)
+        factor, unit = prefixed(float(amplitude.max()), "rad")
+        order = np.arange(len(amplitude)) / turns
+        axes.plot(order, factor * amplitude, linewidth=0.8)
+        axes.set(xlabel="order [1]", ylabel=f"amplitude [{unit}]", xlim=(0.0, 1.2 * models[0][1].highest_order))
+
+    return [draw]
+
+
+# ---- Friction --------------------------------------------------------------------------------------------------------
 
 LOAD = 10.0  # N.m, under which friction is drawn that depends on it
+SLOW = 1.0  # rad/s, at which friction is drawn over something else
 
 
-def steady(model: Any, axes: Axes) -> None:
-    fastest = 10.0 * getattr(model, "stribeck_speed", 1.0)
+def asked(model: Any, name: str, otherwise: float) -> float:
+    """A parameter of a law, or of the one that it modulates."""
+    law = model if hasattr(model, name) else getattr(model, "law", model)
+    return float(getattr(law, name, otherwise))
+
+
+@having("steady")
+def steady(models: Shown) -> list[Draw]:
+    law = models[0][1]
+    fastest = 10.0 * asked(law, "stribeck_speed", 1.0)
     slowest = 1e-9 * fastest
-    for speed in (np.linspace(-fastest, -slowest, 401), np.linspace(slowest, fastest, 401)):
-        axes.plot(speed, model.steady(speed, load=LOAD), color="C0")
-    if model.set_valued:
-        axes.plot([0.0, 0.0], [-model.hold(-1.0, load=LOAD), model.hold(load=LOAD)], color="C0")
-    axes.set(xlabel="speed [rad/s]", ylabel="steady friction [N.m]")
+    loaded = law.steady(SLOW, load=LOAD) != law.steady(SLOW)
+
+    def draw(axes: Axes) -> None:
+        for speed in (np.linspace(-fastest, -slowest, 401), np.linspace(slowest, fastest, 401)):
+            axes.plot(speed, law.steady(speed, load=LOAD), color="C0")
+        if law.set_valued:
+            axes.plot([0.0, 0.0], [-law.hold(-1.0, load=LOAD), law.hold(load=LOAD)], color="C0")
+        under = f" under {LOAD:g} N.m" if loaded else ""
+        axes.set(xlabel="speed [rad/s]", ylabel=f"steady friction{under} [N.m]")
+
+    return [draw]
 
 
-def over_contact(model: Any, axes: Axes) -> None:
+@having("steady")
+def over_contact(models: Shown) -> list[Draw]:
     """Over whatever the law depends on besides the speed."""
+    law = models[0][1]
+    fast = 10.0 * asked(law, "stribeck_speed", 1.0)
     ranges = {
-        "angle": (np.linspace(0.0, getattr(model, "domain_end", 2.0 * np.pi), 721), "angle [rad]"),
-        "load": (np.linspace(-LOAD, LOAD, 401), "transmitted torque [N.m]"),
-        "temperature": (np.linspace(273.15, 333.15, 121), "temperature [K]"),
+        "angle": (np.linspace(0.0, getattr(law, "domain_end", 2.0 * np.pi), 721), "angle [rad]", (SLOW,)),
+        "load": (np.linspace(-LOAD, LOAD, 401), "transmitted torque [N.m]", (SLOW, -SLOW)),
+        "temperature": (np.linspace(273.15, 333.15, 121), "temperature [K]", (SLOW, fast)),
     }
-    for name, (values, label) in ranges.items():
-        friction = model.steady(1.0, **{"load": LOAD, name: values})
-        if np.ptp(friction) > 1e-9 * np.abs(friction).max():
-            axes.plot(values, friction)
-            axes.set(xlabel=label, ylabel="friction at 1 rad/s [N.m]")
-            return
-    axes.set_axis_off()
+
+    def over(name: str) -> Draw:
+        values, label, speeds = ranges[name]
+
+        def draw(axes: Axes) -> None:
+            several = len(speeds) > 1
+            for speed in speeds:
+                friction = law.steady(speed, **({"load": LOAD} | {name: values}))
+                axes.plot(values, friction, label=f"at {speed:g} rad/s" if several else None)
+            axes.set(xlabel=label, ylabel="friction [N.m]" if several else f"friction at {speeds[0]:g} rad/s [N.m]")
+
+        return draw
+
+    def varies(name: str) -> bool:
+        friction = law.steady(SLOW, **({"load": LOAD} | {name: ranges[name][0]}))
+        return bool(np.ptp(friction) > 1e-9 * np.abs(friction).max())
+
+    return [over(name) for name in ranges if varies(name)]
 
 
-def presliding(model: Any, axes: Axes) -> None:
-    """Slow cycles about three times as wide as the contact bends before it slips."""
-    bend = 1e-9
-    stiffness = model.trace([0.0, 1.0], [bend, bend], load=LOAD)[-1] / bend
-    reach = 3.0 * model.steady(1e-3, load=LOAD) / stiffness
-    time = np.linspace(0.0, 125.0, 2001)
-    angle = reach * np.sin(0.1 * time)
-    axes.plot(1e3 * angle, model.trace(time, np.gradient(angle, time), load=LOAD))
-    axes.set(xlabel="angle [mrad], cycled slowly", ylabel="friction [N.m]")
+@having("steady", "State")
+def presliding(models: Shown) -> list[Draw]:
+    """Slow cycles about three times as wide as the contact bends before it slips, if it bends."""
+    law = models[0][1]
+    bend, slow = 1e-9, 1e-9
+    bent, slipping = float(law.trace([0.0, 1.0], [bend, bend], load=LOAD)[-1]), float(law.steady(slow, load=LOAD))
+    if law.set_valued or not 0.0 < bent < 0.1 * slipping:
+        return []
+    reach = 3.0 * slipping * bend / bent
+
+    def draw(axes: Axes) -> None:
+        time = np.linspace(0.0, 125.0, 2001)
+        angle = reach * np.sin(0.1 * time)
+        factor, unit = prefixed(reach, "rad")
+        axes.plot(factor * angle, law.trace(time, np.gradient(angle, time), load=LOAD))
+        axes.set(xlabel=f"angle [{unit}], cycled slowly", ylabel="friction [N.m]")
+
+    return [draw]
 
 
-def tangent(model: Any, axes: Axes) -> None:
-    torque = np.linspace(-1.0, 1.0, 401) * 1.5 * getattr(model, "t2", 50.0)
-    axes.plot(1e3 * model.twist(torque), torque)
-    axes.set(xlabel="twist [mrad]", ylabel="torque [N.m]")
+# ---- Stiffness and hysteresis ----------------------------------------------------------------------------------------
 
 
-def work(model: Any, axes: Axes) -> None:
-    """As wide as the secant falls to a third of what it begins with."""
-    reaches = np.geomspace(1e-6, 1.0, 241)
+@having("tangent")
+def spring(models: Shown) -> list[Draw]:
+    law = models[0][1]
+    torque = np.linspace(-1.0, 1.0, 801) * 1.5 * getattr(law, "t2", 50.0)
+    twist = law.twist(torque)
+    factor, unit = prefixed(float(twist.max()), "rad")
+
+    def torques(axes: Axes) -> None:
+        axes.plot(factor * twist, torque)
+        axes.set(xlabel=f"twist [{unit}]", ylabel="torque [N.m]")
+
+    def slopes(axes: Axes) -> None:
+        axes.plot(torque, 1e-3 * law.tangent(twist))
+        axes.set(xlabel="torque [N.m]", ylabel="stiffness [kN.m/rad]", ylim=(0.0, None))
+
+    return [torques, slopes]
+
+
+@having("work")
+def loop(models: Shown) -> list[Draw]:
+    """A loop so wide that all the models have slipped; of one alone also smaller loops in it."""
+    reach = max(slipped(model) for _, model in models)
+    inner = [0.0, 0.6, 0.2, 0.6, -1.0] if len(models) == 1 else []
+    turns = reach * np.array([0.0, 1.0, -1.0, 1.0, *inner])
+    path = np.concatenate([np.linspace(start, end, 201) for start, end in pairwise(turns)])
+
+    def draw(axes: Axes) -> None:
+        factor, unit = prefixed(reach, "rad")
+        for label, model in models:
+            axes.plot(factor * path, model.trace(path), label=label or None, linewidth=1.2)
+        axes.set(xlabel=f"twist [{unit}]", ylabel="torque [N.m]")
+
+    return [draw]
+
+
+def slipped(model: Any) -> float:
+    """The twist [rad] at which the secant has fallen to a third of what it begins with, but within all that it knows."""
+    if hasattr(model, "lost_motion"):
+        return 0.6 * float(model.lost_motion)
+    reaches = np.geomspace(1e-6, 10.0, 281)
     secant = np.array([model.trace([0.0, reach])[-1] / reach for reach in reaches])
-    reach = reaches[np.argmax(secant < secant.max() / 3.0)]
-    turns = reach * np.array([0.0, 1.0, -1.0, 1.0, 0.25, 0.75, -1.0])
-    path = np.concatenate([np.linspace(start, end, 101) for start, end in pairwise(turns)])
-    axes.plot(1e3 * path, model.trace(path))
-    axes.set(xlabel="twist [mrad]", ylabel="torque [N.m]")
+    known = getattr(getattr(model, "density", None), "limit", reaches[-1])
+    return min(float(reaches[np.argmax(secant < secant.max() / 3.0)]), float(known))
 
 
-CURVES = {
-    ("error",): error,
-    ("steady",): steady,
-    ("steady", "set_valued"): over_contact,
-    ("steady", "State"): presliding,
-    ("tangent",): tangent,
-    ("work",): work,
-}
+PANELS: tuple[Callable[[Shown], list[Draw]], ...] = (error, spectrum, steady, over_contact, presliding, spring, loop)

@@ -60,21 +60,33 @@ void check_bounds(const Drive& drive, const typename Drive::State& x, const Inpu
 /// How many steps pass between two calls of `pause`, which may throw.
 inline constexpr std::size_t steps_between_pauses = 1 << 14;
 
-/// Runs `drive` from `x` and calls record(output) at the end of each step to be kept. Returns the state at the end.
-template <class S, class Record>
-typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, typename AnyPositionDrive<S>::State x,
-                                        const Course& course, Record&& record, const std::function<void(std::size_t)>& pause) {
-    const auto fast = drive.compile();
-    const bool has_bounds = fast.has_bounds();
-    x = fast.consistent(x);
+/// Runs a compiled drive from `x` and calls record(output) at the end of each step to be kept. Returns the state at the end.
+template <class S, class Drive, class Record>
+typename Drive::State run_compiled(const Drive& drive, typename Drive::State x, const Course& course, Record& record,
+                                   const std::function<void(std::size_t)>& pause) {
+    const bool has_bounds = drive.has_bounds();
+    x = drive.consistent(x);
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % steps_between_pauses == 0) pause(i);
         const Interval<S> u = interval<S>(course.inputs + 12 * i);
-        x = step<S>(fast, x, u, S(course.instants[i + 1] - course.instants[i]));
-        if (has_bounds) check_bounds(fast, x, u.end, course.instants[i + 1]);
-        if (course.keep[i]) record(fast.output(x, u.end));
+        x = step<S>(drive, x, u, S(course.instants[i + 1] - course.instants[i]));
+        if (has_bounds) check_bounds(drive, x, u.end, course.instants[i + 1]);
+        if (course.keep[i]) record(drive.output(x, u.end));
     }
     return x;
+}
+
+/// Runs `drive`, with short states if its laws allow it.
+template <class S, class Record>
+typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
+                                        const Course& course, Record&& record, const std::function<void(std::size_t)>& pause) {
+    using State = typename AnyPositionDrive<S>::State;
+    if (is_small<S>(drive)) {
+        const auto fast = drive.template compile<small_friction, small_hysteresis>();
+        using Small = typename decltype(drive.template compile<small_friction, small_hysteresis>())::State;
+        return refilled<State>(run_compiled<S>(fast, refilled<Small>(start), course, record, pause));
+    }
+    return run_compiled<S>(drive.compile(), start, course, record, pause);
 }
 
 }  // namespace strainwave::host

@@ -146,9 +146,12 @@ struct PositionDrive {
                    : "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
     }
 
+    /// Every part as the integrator wants it, with frictions and hysteresis of limited state.
+    template <int most_friction = any_size, int most_hysteresis = any_size>
     constexpr auto compile() const {
-        return PositionDrive<S, decltype(gear.compile()), decltype(compiled(motor)), Control, Load>{gear.compile(), compiled(motor),
-                                                                                                    control, load};
+        const auto parts = gear.template compile<most_friction, most_hysteresis>();
+        using Parts = decltype(gear.template compile<most_friction, most_hysteresis>());
+        return PositionDrive<S, Parts, decltype(compiled(motor)), Control, Load>{parts, compiled(motor), control, load};
     }
 
     using FrictionInput = decltype(Gear{}.friction_input);
@@ -195,12 +198,12 @@ struct PositionDrive {
         Flow flow{};
         const auto mesh = flow.mesh = this->mesh(x, y);
         const auto& at = flow.contacts = contacts(x, y, mesh, u);
-        const Resistance input = resistance(gear.friction_input, y.friction_input, at.input);
-        const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh);
-        const Resistance output = resistance(gear.friction_output, y.friction_output, at.output);
+        Motion& rate = flow.rate;
+        const Resistance input = resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
+        const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
+        const Resistance output = resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
         flow.input_balance = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
         flow.output_balance = mesh.torque - load.torque(output_angle(x, y)) - u.load_torque - output.always;
-        Motion& rate = flow.rate;
         rate.motor = motor.rate(y.motor, voltage, y.input_speed);
         rate.control = control.rate(y.control, reference);
         rate.input_angle = y.input_speed;
@@ -208,9 +211,6 @@ struct PositionDrive {
             moving(at.input, flow.input_balance - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
         rate.output_speed = moving(at.output, flow.output_balance - output.sliding) / inertia_of(load);
-        rate.friction_input = friction::rate(gear.friction_input, y.friction_input, at.input);
-        rate.friction_mesh = friction::rate(gear.friction_mesh, y.friction_mesh, at.mesh);
-        rate.friction_output = friction::rate(gear.friction_output, y.friction_output, at.output);
         return flow;
     }
 
@@ -347,10 +347,12 @@ private:
         S always, sliding;
     };
     template <class Law>
-    static constexpr Resistance resistance(const Law& law, const typename Law::State& x, const Contact& contact) {
-        const S torque = friction::torque(law, x, contact);
-        if (friction::set_valued(law)) return {S(0.0), torque};
-        return {torque, S(0.0)};
+    static constexpr Resistance resistance(const Law& law, const typename Law::State& x, const Contact& contact,
+                                           typename Law::State& rate) {
+        const auto found = friction::response(law, x, contact);
+        rate = found.rate;
+        if (friction::set_valued(law)) return {S(0.0), found.torque};
+        return {found.torque, S(0.0)};
     }
 
     constexpr S input_inertia() const { return inertia_of(motor) + gear.input_inertia; }

@@ -60,15 +60,20 @@ struct Gear {
         visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
     }
 
+    /// Every part as the integrator wants it, with frictions and hysteresis of limited state.
+    template <int most_friction = any_size, int most_hysteresis = any_size>
     constexpr auto compile() const {
+        const auto error = compiled(kinematic_error);
+        const auto noise = compiled(kinematic_noise);
+        const auto memory = compiled<most_hysteresis>(hysteresis);
+        const auto input = compiled<most_friction>(friction_input);
+        const auto mesh = compiled<most_friction>(friction_mesh);
+        const auto output = compiled<most_friction>(friction_output);
         return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), decltype(compiled(kinematic_noise)),
-                    decltype(compiled(stiffness)), decltype(compiled(hysteresis)), decltype(compiled(friction_input)),
-                    decltype(compiled(friction_mesh)), decltype(compiled(friction_output))>{
-            compiled(kinematics),      compiled(kinematic_error),
-            compiled(kinematic_noise), compiled(stiffness),
-            compiled(hysteresis),      damping,
-            compiled(friction_input),  compiled(friction_mesh),
-            compiled(friction_output), input_inertia};
+                    decltype(compiled(stiffness)), decltype(compiled<most_hysteresis>(hysteresis)),
+                    decltype(compiled<most_friction>(friction_input)), decltype(compiled<most_friction>(friction_mesh)),
+                    decltype(compiled<most_friction>(friction_output))>{
+            compiled(kinematics), error, noise, compiled(stiffness), memory, damping, input, mesh, output, input_inertia};
     }
 
     /// How the two shafts stand to each other.

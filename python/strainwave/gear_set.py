@@ -19,7 +19,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar, get_type_hints, overload
 
-from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.files import replacing
@@ -168,7 +167,8 @@ class GearSet:
         >>> GearSet.of(sw.Gear(damping=3.0), name="printed", source="assumed").sources["gear.damping"]
         Entry(source='assumed', spread=None, uncertainty=None)
         """
-        models = {part.name: getattr(model, part.name) for part in _parts(model)} if isinstance(model, PositionDrive) else {"gear": model}
+        whole = isinstance(model, PositionDrive)
+        models = {part.name: getattr(model, part.name) for part in _parts(model)} if whole else {"gear": model}
         _drive(models)  # refuses what is no gear
         return cls(name=name, sources=dict.fromkeys(_places(models), Entry(source)), **models)
 
@@ -330,8 +330,8 @@ def _table(path: str, model: Any, part: _Part) -> _Table:
     of_gear = path == "gear." or part.name == "gear"
     default = getattr(model, part.name)
     idle = not getattr(default, "active", any(getattr(default, p.name) not in (0, ()) for p in _parameters(default)))
-    kinds = part.options or {}
-    return _Table(part.name, path + part.name, kinds, absent=default if of_gear and idle else None, required=of_gear and not idle)
+    absent = default if of_gear and idle else None
+    return _Table(part.name, path + part.name, part.options or {}, absent, required=of_gear and not idle)
 
 
 def _inner(path: str, model: Any) -> list[_Table]:
@@ -627,7 +627,7 @@ def _text(gear_set: GearSet) -> str:
         if text := getattr(gear_set, key):
             document.add(key, text)
     for table, model in _filled(vars(gear_set)):
-        if model == table.absent and all(gear_set.sources[place].source == NOT_GIVEN for place in _numbers(table, model)):
+        if _does_nothing(table, model) and all(gear_set.sources[place].source == NOT_GIVEN for place in _numbers(table, model)):
             continue
         document.add(table.name, _written(table, model, gear_set.sources))
     if gear_set.ratings:
@@ -635,6 +635,12 @@ def _text(gear_set: GearSet) -> str:
         for name, rating in gear_set.ratings.items():
             ratings.add(name, _inline(rating.value, rating.unit, rating))
     return tomlkit.dumps(document)
+
+
+def _does_nothing(table: _Table, model: Any) -> bool:
+    """Whether a table that is left out is read as this model, of a gear without its parts."""
+    absent = table.absent
+    return type(model) is type(absent) and all(getattr(model, p.name) == getattr(absent, p.name) for p in _parameters(model))
 
 
 def _written(table: _Table, model: Any, sources: Mapping[str, Entry]) -> Any:

@@ -155,9 +155,7 @@ def simulate(
     with _progress(progress, len(course.instants) - 1) as shown:
         for number, chunk in enumerate(course.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
-            outputs, state = _core.simulate(
-                drive, state, chunk.instants, excitation.over(chunk), chunk.samples[1:], report
-            )
+            outputs, state = _core.simulate(drive, state, chunk.instants, excitation.over(chunk), chunk.samples[1:], report)
             pieces.append(outputs)
     return _recording(drive, course, np.concatenate(pieces, axis=1), dt)
 
@@ -198,9 +196,7 @@ def simulate_many(
     course = excitation.course(dt, sample)
     first = np.stack([_core.now(drive, drive.rest(), excitation.first()) for drive in drives])
     with _progress(progress, len(drives) * (len(course.instants) - 1)) as shown:
-        outputs = _core.simulate_packed(
-            list(drives), course.instants, excitation.over(course), course.samples[1:], shown
-        )
+        outputs = _core.simulate_packed(list(drives), course.instants, excitation.over(course), course.samples[1:], shown)
     whole = np.concatenate((first, outputs), axis=2)
     return [_recording(drive, course, member, dt) for drive, member in zip(drives, whole, strict=True)]
 
@@ -225,9 +221,7 @@ def derivatives(
     """
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, samples)
-    outputs, slopes = _core.differentiate(
-        drive, course.instants, excitation.over(course), course.samples[1:], list(numbers)
-    )
+    outputs, slopes = _core.differentiate(drive, course.instants, excitation.over(course), course.samples[1:], list(numbers))
     first, first_slopes = _core.now_derivatives(drive, excitation.first(), list(numbers))
     run = _recording(drive, course, np.concatenate((first, outputs), axis=1), dt)
     return run, np.concatenate((first_slopes, slopes), axis=2)

@@ -20,7 +20,7 @@ from tests.strategies import built, gears
 
 Array = NDArray[np.float64]
 
-DURATION = 0.05  # s
+DURATION, SAMPLE = 0.05, 5e-4  # s
 PLACES = ("friction_input", "friction_mesh", "friction_output")
 FAMILIES = {
     "kinematics": "kinematics",
@@ -72,8 +72,8 @@ def changed(part: str, law: Any) -> PositionDrive:
 
 
 def resolved(drive: PositionDrive, command: sw.scenario.Scenario, dt: float = 1e-4, **others: Any) -> sw.Recording:
-    """A run at the largest step from `dt` on that resolves it. Where no such step is long enough, or a part is not valid, none."""
-    while dt > 1e-7:
+    """A run at the largest step from `dt` on that resolves it. Where none down to a microsecond does, or a part is not valid: none."""
+    while dt > 1e-6:
         try:
             return sw.simulate(drive, command, dt, **others)
         except FloatingPointError:
@@ -90,6 +90,8 @@ def error_slope(gear: sw.Gear, run: sw.Recording) -> Array:
     slope = gear.kinematic_error.slope(run["input_angle"])
     if not gear.kinematic_noise.active:
         return slope
+    if gear.kinematic_noise.load_sensitivity == gear.kinematic_noise.speed_sensitivity == 0.0:
+        return slope + gear.kinematic_noise.slope(run["input_angle"])
     torque = gear.stiffness.torque(run["transmission_error"] - gear.kinematic_error.error(run["input_angle"]))
     places = zip(run["input_angle"].tolist(), torque.tolist(), run["input_speed"].tolist(), strict=True)
     return slope + np.array([gear.kinematic_noise.slope(angle, torque=t, speed=v) for angle, t, v in places])
@@ -121,7 +123,7 @@ def check_friction(gear: sw.Gear, run: sw.Recording) -> None:
 @given(data=st.data())
 def test_a_gear_with_any_law_at_any_place_stays_finite_and_no_friction_drives(part: str, model: Any, data: st.DataObject) -> None:
     drive = changed(part, data.draw(built(model)))
-    run = resolved(drive, data.draw(commands), load_torque=data.draw(loads), temperature=data.draw(temperatures))
+    run = resolved(drive, data.draw(commands), sample=SAMPLE, load_torque=data.draw(loads), temperature=data.draw(temperatures))
     assert all(np.isfinite(run[name]).all() for name, _, _ in _core.outputs)
     assert run["time"][-1] == DURATION
     check_friction(drive.gear, run)
@@ -132,7 +134,7 @@ def test_a_gear_with_any_law_at_any_place_stays_finite_and_no_friction_drives(pa
 def test_any_gear_stays_finite_and_no_friction_drives(
     gear: sw.Gear, command: sw.scenario.Scenario, load: float | sw.scenario.Scenario, temperature: float
 ) -> None:
-    run = resolved(DRIVE.replace(gear=gear), command, load_torque=load, temperature=temperature)
+    run = resolved(DRIVE.replace(gear=gear), command, sample=SAMPLE, load_torque=load, temperature=temperature)
     assert all(np.isfinite(run[name]).all() for name, _, _ in _core.outputs)
     check_friction(gear, run)
 

@@ -144,7 +144,7 @@ def test_time_running_backwards_is_refused(tmp_path: Path) -> None:
         (("3e4", '"stiff"'), ("mine.toml", "k", "stiff")),
         (("k =", "kk ="), ("mine.toml", "kk")),
         (("[stiffness]", "[stifness]"), ("mine.toml", "stifness")),
-        (('"linear"', '"quadratic"'), ("mine.toml", "quadratic", '"linear" or "cubic" or "three_segment"')),
+        (('"linear"', '"quadratic"'), ("mine.toml", "quadratic", '"linear" or "piecewise" or "three_segment" or "cubic"')),
         ((', unit = "N.m/rad"', ""), ("mine.toml", "k", "unit")),
         (('"N.m/rad"', '"N.m"'), ("mine.toml", "k", "N.m/rad")),
         (("[stiffness]", "[stiffness"), ("mine.toml", "line 5")),

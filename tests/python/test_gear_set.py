@@ -9,12 +9,15 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from dataclasses import asdict
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 import pytest
 import strainwave as sw
+import tomlkit
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from strainwave import _core
@@ -163,10 +166,15 @@ def test_a_path_is_what_has_a_folder_or_ends_in_toml(folder: Path) -> None:
 
 # What is refused
 
-STIFFNESS = 'write model = "linear" or "cubic" or "three_segment"'
+SPRINGS = '"linear" or "piecewise" or "three_segment" or "cubic" or "multi_compliance"'
+STIFFNESS = f"write model = {SPRINGS}"
+LAWS = (
+    '"viscous" or "coulomb" or "stribeck" or "position_dependent" or "lugre" or "maxwell_slip_friction" or "load_dependent" '
+    'or "torque_efficiency"'
+)
 PARTS = (
-    "name, maker, note, ratings, kinematics, kinematic_error, stiffness, hysteresis, friction_input, friction_output, "
-    "gear, motor, control, load"
+    "name, maker, note, ratings, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, friction_input, "
+    "friction_mesh, friction_output, gear, motor, control, load"
 )
 HYSTERESIS = """
 [hysteresis]
@@ -177,6 +185,26 @@ TEETH = """model = "strain_wave"
 flexspline_teeth = { value = 40, source = "counted" }
 circular_spline_teeth = { value = 42, source = "counted" }
 fixed = "circular_spline"
+"""
+THERMAL = """
+[friction_mesh]
+model = "thermal"
+dry_fall = { value = 0.0, unit = "1/K", source = "assumed" }
+viscous_fall = { value = 25e-3, unit = "1/K", source = "two runs" }
+reference_temperature = { value = 20.0, unit = "degC", source = "thermometer" }
+"""
+VISCOUS = """
+[friction_mesh.law]
+model = "viscous"
+viscous = { value = 0.5, unit = "N.m.s/rad", source = "run" }
+"""
+GRID = """
+[hysteresis]
+model = "preisach"
+[hysteresis.density]
+model = "grid_density"
+limit = { value = 3.0, unit = "arcmin", source = "loop" }
+weight = { value = [1.0, 2.0, 1.0], unit = "N.m", source = "loop" }
 """
 WHOLE = BASE.replace('model = "plain_ratio"\nreduction = { value = 20.0, source = "counted" }\n', TEETH)
 
@@ -194,7 +222,7 @@ REFUSED = {
         'my.toml load = 3 must be a table; write [load] with model = "inertia" or "pendulum"'
     ),
     BASE[: BASE.index("[stiffness]")]: (
-        'my.toml stiffness is missing; write [stiffness] with model = "linear" or "cubic" or "three_segment"'
+        f"my.toml stiffness is missing; write [stiffness] with model = {SPRINGS}"
     ),
     # models
     with_line('model = "cubic"', ""): f"my.toml [stiffness] has no model; {STIFFNESS}",
@@ -283,6 +311,51 @@ REFUSED = {
     BASE + HYSTERESIS + "[{ value = 0.2, unit = 'N.m', source = 'x' }, { value = 0.2, unit = 'rad', source = 'x' }]": (
         'my.toml [hysteresis] breakaway: cannot convert "rad" to "N.m"'
     ),
+    # models inside models
+    BASE + THERMAL: (
+        f'my.toml [friction_mesh] law is missing; write [friction_mesh.law] with model = {LAWS} or "cyclic"'
+    ),
+    BASE + THERMAL + "law = 3.0\n": (
+        f'my.toml [friction_mesh] law = 3.0 must be a table; write [friction_mesh.law] with model = {LAWS} or "cyclic"'
+    ),
+    BASE + THERMAL + VISCOUS.replace('model = "viscous"', ""): (
+        f'my.toml [friction_mesh.law] has no model; write model = {LAWS} or "cyclic"'
+    ),
+    BASE + THERMAL + VISCOUS.replace('"viscous"', '"thermal"'): (
+        f'my.toml [friction_mesh.law] model = "thermal" is not known; write model = {LAWS} or "cyclic"'
+    ),
+    BASE + THERMAL + VISCOUS.replace("viscous =", "viscosity ="): (
+        "my.toml [friction_mesh.law] viscosity: not a parameter of viscous; it has viscous"
+    ),
+    BASE + THERMAL + VISCOUS.replace("unit = ", "units = "): (
+        "my.toml [friction_mesh.law] viscous: an entry has no units; "
+        'write viscous = { value = …, unit = "N.m.s/rad", source = "…" }'
+    ),
+    BASE + THERMAL + VISCOUS.replace("N.m.s/rad", "N.m"): (
+        'my.toml [friction_mesh.law] viscous: cannot convert "N.m" to "N.m.s/rad"'
+    ),
+    BASE + THERMAL + VISCOUS.replace("0.5", "-0.5"): (
+        "my.toml [friction_mesh.law] viscous.viscous = -0.5 N.m.s/rad must lie in [0, inf)"
+    ),
+    BASE + THERMAL.replace("20.0", "-273.15") + VISCOUS: (
+        "my.toml [friction_mesh] thermal.reference_temperature = 0 K must lie in (0, inf)"
+    ),
+    BASE + THERMAL + "[friction_mesh.law]\nmodel = 'cyclic'\norder = { value = [2.0], source = 'x' }\n": (
+        "my.toml [friction_mesh.law] amplitude is missing; "
+        'write amplitude = { value = […], source = "…" }, or [] for none'
+    ),
+    BASE + GRID.replace("density]", "densities]"): (
+        "my.toml [hysteresis] densities: not a parameter of preisach; it has density"
+    ),
+    BASE + GRID.replace("2.0, ", ""): (
+        "my.toml [hysteresis.density] grid_density: weight must have 1, 3, 6, 10, ... elements, n (n + 1) / 2"
+    ),
+    BASE + GRID.replace("2.0", "-2.0"): (
+        "my.toml [hysteresis.density] grid_density.weight[1] = -2 N.m must lie in [0, inf)"
+    ),
+    BASE + GRID.replace('"grid_density"', '"grid"'): (
+        'my.toml [hysteresis.density] model = "grid" is not known; write model = "power_density" or "grid_density"'
+    ),
     # ratings
     BASE + "[ratings]\npeak_torque = 4.0": (
         "my.toml [ratings] peak_torque = 4.0 must be a table; "
@@ -356,27 +429,97 @@ def test_a_name_not_in_the_catalogue_is_answered_with_those_near_it(name: str, n
         load(name)
 
 
-def every_parameter() -> list[Any]:
-    return [
-        pytest.param(family, model, field, id=f"{model.name}.{field['name']}")
-        for family in ("stiffness", "hysteresis", "kinematic_error", "kinematics", "motor", "control")
-        for model in _core.families[family].values()
-        for field in model.fields
-    ]
+TABLES = ("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", "motor", "control")
+PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 
-@pytest.mark.parametrize(("family", "model", "parameter"), every_parameter())
-def test_no_parameter_of_any_model_may_be_left_out(folder: Path, family: str, model: Any, parameter: dict[str, Any]) -> None:
+def filled(model: Any) -> Any:
+    """A model in which no sequence is empty: one without numbers might do nothing, and need no table."""
+    return model(**{field["name"]: [1.0] for field in model.fields if field["kind"] == "sequence"})
+
+
+def with_law(**parts: Any) -> sw.drives.PositionDrive:
+    """A drive with these parts, of its gear or its own."""
     drive = sw.drives.PositionDrive()
-    in_gear = hasattr(drive.gear, family)
-    drive = drive.replace(gear=drive.gear.replace(**{family: model()})) if in_gear else drive.replace(**{family: model()})
-    save(drive, "my.toml", name="x", source="x")
-    lines = Path("my.toml").read_text().splitlines()
-    table = lines.index(f"[{family}]")
-    row = next(i for i in range(table, len(lines)) if lines[i].startswith(f"{parameter['name']} = "))
-    Path("my.toml").write_text("\n".join(lines[:row] + lines[row + 1 :]))
-    with pytest.raises(ValueError, match=rf"^my\.toml \[{family}\] {parameter['name']} is missing; write "):
-        load("my.toml")
+    of_gear = {name: parts.pop(name) for name in list(parts) if hasattr(drive.gear, name)}
+    return drive.replace(gear=drive.gear.replace(**of_gear), **parts)
+
+
+def every_model() -> Iterator[tuple[tuple[str, ...], Any, dict[str, Any]]]:
+    """Every model in every table: the keys to it, its class, and the part of a drive that holds it."""
+    families = _core.families
+    for table in TABLES:
+        yield from (((table,), model, {table: filled(model)}) for model in families[table].values())
+    for place in PLACES:
+        for model in families["friction"].values():
+            yield (place,), model, {place: filled(model)}
+            if model is not sw.friction.Thermal:
+                yield (place, "law"), model, {place: sw.friction.Thermal(law=filled(model))}
+                if model is not sw.friction.Cyclic:
+                    cyclic = sw.friction.Cyclic(law=filled(model), order=[2.0], amplitude=[0.5], phase=[1.0])
+                    yield (place, "law", "law"), model, {place: sw.friction.Thermal(law=cyclic)}
+    for model in families["density"].values():
+        yield ("hysteresis", "density"), model, {"hysteresis": sw.hysteresis.Preisach(density=filled(model))}
+
+
+MODELS = [pytest.param(keys, model, part, id=f"{'.'.join(keys)}-{model.name}") for keys, model, part in every_model()]
+
+
+@pytest.mark.parametrize(("keys", "model", "part"), MODELS)
+def test_no_parameter_of_any_model_may_be_left_out(
+    folder: Path, keys: tuple[str, ...], model: Any, part: dict[str, Any]
+) -> None:
+    save(with_law(**part), "whole.toml", name="x", source="x")
+    for parameter in model.fields:
+        document = tomlkit.parse(Path("whole.toml").read_text(encoding="utf-8"))
+        table: Any = document
+        for key in keys:
+            table = table[key]
+        del table[parameter["name"]]
+        Path("my.toml").write_text(tomlkit.dumps(document), encoding="utf-8")
+        header = re.escape(f"[{'.'.join(keys)}]")
+        with pytest.raises(ValueError, match=rf"^my\.toml {header} {parameter['name']} is missing; write "):
+            load("my.toml")
+
+
+@pytest.mark.parametrize(("keys", "model", "part"), MODELS)
+def test_every_model_is_written_and_read_in_every_table(
+    folder: Path, keys: tuple[str, ...], model: Any, part: dict[str, Any]
+) -> None:
+    """Each number with a source of its own, so that none is taken for another."""
+    drive = with_law(**part)
+    one = GearSet.of(drive, name="x", source="x")
+    gear_set = one.replace(sources={path: Entry(path, uncertainty=float(i)) for i, path in enumerate(one.sources)})
+    gear_set.save("my.toml")
+    table: Any = tomllib.loads(Path("my.toml").read_text(encoding="utf-8"))
+    for key in keys:
+        table = table[key]
+    assert table["model"] == model.name
+    again = GearSet.read("my.toml")
+    assert again == gear_set
+    assert repr(again.drive) == repr(drive)
+
+
+def test_models_inside_models_are_read_with_units_and_sources(folder: Path) -> None:
+    Path("my.toml").write_text(BASE + THERMAL + VISCOUS + GRID, encoding="utf-8")
+    gear_set = GearSet.read("my.toml")
+    law = sw.friction.Thermal(law=sw.friction.Viscous(viscous=0.5), viscous_fall=0.025, reference_temperature=293.15)
+    assert gear_set.gear.friction_mesh == law
+    assert gear_set.gear.hysteresis.density.limit == pytest.approx(math.radians(0.05), rel=1e-15)
+    assert gear_set.gear.hysteresis.density.weight == (1.0, 2.0, 1.0)
+    assert gear_set.sources["gear.friction_mesh.law.viscous"] == Entry("run")
+    assert gear_set.sources["gear.friction_mesh.viscous_fall"] == Entry("two runs")
+    assert gear_set.sources["gear.hysteresis.density.weight[2]"] == Entry("loop")
+
+
+def test_an_idle_part_that_is_given_is_written_and_one_not_given_is_not(folder: Path) -> None:
+    Path("my.toml").write_text(BASE)
+    gear_set = GearSet.read("my.toml")
+    gear_set.save("again.toml")
+    assert tomllib.loads(Path("again.toml").read_text()).keys() == {"name", "kinematics", "stiffness"}
+    source = {"gear.friction_mesh.viscous": Entry("assumed: none")}
+    gear_set.replace(sources={**gear_set.sources, **source}).save("again.toml")
+    assert tomllib.loads(Path("again.toml").read_text()).keys() == {"name", "kinematics", "stiffness", "friction_mesh"}
 
 
 # The value
@@ -510,19 +653,27 @@ def test_a_set_written_and_read_is_equal_bit_for_bit(tmp_path: Path, gear_set: G
 def test_every_number_is_written_with_unit_and_source(tmp_path: Path, gear_set: GearSet) -> None:
     gear_set.save(tmp_path / "set.toml")
     document = tomllib.loads((tmp_path / "set.toml").read_text(encoding="utf-8"))
-    found = {}
-    for table, content in document.items():
-        for key, entry in content.items() if isinstance(content, dict) and table != "ratings" else ():
-            for one in entry if isinstance(entry, list) else [entry]:
-                if isinstance(one, dict):
-                    assert one.keys() >= {"value", "unit", "source"}
-                    found[table, key] = one
-    owner = {"gear": gear_set.gear, "motor": gear_set.motor, "control": gear_set.control, "load": gear_set.load}
+    document.pop("ratings", None)
+    found = dict(entries_of(document))
     for path in gear_set.sources:
-        *_, table, key = path.split("[")[0].split(".")
-        model = owner.get(table) or getattr(gear_set.gear, table)
-        (unit,) = [field["unit"] for field in model.fields if field["name"] == key]
-        assert found[table, key]["unit"] == unit
+        whole = path.split("[")[0]
+        part, _, key = whole.rpartition(".")
+        (unit,) = [field["unit"] for field in attrgetter(part)(gear_set).fields if field["name"] == key]
+        entry = found[whole.removeprefix("gear.") if whole.count(".") > 1 else whole]
+        assert entry.keys() >= {"value", "unit", "source"}
+        assert entry["unit"] == unit
+
+
+def entries_of(content: Any, path: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Every entry of a document by its path, those of a list by that of the list."""
+    if isinstance(content, list):
+        for one in content:
+            yield from entries_of(one, path)
+    elif isinstance(content, dict) and "value" in content:
+        yield path, content
+    elif isinstance(content, dict):
+        for key, inner in content.items():
+            yield from entries_of(inner, f"{path}.{key}".removeprefix("."))
 
 
 @untimed
@@ -577,7 +728,9 @@ def test_a_catalogue_set_is_read_number_by_number(name: str, tmp_path: Path) -> 
                 path = f"{'' if table == 'gear' else 'gear.'}{table}.{key}" + (f"[{place}]" if place != "" else "")
                 assert gear_set.sources[path] == Entry(entry["source"], entry.get("spread"))
                 counted += 1
-    assert counted == len(gear_set.sources)
+    not_given = {path.rpartition(".")[0] for path, entry in gear_set.sources.items() if entry == Entry("not given")}
+    assert not_given == {"gear.kinematic_noise", "gear.friction_mesh"}
+    assert counted == sum(entry != Entry("not given") for entry in gear_set.sources.values())
     gear_set.save(tmp_path / "copy.toml")
     assert GearSet.read(tmp_path / "copy.toml") == gear_set
 
@@ -615,9 +768,14 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", DOCUMENT, re.DOTALL)
 
 
-def test_the_example_of_the_page_is_read_as_it_is_meant(folder: Path) -> None:
-    (example,) = blocks("toml")
-    Path("mine.toml").write_text(example, encoding="utf-8")
+def write_examples() -> None:
+    """The files of the page, each under the name its first line gives."""
+    for example in blocks("toml"):
+        Path(example.partition("\n")[0].removeprefix("# ")).write_text(example, encoding="utf-8")
+
+
+def test_the_examples_of_the_page_are_read_as_they_are_meant(folder: Path) -> None:
+    write_examples()
     gear_set = GearSet.read("mine.toml")
     assert gear_set.gear.kinematics.ratio == -20.0
     assert gear_set.gear.stiffness.a1 == pytest.approx(12.5 * 180 / math.pi, rel=1e-15)
@@ -625,17 +783,24 @@ def test_the_example_of_the_page_is_read_as_it_is_meant(folder: Path) -> None:
     assert gear_set.motor.inertia == pytest.approx(5e-6, rel=1e-15)
     run = sw.simulate(gear_set.drive, sw.scenario.step(amplitude=3.0, duration=0.1))
     assert run["input_angle"][-1] > 1.0
+    varying = load("varying.toml")
+    law = sw.friction.Coulomb(coulomb=0.02, breakaway=0.025, viscous=1e-4)
+    assert varying.friction_input.law.law == law
+    assert varying.friction_input.steady(1.0, angle=math.pi / 4) == pytest.approx(1.1 * law.steady(1.0), rel=1e-12)
+    assert varying.friction_mesh.steady(1.0, load=5.0) == pytest.approx(1.0, rel=1e-12)
+    assert varying.kinematic_noise.amplitude == pytest.approx(math.radians(0.1 / 60.0), rel=1e-14)
+    assert varying.hysteresis.trace([0.0, math.radians(0.1)])[-1] == pytest.approx(0.2, rel=1e-12)
 
 
 def test_the_code_of_the_page_runs(folder: Path) -> None:
-    (example,) = blocks("toml")
-    Path("mine.toml").write_text(example, encoding="utf-8")
+    write_examples()
     names: dict[str, Any] = {}
     for code in blocks("python"):
         exec(code, names)
     assert load("new.toml") == load("mine.toml")
     assert GearSet.read("copy.toml") == GearSet.read("mine.toml")
     assert load("changed.toml").friction_input.coulomb == 0.0213
+    assert names["varying"].sources["gear.friction_input.law.amplitude[0]"] == Entry("slow run, one turn")
 
 
 def test_the_errors_of_the_page_are_those_one_sees() -> None:

@@ -265,8 +265,7 @@ def test_drives_side_by_side_and_derivatives_see_mesh_and_temperature_too() -> N
         size = np.abs(alone[name]).max()
         assert size > 0.0
         assert np.abs(dual[name] - alone[name]).max() <= 1e-12 * size, name
-        # set-valued friction is stepped to its events by one run alone; side by side in smooth midpoint steps
-        assert np.abs(packed[name] - alone[name]).max() <= PACKED * size, name
+        assert np.abs(packed[name] - alone[name]).max() <= 1e-12 * size, name
 
 
 def test_noise_is_the_error_of_its_seed() -> None:
@@ -309,7 +308,7 @@ def test_a_drive_that_leaves_the_domain_of_a_part_is_refused_with_part_numbers_a
 def test_the_place_that_is_out_of_its_domain_is_named_also_inside_another_law(place: str) -> None:
     law = sw.friction.PositionDependent(quadratic=0.0, linear=0.0, constant=0.0, domain_start=-1.0, domain_end=0.5)
     wrapped = sw.friction.Thermal(law=sw.friction.Cyclic(law=law))
-    with pytest.raises(ValueError, match=rf"^gear\.{place}: angle = 0\.5\d* rad lies outside of \[-1, 0\.5\] rad; .*; first at"):
+    with pytest.raises(ValueError, match=rf"^gear\.{place}: angle = 0\.5\d* rad lies outside of \[-1, 0\.5\] rad; "):
         sw.simulate(open_loop(**{place: wrapped}), sw.scenario.constant(12.0, 1.0))
 
 

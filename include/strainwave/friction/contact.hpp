@@ -69,6 +69,31 @@ constexpr S torque(const Law& law, const typename Law::State& x, const Contact<S
         return law.torque(x, contact);
 }
 
+/// What a law answers to a contact: torque that opposes the motion, and the rate of its state.
+template <class S, class State>
+struct Response {
+    S torque;
+    State rate;
+};
+
+/// Torque and rate at once.
+template <class Law, class S>
+constexpr Response<S, typename Law::State> response(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+    if constexpr (Modulation<Law>) {
+        const auto [torque, rate] = response(law.law, x, law.modulated(contact));
+        return {torque, rate};
+    } else if constexpr (requires { law.response(x, contact); }) {
+        return law.response(x, contact);
+    } else if constexpr (requires { law.torque(x, contact, x); }) {
+        const auto rate = law.rate(x, contact);
+        return {law.torque(x, contact, rate), rate};
+    } else if constexpr (Bristle<Law>) {
+        return {law.torque(x, contact), law.rate(x, contact)};
+    } else {
+        return {law.torque(x, contact), {}};
+    }
+}
+
 template <class Law>
 constexpr bool set_valued(const Law& law) {
     if constexpr (Modulation<Law>)

@@ -59,8 +59,10 @@ struct LuGre {
     constexpr State settled(const Contact<S>& contact) const { return {sign(contact.speed) * reach(contact)}; }
 
     /// Torque that opposes the motion, in N.m, for the bristle as it stands.
-    constexpr S torque(const State& x, const Contact<S>& contact) const {
-        return bristle_stiffness * x.deflection + damping(contact.speed) * rate(x, contact).deflection +
+    constexpr S torque(const State& x, const Contact<S>& contact) const { return torque(x, contact, rate(x, contact)); }
+    /// The same, its rate being known.
+    constexpr S torque(const State& x, const Contact<S>& contact, const State& rate) const {
+        return bristle_stiffness * x.deflection + damping(contact.speed) * rate.deflection +
                contact.viscous * viscous * contact.speed;
     }
 
@@ -74,7 +76,7 @@ struct LuGre {
 
     /// No motion bends the bristle beyond max(F_s, F_c) / sigma_0, whatever the history: an exact invariant.
     constexpr State confined(const State& x, const Contact<S>& contact) const {
-        const S limit = max(contact.dry_most * max(breakaway, coulomb) / bristle_stiffness, reach(contact));
+        const S limit = max(contact.dry_most * max(breakaway, coulomb) / bristle_stiffness, least_reach(contact.speed));
         return {clip(x.deflection, -limit, limit)};
     }
 
@@ -103,9 +105,12 @@ private:
     /// How far steady sliding bends the bristle [rad]. Without any dry friction it still bends a little, so that it forgets
     /// within 2^-100 s: slower than never, and finite in every scalar.
     constexpr S reach(const Contact<S>& contact) const {
-        constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s; a power of two, for exact division
         const S torque = contact.dry * stribeck_curve(coulomb, breakaway, stribeck_speed, contact.speed);
-        return max(torque / bristle_stiffness, max(abs(contact.speed) / S(fastest), S(smallest)));
+        return max(torque / bristle_stiffness, least_reach(contact.speed));
+    }
+    static constexpr S least_reach(const S& speed) {
+        constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s; a power of two, for exact division
+        return max(abs(speed) / S(fastest), S(smallest));
     }
 
     /// The largest y^r (F_s / (F_c + D y) - 1) over y = exp(-(v/v_s)^2) in [0, 1], with D = F_s - F_c, r = (v_s/v_d)^2. It lies at

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,8 @@ Array = NDArray[np.float64]
 FOLDS = 20  # a table is cut into at most so many parts, each predicted once from the others
 KINETIC = ("coulomb", "viscous")
 FALLING = ("coulomb", "breakaway", "stribeck_speed", "viscous")
-LAWS = friction.Viscous, friction.Coulomb, friction.Stribeck, friction.LuGre  # that a table of torque over speed can tell
+
+Law = friction.Viscous | friction.Coulomb | friction.Stribeck | friction.LuGre  # what a table of torque over speed can tell
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,8 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     Raises:
         ValueError: fewer than four speeds, or a law of the gear that depends on more than speed
     """
-    if not isinstance(gear.friction_input, LAWS):
-        names = [law.name for law in LAWS]
+    if not isinstance(gear.friction_input, Law):
+        names = [law.name for law in get_args(Law)]
         raise ValueError(
             f"a friction table cannot be fitted to {gear.friction_input.name} friction; "
             f"it can to {', '.join(names[:-1])} or {names[-1]}, so start from a gear with one of these at the input"
@@ -76,7 +78,7 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     speeds = len(np.unique(table.speed))
     if speeds < 4:
         raise ValueError(f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}")
-    candidates = [_straight(table, gear)]
+    candidates = [_straight(table, gear, gear.friction_input)]
     straight = candidates[0].fit.gear.friction_input
     if isinstance(straight, friction.Stribeck | friction.LuGre) and speeds > len(FALLING) + 1:
         candidates.append(_falling(table, gear, straight))
@@ -84,13 +86,13 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates)))
 
 
-def _straight(table: FrictionTable, gear: Gear) -> Candidate:
+def _straight(table: FrictionTable, gear: Gear, known: Law) -> Candidate:
     """Coulomb and viscous friction, written into the law of the gear."""
     line = np.polynomial.polynomial.polyfit(np.abs(table.speed), np.abs(table.torque), 1)
     coulomb, viscous = max(float(line[0]), 1e-3 * float(np.abs(table.torque).max())), max(float(line[1]), 0.0)
     start = gear.replace(friction_input=friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=viscous))
     candidate = _candidate("Coulomb and viscous", table, start, KINETIC)
-    law = friction.Coulomb() if isinstance(gear.friction_input, friction.Viscous) else gear.friction_input
+    law = friction.Coulomb() if isinstance(known, friction.Viscous) else known
     ratio = law.breakaway / law.coulomb if isinstance(law, friction.Coulomb) and law.coulomb > 0.0 else 1.0
     written = law.replace(coulomb=candidate.coulomb, breakaway=ratio * candidate.coulomb, viscous=candidate.viscous)
     return replace(candidate, fit=replace(candidate.fit, model=gear.replace(friction_input=written)))

@@ -99,6 +99,7 @@ def _refined(start: _Start, loop: TorsionLoop, training: NDArray[np.bool_]) -> F
         slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < 0.99 * half * k]
         if len(slipping) == len(fitted):
             return found
+        assert isinstance(found.gear.stiffness, Spring)
         spring = _stiffened(found.gear.stiffness, sum(k for k, f in fitted if f >= 0.99 * half * k))
         elements = hysteresis.MaxwellSlip(stiffness=[k for k, _ in slipping], breakaway=[f for _, f in slipping])
 

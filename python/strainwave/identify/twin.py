@@ -85,7 +85,7 @@ class Contradiction:
         path: the parameter
         unit: its unit
         earlier: value in the starting set
-        earlier_source: where that came from
+        known: where that came from, and how well it is known
         measured: value that the measurement gives
         sigma: its standard deviation
         distance: difference over the uncertainty of both [1]
@@ -95,11 +95,16 @@ class Contradiction:
     path: str
     unit: str
     earlier: float
-    earlier_source: str
+    known: Entry
     measured: float
     sigma: float
     distance: float
     source: str
+
+    @property
+    def earlier_source(self) -> str:
+        """Where the value in the starting set came from."""
+        return self.known.source
 
 
 @dataclass(frozen=True)
@@ -342,11 +347,13 @@ def _compared(
     distance = abs(estimate.value - earlier) / doubt if doubt > 0.0 else np.inf
     if distance <= CONTRADICTION:
         return None
-    return Contradiction(path, unit, earlier, entry.source, estimate.value, estimate.sigma, float(distance), evidence.source)
+    return Contradiction(path, unit, earlier, entry, estimate.value, estimate.sigma, float(distance), evidence.source)
 
 
 def _compared_springs(start: GearSet, estimate: Estimate, evidence: Evidence) -> Contradiction | None:
-    """Springs of different kinds, compared by their stiffness at zero twist, which is the first parameter of each."""
-    first = f"gear.stiffness.{start.gear.stiffness.fields[0]['name']}"
-    earlier = start.gear.stiffness.tangent(0.0)
+    """Springs of different kinds, compared by their stiffness at zero twist, if that is the first parameter of the earlier."""
+    name = start.gear.stiffness.fields[0]["name"]
+    earlier, first = start.gear.stiffness.tangent(0.0), f"gear.stiffness.{name}"
+    if earlier != getattr(start.gear.stiffness, name):
+        return None
     return _compared(f"gear.{estimate.path}", earlier, estimate.unit, start.sources[first], estimate, evidence)

@@ -345,13 +345,12 @@ def _names(gear_set: GearSet, paths: list[str]) -> str:
 
 
 def _contradiction(twin: Twin, found: Contradiction) -> dict[str, str]:
-    entry = twin.start.sources[found.path]
     part, name = _words(_split(found.path)[0]), _name(twin.gear_set, found.path)
     return {
         "title": name if name.startswith(part) else f"{part}: {name}",
         "path": found.path,
         "unit": unit(found.unit),
-        "earlier": _known(found.earlier, entry),
+        "earlier": _known(found.earlier, found.known),
         "earlier_source": found.earlier_source,
         "measured": uncertain(found.measured, found.sigma),
         "source": found.source,

@@ -156,7 +156,7 @@ UNITS: dict[str, dict[str, str | None]] = {
     "kinematic_error": {"order": "1", "amplitude": "rad", "phase": "rad"},
     "friction_input": {
         "coulomb": "N.m", "breakaway": "N.m", "stribeck_speed": "rad/s",
-        "bristle_stiffness": "N.m/rad", "bristle_damping": "N.m.s/rad", "viscous": "N.m.s/rad",
+        "bristle_stiffness": "N.m/rad", "bristle_damping": "N.m.s/rad", "viscous": "N.m.s/rad", "damping_fading": "s/rad",
     },
     "friction_output": {"viscous": "N.m.s/rad"},
     "gear": {"damping": "N.m.s/rad", "input_inertia": "kg.m2"},

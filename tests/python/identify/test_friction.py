@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 import strainwave as sw
@@ -47,6 +49,28 @@ def test_no_fall_is_made_up_from_noise() -> None:
         table = FrictionTable(speed, truth.steady(speed) + noise)
         names.append(fit_friction(table, sw.Gear(friction_input=sw.friction.LuGre()))[0].name)
     assert names.count("Coulomb and viscous") >= 8
+
+
+def test_nothing_is_said_of_the_passivity_of_laws_tried_on_the_way() -> None:
+    """The law of the gear and the one found are passive; a fast fall of the same bristle would not be."""
+    law = sw.friction.LuGre(coulomb=0.09, breakaway=0.095, stribeck_speed=2.0, bristle_damping=8e-3, viscous=7e-4)
+    with pytest.warns(sw.PassivityWarning):
+        law.replace(coulomb=0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = fit_friction(TABLE_2, sw.Gear(friction_input=law))[0].fit.gear.friction_input
+        found.check()
+
+
+@pytest.mark.parametrize(
+    "law",
+    [sw.friction.MaxwellSlipFriction(), sw.friction.LoadDependent(), sw.friction.Thermal(), sw.friction.Cyclic()],
+    ids=lambda law: law.name,
+)
+def test_a_law_that_a_table_cannot_tell_is_refused(law: sw.friction.Thermal) -> None:
+    message = f"^a friction table cannot be fitted to {law.name} friction; it can to viscous, coulomb, stribeck or lugre, "
+    with pytest.raises(ValueError, match=message):
+        fit_friction(TABLE_2, sw.Gear(friction_input=law))
 
 
 def test_error_is_that_of_speeds_left_out() -> None:

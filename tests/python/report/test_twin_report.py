@@ -104,7 +104,23 @@ def contradicted(start: GearSet) -> sw.Twin:
     return sw.twin(replace(start, sources=sources), friction=friction_table(), sources={"friction": "table of today"})
 
 
-@pytest.fixture(scope="module", params=["from_friction", "from_torsion", "from_log", "contradicted"])
+@pytest.fixture(scope="module")
+def complete(start: GearSet) -> sw.Twin:
+    """A gear with every kind of part, models inside models too."""
+    losses = sw.friction.LoadDependent(driving_forward=0.1, driving_reverse=0.1)
+    gear = start.gear.replace(
+        kinematic_noise=sw.kinematic_error.Stochastic(amplitude=1e-5, seed=7),
+        hysteresis=sw.hysteresis.Preisach(density=sw.hysteresis.GridDensity(limit=1e-3, weight=[1.0, 2.0, 1.0])),
+        friction_mesh=sw.friction.Thermal(law=sw.friction.Cyclic(law=losses, order=[2.0], amplitude=[0.1], phase=[0.0])),
+        friction_output=sw.friction.PositionDependent(cosine=[1e-3, 2e-3]),
+    )
+    return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
+
+
+EACH = ["from_friction", "from_torsion", "from_log", "contradicted", "complete"]
+
+
+@pytest.fixture(scope="module", params=EACH)
 def each(request: pytest.FixtureRequest) -> sw.Twin:
     found: sw.Twin = request.getfixturevalue(request.param)
     return found
@@ -226,6 +242,18 @@ def test_whatever_is_not_identified_is_listed_with_its_reason(each: sw.Twin, htm
             assert re.sub(r"\b(\w)_(\w)\b", r"\1\2", verdict.why) in page  # symbols are set with a subscript
 
 
+def test_a_model_inside_a_model_has_its_own_rows_and_neither_is_absent(complete: sw.Twin) -> None:
+    html = twin_report(complete)
+    parts = [cell.text for cell in section(html, "parameters").find("th", **{"class": "part"})]
+    for name in ("Friction mesh", "Friction mesh, law", "Friction mesh, law, law", "Hysteresis", "Hysteresis, density"):
+        model: object = complete.gear_set.gear
+        for part in name.lower().replace(" ", "_").split(",_"):
+            model = getattr(model, part)
+        law = (type(model).__doc__ or "").partition("\n")[0]
+        assert f"{name} {law}" in parts
+    assert "not in the model" not in section(html, "unknown").text
+
+
 def test_a_part_that_the_model_lacks_is_said_to_be_absent() -> None:
     found = published_twin()
     assert not any("kinematic_error" in path for path in found.gear_set.sources)
@@ -267,6 +295,16 @@ def test_a_contradiction_of_friction_is_drawn_as_two_data_sets(contradicted: sw.
     assert {"starting set", "measured", "fitted to the table"} <= set(labels)
     assert 'id="contradictions"' not in twin_report(from_friction)
     assert "No contradiction found" in twin_report(from_friction)
+
+
+def test_a_spring_of_another_kind_is_contradicted_by_its_first_stiffness(start: GearSet) -> None:
+    known = Entry("torsion rig of 2019", uncertainty=10.0)
+    found = sw.twin(replace(start, sources={**start.sources, "gear.stiffness.k1": known}), torsion=torsion_loop())
+    (contradiction,) = [found for found in found.contradictions if "stiffness" in found.path]
+    assert contradiction.path == "gear.stiffness.k"
+    page = section(twin_report(found), "contradictions").text
+    assert "31 000 ± 10" in page
+    assert "torsion rig of 2019" in page
 
 
 # ---- Experiments -----------------------------------------------------------------------------------------------------
