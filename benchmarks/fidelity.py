@@ -124,6 +124,36 @@ def best_fit(name: str, spring: Any, starts: Sequence[Any], loop: TorsionLoop, t
     return Score(name, numbers, fitted, kept)
 
 
+def spring_scores(loop: TorsionLoop) -> list[Score]:
+    """All kinds of spring, in parallel with four Maxwell elements; errors relative to the span of the torque."""
+    training = kept_back(len(loop.twist))
+    half, span = 0.5 * float(np.ptp(loop.twist)), float(np.ptp(loop.torque))
+    secant = 0.5 * span / half
+    st, soft = sw.stiffness, 0.5 * secant
+    springs: dict[str, Any] = {
+        "Linear": st.Linear(k=soft),
+        "Piecewise": st.Piecewise(k1=soft, k2=soft, knee=0.5 * half),
+        "ThreeSegment": st.ThreeSegment(k1=soft, k2=1.2 * soft, k3=1.5 * soft, t1=0.1 * span, t2=0.25 * span),
+        "Cubic": st.Cubic(a1=soft, a3=soft / half**2),
+        "MultiCompliance": st.MultiCompliance(
+            flexspline_stiffness=2.0 * soft,
+            flexspline_hardening=0.5 / span,
+            wave_generator_stiffness=2.0 * soft,
+            wave_generator_hardening=0.5 / span,
+            reduction=1.0,
+        ),
+    }
+    elements = hysteresis_starts(half, span, secant)["MaxwellSlip, 4"][0]
+    scores = []
+    for name, spring in springs.items():
+        free = [path for path in paths("stiffness", spring) + paths("hysteresis", elements) if "reduction" not in path]
+        bounded = isinstance(spring, st.MultiCompliance)  # in its twist, which the steps of a fit need not know
+        solve = ranged_fit if bounded else exact_fit
+        numbers, fitted, kept = solve(sw.Gear(stiffness=spring, hysteresis=elements), loop, free, training)
+        scores.append(Score(name, numbers, fitted / span, kept / span))
+    return scores
+
+
 def ranged(hysteresis: Any) -> bool:
     """Whether a law counts the twist from where it was virgin, so that the zero of the twist is one of its numbers."""
     return "twist" in {field["name"] for field in hysteresis.State.fields}
@@ -136,7 +166,7 @@ def exact_fit(gear: sw.Gear, loop: TorsionLoop, free: Sequence[str], training: N
 
 
 def ranged_fit(gear: sw.Gear, loop: TorsionLoop, free: Sequence[str], training: NDArray[np.bool_]) -> tuple[int, float, float]:
-    """The same with differences in place of derivatives, since the product has none by the range of a law."""
+    """The same with differences in place of derivatives, for laws that know their range; outside it is as good as nothing."""
     from scipy.optimize import least_squares as solve
 
     parameters = _core.parameters(gear)
@@ -151,8 +181,11 @@ def ranged_fit(gear: sw.Gear, loop: TorsionLoop, free: Sequence[str], training: 
     def residual(x: Array) -> Array:
         numbers[places] = np.clip(x[:-2] * size[:-2], low, high)
         model = _core.with_numbers(gear, numbers.tolist())
-        path = loop.path(x[-1] * half)
-        return np.asarray(model.trace(path)[-len(loop.twist) :] + x[-2] * span - loop.torque)
+        try:
+            torque = model.trace(loop.path(x[-1] * half))[-len(loop.twist) :]
+        except ValueError:
+            return loop.torque
+        return np.asarray(torque + x[-2] * span - loop.torque)
 
     bounds = np.array([*low, -np.inf, -np.inf]) / size, np.array([*high, np.inf, np.inf]) / size
     found = solve(lambda x: residual(x)[training], start / size, bounds=bounds, diff_step=1e-6)
@@ -482,8 +515,15 @@ def main() -> None:
 
 
 def loops(folder: Path) -> str:
-    several = [torsion_scores(loop, sw.stiffness.Cubic()) for loop in measured_loops(folder)]
-    return loops_table("Six loops of printed cycloidal gears, % of the span of the torque", several)
+    measured = list(measured_loops(folder))
+    title = "Six loops of printed cycloidal gears, % of the span of the torque"
+    tables = (
+        loops_table(
+            f"{title}: hysteresis beside a cubic spring", [torsion_scores(one, sw.stiffness.Cubic()) for one in measured]
+        ),
+        loops_table(f"{title}: springs beside MaxwellSlip, 4", [spring_scores(one) for one in measured]),
+    )
+    return "\n".join(tables)
 
 
 def joints(folder: Path) -> str:

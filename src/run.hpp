@@ -66,6 +66,7 @@ typename Drive::State run_compiled(const Drive& drive, typename Drive::State x, 
                                    const std::function<void(std::size_t)>& pause) {
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
+    if (has_bounds && course.steps > 0) check_bounds(drive, x, interval<S>(course.inputs).start, course.instants[0]);
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % steps_between_pauses == 0) pause(i);
         const Interval<S> u = interval<S>(course.inputs + 12 * i);

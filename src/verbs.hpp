@@ -351,7 +351,7 @@ void over_contacts(nb::class_<M>& c, const char* name, const char* argument, con
         },
         "float", "float");
     define(
-        [at, argument](const M& m, nb::handle x, nb::handle angle, nb::handle load, nb::handle temperature) {
+        [at, argument](const M& m, nb::handle x, nb::handle angle, nb::handle load, nb::handle temperature) -> nb::object {
             const nb::tuple given = nb::make_tuple(numbers(x, argument), numbers(angle, "angle"), numbers(load, "load"),
                                                    numbers(temperature, "temperature"));
             std::vector<Argument> each;
@@ -361,9 +361,10 @@ void over_contacts(nb::class_<M>& c, const char* name, const char* argument, con
             auto [out, y] = like(each[0]);
             for (std::size_t i = 0; i < each[0].size(); ++i)
                 y[i] = at(law, each[0].data()[i], each[1].data()[i], each[2].data()[i], each[3].data()[i]);
-            return out;
+            if (each[0].ndim() == 0) return nb::float_(y[0]);
+            return nb::cast(out);
         },
-        SW_NUMBER_OR, SW_ARRAY);
+        SW_NUMBER_OR, "typing.Any");  // a number where all are numbers, else an array
 }
 
 template <class M>

@@ -62,7 +62,7 @@ class Viscous:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -71,7 +71,7 @@ class Viscous:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -156,7 +156,7 @@ class Coulomb:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -165,7 +165,7 @@ class Coulomb:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -255,7 +255,7 @@ class Stribeck:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -264,7 +264,7 @@ class Stribeck:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -408,7 +408,7 @@ class PositionDependent:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -417,7 +417,7 @@ class PositionDependent:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -531,7 +531,7 @@ class LuGre:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -540,7 +540,7 @@ class LuGre:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -701,7 +701,7 @@ class MaxwellSlipFriction:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -710,7 +710,7 @@ class MaxwellSlipFriction:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -855,7 +855,7 @@ class LoadDependent:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -864,7 +864,7 @@ class LoadDependent:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -965,7 +965,7 @@ class TorqueEfficiency:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -974,7 +974,7 @@ class TorqueEfficiency:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -1105,7 +1105,7 @@ class Cyclic:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -1114,7 +1114,7 @@ class Cyclic:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 
@@ -1241,7 +1241,7 @@ class Thermal:
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
         """
@@ -1250,7 +1250,7 @@ class Thermal:
     def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
     @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
         """
         The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
 

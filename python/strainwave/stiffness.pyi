@@ -92,9 +92,9 @@ class Piecewise:
 
     .. math:: T = k_1 \\delta + k_2 \\operatorname{sgn}(\\delta) \\max(|\\delta| - \\delta_k, 0)
 
-    with delta the twist, k_1 = k1, k_2 = k2, delta_k = knee. Document R prints k_2 as if it were the slope of the second
-    segment; its own formula adds it, so the slope above the knee is k1 + k2 (E-R9). To match a slope K above the knee, set
-    k2 = K - k1. The slope jumps at the knee; at the knee itself it is k1. Leaves out the soft centre and the hysteresis.
+    with delta the twist, k_1 = k1, k_2 = k2, delta_k = knee. Document R's k_2 is an increment: the slope
+    above the knee is k1 + k2 (E-R9), so to match a slope K there set k2 = K - k1. The slope jumps at the knee; at the knee
+    itself it is k1. Leaves out the soft centre and the hysteresis.
 
     >>> from strainwave.stiffness import Piecewise
     >>> spring = Piecewise(k1=8000.0, k2=2000.0, knee=0.001)
