@@ -80,7 +80,7 @@ def drawn(draw: st.DrawFn, model: Any) -> Any:
                 return model(**members)
         except ValueError:
             continue
-    reject()
+    return reject()
 
 
 @cache

@@ -26,7 +26,24 @@ NAMED_ELSEWHERE = {
 # Laws that others begin with, and the defaults of templates.
 BUILT_UPON = {"Stribeck", "Coulomb", "PowerDensity"}
 # Identification fits these laws because their parameters are what the measurements show.
-IDENTIFIED = {"Coulomb", "Viscous", "Stribeck", "LuGre", "MaxwellSlip", "ThreeSegment", "Cubic", "Linear", "Inertia", "Pendulum", "DC", "OpenLoop", "PID", "PlainRatio", "StrainWave", "Fourier"}
+IDENTIFIED = {
+    "Coulomb",
+    "Viscous",
+    "Stribeck",
+    "LuGre",
+    "MaxwellSlip",
+    "ThreeSegment",
+    "Cubic",
+    "Linear",
+    "Inertia",
+    "Pendulum",
+    "DC",
+    "OpenLoop",
+    "PID",
+    "PlainRatio",
+    "StrainWave",
+    "Fourier",
+}
 
 
 def code(text: str) -> str:

@@ -31,7 +31,7 @@ SMOOTH = DRIVE.replace(
         friction_input=DRIVE.gear.friction_input.replace(damping_fading=0.2),
         friction_mesh=sw.friction.Viscous(viscous=0.3),
     ),
-    control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05)
+    control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05),
 )  # no number of it is zero, so that each can be varied by a share of itself
 DRIVES = {
     "bristle": SMOOTH,

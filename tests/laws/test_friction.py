@@ -99,4 +99,3 @@ def test_a_memory_is_odd_in_the_motion(law: Any, speed: list[float]) -> None:
 def test_a_memory_without_motion_stays_as_it_is(law: Any) -> None:
     bent = law.trace([0.0, 0.1, 0.2, 100.0], [1.0, 0.0, 0.0, 0.0], load=1.0)
     assert bent[1] == bent[2] == bent[3]
-

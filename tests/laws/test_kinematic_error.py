@@ -75,4 +75,5 @@ def test_an_error_is_as_exact_after_many_turns_as_its_orders_are(error: Fourier,
         share = float(Fraction(order) * turns % 1)
         expected += amplitude * math.sin(order * angle + phase + 2.0 * math.pi * share)
         rounding += amplitude * (1e-13 + (0.0 if order.is_integer() else 2.0 * math.pi * math.ulp(order * turns)))
-    assert _core.now(drive, turned, np.array([0.0, 0.0, 0.0, 293.15]))[column, 0] == pytest.approx(expected, rel=0.0, abs=rounding)
+    found = _core.now(drive, turned, np.array([0.0, 0.0, 0.0, 293.15]))[column, 0]
+    assert found == pytest.approx(expected, rel=0.0, abs=rounding)

@@ -28,7 +28,8 @@ EVERY_PART = [case for case in EVERY_FIELD if case.values[1]["kind"] == "part"]
 EVERY_CHOICE = [case for case in EVERY_FIELD if case.values[1]["kind"] == "choice"]
 
 any_numbers = st.one_of(
-    [models(family) for family in ("friction", "stiffness", "hysteresis", "kinematic_error", "kinematic_noise")] + [gears, drives]
+    [models(family) for family in ("friction", "stiffness", "hysteresis", "kinematic_error", "kinematic_noise")]
+    + [gears, drives]
 )
 any_value = st.one_of([models(family) for family in _core.families] + [gears, drives])
 every_model = pytest.mark.parametrize("model", EVERY_MODEL, ids=lambda model: model.name)
