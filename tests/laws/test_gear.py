@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from typing import Any
 
@@ -294,12 +295,27 @@ def test_what_can_hold_nothing_without_load_lets_the_drive_rest_and_set_off(
 ) -> None:
     """At rest the hold is nothing, and what it balances is the rounding of a twist: that must not count as motion."""
     free = dict.fromkeys(PLACES, sw.friction.Viscous())
-    drive = DRIVE.replace(gear=GEAR.replace(**free | {place: law}))
+    drive = DRIVE.replace(gear=GEAR.replace(**free | {place: law}), load=sw.loads.Inertia(inertia=0.05))
     run = sw.simulate(drive, sw.scenario.constant(0.0, DURATION), 1e-4, load_torque=load)
     if load == 0.0:
         assert np.abs(run["input_speed"]).max() < 1e-12
     else:
         assert np.abs(run["output_speed"]).max() > 1e-6
+
+
+@pytest.mark.parametrize("law", [sw.friction.Coulomb(), GEAR.friction_mesh], ids=lambda law: law.name)
+@pytest.mark.parametrize("dt", [1e-4, 1e-5])
+def test_an_output_that_breaks_away_takes_along_an_input_that_nothing_holds(law: Any, dt: float) -> None:
+    """The margin of the input is nothing all the while that the output's is used up."""
+    gear = GEAR.replace(friction_input=sw.friction.Viscous(), friction_mesh=law)
+    drive = DRIVE.replace(gear=gear, load=sw.loads.Inertia(inertia=0.05))
+    load = sw.scenario.sine(-20.0, 20.0, DURATION)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, DURATION), dt, load_torque=load)
+    breakaway = math.asin(0.7 / 20.0) / (2.0 * math.pi * 20.0)
+    stuck = run["time"] < breakaway
+    assert not run["output_speed"][stuck].any()
+    assert np.all(run["output_speed"][~stuck][1:20] > 0.0)
+    assert np.abs(run["input_speed"]).max() > 1.0
 
 
 @pytest.mark.parametrize("place", PLACES)
