@@ -56,8 +56,10 @@ void function(nb::class_<M>& c, const char* name, const char* argument, const ch
         doc);
 }
 
+/// An angle in turns and rest. One too large to tell which turn it is in counts as in the first.
 inline Angle<double> turned(double angle) {
     const double turns = std::rint(angle / (2.0 * pi));
+    if (std::abs(turns) > 9007199254740992.0) return {std::remainder(angle, 2.0 * pi), 0.0};
     return {angle - 2.0 * pi * turns, turns};
 }
 

@@ -42,10 +42,12 @@ struct Exponential {
     static constexpr Exponential of(const S& x) {
         const S half = exp(S(-0.5) * x), full = half * half;
         const S c = select(x > S(series_below), x, S(1.0));
-        // phi_1, phi_2, phi_3 of -x: directly where that loses no digits, by their series where it would
-        const S direct = (S(0.5) - (S(1.0) - (S(1.0) - full) / c) / c) / c;
-        const S phi3 = select(x > S(series_below), direct, series(-min(x, S(series_below))));
-        const S phi2 = S(0.5) - x * phi3, phi1 = S(1.0) - x * phi2;
+        // phi_1, phi_2, phi_3 of -x: upwards from phi_1 where x is large, down from the series of phi_3 where it is small; the
+        // other way round each would lose its digits.
+        const auto large = x > S(series_below);
+        const S up1 = (S(1.0) - full) / c, up2 = (S(1.0) - up1) / c, up3 = (S(0.5) - up2) / c;
+        const S phi3 = select(large, up3, series(-min(x, S(series_below))));
+        const S phi2 = select(large, up2, S(0.5) - x * phi3), phi1 = select(large, up1, S(1.0) - x * phi2);
         return {half,
                 full,
                 phi1 / (half + S(1.0)),

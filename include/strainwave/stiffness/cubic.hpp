@@ -42,8 +42,7 @@ struct Cubic {
 
     constexpr S tangent(const S& twist) const { return a1 + S(3.0) * a3 * twist * twist; }
     constexpr S energy(const S& twist) const {
-        const S square = twist * twist;
-        return (S(0.5) * a1 + S(0.25) * a3 * square) * square;
+        return (S(0.5) * a1 * twist + S(0.25) * (a3 * twist) * twist * twist) * twist;
     }
 
 private:
