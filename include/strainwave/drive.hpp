@@ -272,13 +272,12 @@ struct PositionDrive {
         return min(margin_input(x, now), margin_output(x, now));
     }
 
-    /// Sides that stick and are driven beyond what their friction holds set off.
+    /// Sides that stick and are driven beyond what their friction holds set off; one that nothing holds goes as it moves.
     constexpr State released(State x, const Input<S>& u) const {
         const Flow now = flow(x, x.motion, u);
-        const auto input = (x.sliding_input == S(0.0)) & (margin_input(x, now) < S(0.0));
-        const auto output = (x.sliding_output == S(0.0)) & (margin_output(x, now) < S(0.0));
-        x.sliding_input = select(input, sign(now.input_balance), x.sliding_input);
-        x.sliding_output = select(output, sign(now.output_balance), x.sliding_output);
+        if (input_sticks()) x.sliding_input = released(x.sliding_input, x.motion.input_speed, hold_input(now), now.input_balance);
+        if (output_sticks())
+            x.sliding_output = released(x.sliding_output, x.motion.output_speed, hold_output(now), now.output_balance);
         return x;
     }
 
@@ -396,8 +395,15 @@ private:
     }
     static constexpr S margin(bool sticks, const S& sliding, const S& speed, const S& hold, const S& balance) {
         if (!sticks) return S(unbounded);
-        return select(sliding == S(0.0), hold - abs(balance), sliding * speed);
+        return select(sliding == S(0.0), hold - abs(balance), select(hold > S(negligible), sliding * speed, S(unbounded)));
     }
+    static constexpr S released(const S& sliding, const S& speed, const S& hold, const S& balance) {
+        const S way = along(select(speed == S(0.0), balance, speed), S(1.0));
+        const S on = select((sliding == S(0.0)) & (hold < abs(balance)), sign(balance), sliding);
+        return select(hold > S(negligible), on, way);
+    }
+    /// N.m. A friction that holds less has no rest to find: its sense of sliding follows the speed, and no event is looked for.
+    static constexpr double negligible = 1e-12;
 
     /// Which way a side goes at an event: one that stops sticks if its friction holds it.
     template <class Mask>
@@ -409,7 +415,9 @@ private:
     static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
 
     /// The share of its hold that a side which sticks makes use of, with the sense of what it balances.
-    static constexpr S held(const S& balance, const S& hold) { return balance / max(hold, S(smallest)); }
+    static constexpr S held(const S& balance, const S& hold) {
+        return clip(balance / max(hold, S(smallest)), S(-1.0), S(1.0));
+    }
     /// A place that sticks balances its share of what drives its side.
     template <class Law>
     static constexpr S reported(const Law& law, const typename Law::State& x, const Contact& contact, const S& share) {

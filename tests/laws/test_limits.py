@@ -196,9 +196,9 @@ def test_the_loop_of_a_stiff_bristle_loses_what_coulomb_friction_loses(stiffness
     assert end == pytest.approx(back.trace(cycle)[-1], rel=1e-9)
 
 
-@pytest.mark.parametrize("stiffness", [1e3, 1e6, 1e9, 1e12, 1e30])
+@pytest.mark.parametrize("stiffness", [1e3, 1e6, 1e9, 1e12, 1e20])
 def test_the_stiffest_bristle_slides_in_a_drive_as_the_curve_has_it(stiffness: float) -> None:
-    """It follows the speed within G / (sigma_0 v); one step of the integration is up to 1e28 times as long."""
+    """It follows the speed within G / (sigma_0 v); one step of the integration is up to 1e18 times as long."""
     law = LuGre(bristle_stiffness=stiffness, bristle_damping=0.0, viscous=1e-4)
     drive = STEADY_DRIVE.replace(gear=STEADY_DRIVE.gear.replace(friction_input=law))
     run = sw.simulate(drive, sw.scenario.constant(6.0, 0.2)).between(0.1, 0.2)
@@ -379,22 +379,30 @@ def test_noise_is_proportional_to_its_amplitude(seed: int, amplitude: float, sha
     np.testing.assert_allclose(part.error(TURN), share * whole.error(TURN), rtol=1e-14)
 
 
-def test_the_reference_drive_is_the_limit_of_its_gear_with_every_effect() -> None:
-    """Every effect that the reference gear does not have, taken to zero at once: what can stick ends steps at other moments."""
-    gear = DRIVE.gear
-    everything = gear.replace(
-        kinematic_noise=Stochastic(amplitude=0.0, seed=1),
-        friction_input=Thermal(law=Cyclic(law=gear.friction_input), dry_fall=0.02, viscous_fall=0.03),
-        friction_mesh=LoadDependent(),
-        friction_output=Thermal(law=gear.friction_output, viscous_fall=0.03),
-    )
+@pytest.mark.parametrize(
+    "effect",
+    [
+        {"kinematic_noise": Stochastic(amplitude=0.0, seed=1)},
+        {"friction_input": Thermal(law=Cyclic(law=DRIVE.gear.friction_input), dry_fall=0.02, viscous_fall=0.03)},
+        {"friction_output": Thermal(law=Cyclic(law=DRIVE.gear.friction_output), viscous_fall=0.03)},
+    ],
+    ids=lambda effect: "".join(effect),
+)
+def test_an_effect_taken_to_zero_leaves_the_reference_drive_as_it_is(effect: dict[str, Any]) -> None:
+    plain = sw.simulate(DRIVE, command(0.2))
+    rich = sw.simulate(DRIVE.replace(gear=DRIVE.gear.replace(**effect)), command(0.2))
+    for name in plain.names:
+        assert rich[name].tolist() == plain[name].tolist()
+
+
+@pytest.mark.parametrize("law", [LoadDependent(), Coulomb()], ids=lambda law: law.name)
+def test_friction_of_no_size_that_can_stick_only_ends_steps_at_other_moments(law: Any) -> None:
+    rich = DRIVE.replace(gear=DRIVE.gear.replace(friction_mesh=law))
 
     def gap(dt: float) -> float:
-        plain, rich = (
-            sw.simulate(drive, command(0.2), dt, sample=1e-3) for drive in (DRIVE, DRIVE.replace(gear=everything))
-        )
+        one, other = (sw.simulate(drive, command(0.2), dt, sample=1e-3) for drive in (DRIVE, rich))
         names = ("input_angle", "output_angle", "input_speed", "output_speed", "twist", "torque", "current")
-        return max(float(np.abs(rich[name] - plain[name]).max() / np.abs(plain[name]).max()) for name in names)
+        return max(float(np.abs(one[name] - other[name]).max() / np.abs(one[name]).max()) for name in names)
 
-    assert gap(2e-4) < 1e-6
-    assert gap(5e-5) < gap(2e-4) / 10.0
+    assert gap(2e-4) < 1e-5
+    assert gap(2.5e-5) < gap(2e-4) / 8.0
