@@ -37,7 +37,12 @@ inline std::pair<Values, double*> like(const Argument& model) {
 template <class M, class F>
 void function(nb::class_<M>& c, const char* name, const char* argument, const char* doc, F f) {
     c.def(
-        name, [f](const M& self, double x) { return f(self, x); }, nb::arg(argument).noconvert(),
+        name,
+        [f, argument](const M& self, double x) {
+            if (!std::isfinite(x)) throw nb::value_error((std::string(argument) + " = " + shortest(x) + " is not finite").c_str());
+            return f(self, x);
+        },
+        nb::arg(argument).noconvert(),
         nb::sig(kept(std::string("def ") + name + "(self, " + argument + ": float) -> float")), doc);
     c.def(
         name,

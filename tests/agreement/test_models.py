@@ -64,9 +64,7 @@ def check(drive: PositionDrive, others: list[PositionDrive], dt: float, numbers:
     trajectory at all.
     """
     course = {"load_torque": LOAD, "temperature": TEMPERATURE}
-    single, beside = (
-        sw.simulate(each, COMMAND, dt, sample=SAMPLE, **course) for each in (drive, neighbour(drive, 1e-14))
-    )
+    single, beside = (sw.simulate(each, COMMAND, dt, sample=SAMPLE, **course) for each in (drive, neighbour(drive, 1e-14)))
     size = scales(drive, single)
     strayed = np.maximum.accumulate(np.abs(columns(beside) - columns(single)), axis=1)
     assume(np.all(strayed <= 1e-6 * size))

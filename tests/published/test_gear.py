@@ -44,7 +44,7 @@ def energy(run: sw.Recording) -> NDArray[np.float64]:
 
 def distance(run: sw.Recording) -> float:
     """The largest, relative, from the known numbers."""
-    return max(abs(run[name][-1] / number - 1.0) for name, number in KNOWN.items())
+    return max(float(abs(run[name][-1] / number - 1.0)) for name, number in KNOWN.items())
 
 
 def test_after_a_tenth_of_a_second_the_gear_is_where_it_is_known_to_be() -> None:
@@ -64,7 +64,7 @@ def test_the_energy_is_the_known_one_all_the_while() -> None:
 
 
 def test_the_input_and_the_output_pass_energy_to_and_fro() -> None:
-    """What is constant is a sum of parts that change: the constancy shows the reaction of the error on the input (E-R3, E-A5)."""
+    """What is constant is a sum of parts that change: it shows the reaction of the error on the input (E-R3, E-A5)."""
     run = coasting(1e-5)
     stored = SPRING.energy(run["twist"])
     assert np.ptp(stored) > 1e-4 * ENERGY

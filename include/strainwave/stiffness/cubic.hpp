@@ -41,9 +41,7 @@ struct Cubic {
     }
 
     constexpr S tangent(const S& twist) const { return a1 + S(3.0) * a3 * twist * twist; }
-    constexpr S energy(const S& twist) const {
-        return (S(0.5) * a1 * twist + S(0.25) * (a3 * twist) * twist * twist) * twist;
-    }
+    constexpr S energy(const S& twist) const { return (S(0.5) * a1 * twist + S(0.25) * (a3 * twist) * twist * twist) * twist; }
 
 private:
     // Far from the root each step shrinks x by 2/3, near it digits double: enough for a start 1e10 times too far.
