@@ -42,8 +42,7 @@ void function(nb::class_<M>& c, const char* name, const char* argument, const ch
             if (!std::isfinite(x)) throw nb::value_error((std::string(argument) + " = " + shortest(x) + " is not finite").c_str());
             return f(self, x);
         },
-        nb::arg(argument).noconvert(),
-        nb::sig(kept(std::string("def ") + name + "(self, " + argument + ": float) -> float")), doc);
+        nb::arg(argument).noconvert(), nb::sig(kept(std::string("def ") + name + "(self, " + argument + ": float) -> float")), doc);
     c.def(
         name,
         [f, argument](const M& self, nb::handle values) -> nb::object {

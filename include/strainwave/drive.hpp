@@ -415,9 +415,7 @@ private:
     static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
 
     /// The share of its hold that a side which sticks makes use of, with the sense of what it balances.
-    static constexpr S held(const S& balance, const S& hold) {
-        return clip(balance / max(hold, S(smallest)), S(-1.0), S(1.0));
-    }
+    static constexpr S held(const S& balance, const S& hold) { return clip(balance / max(hold, S(smallest)), S(-1.0), S(1.0)); }
     /// A place that sticks balances its share of what drives its side.
     template <class Law>
     static constexpr S reported(const Law& law, const typename Law::State& x, const Contact& contact, const S& share) {
