@@ -272,13 +272,48 @@ struct PositionDrive {
         return min(margin_input(x, now), margin_output(x, now));
     }
 
-    /// Sides that stick and are driven beyond what their friction holds set off; one that nothing holds goes as it moves.
+    /// Sides that stick and are driven beyond what their friction holds set off.
     constexpr State released(State x, const Input<S>& u) const {
         const Flow now = flow(x, x.motion, u);
-        if (input_sticks()) x.sliding_input = released(x.sliding_input, x.motion.input_speed, hold_input(now), now.input_balance);
-        if (output_sticks())
-            x.sliding_output = released(x.sliding_output, x.motion.output_speed, hold_output(now), now.output_balance);
+        const auto set_off = [](const S& sliding, const S& hold, const S& balance) {
+            return select((sliding == S(0.0)) & (hold < abs(balance)), sign(balance), sliding);
+        };
+        if (input_sticks()) x.sliding_input = set_off(x.sliding_input, hold_input(now), now.input_balance);
+        if (output_sticks()) x.sliding_output = set_off(x.sliding_output, hold_output(now), now.output_balance);
         return x;
+    }
+
+    /// The state `dt` [s] after `x`, at `end` but for what moves: its speeds are those that friction which can stick lets the two
+    /// sides reach under the torques of `now`, a side that its friction brings to rest sticking.
+    constexpr State arriving(const State& x, const Motion& end, const Flow& now, const S& dt) const {
+        State y = x;
+        y.motion = end;
+        const auto input_friction = [&](const S& sense) {
+            const Contact mesh = now.contacts.mesh.pushed(along(now.mesh.per_input, sense));
+            return sliding(gear.friction_input, x.motion.friction_input, now.contacts.input.pushed(sense)) +
+                   sliding(gear.friction_mesh, x.motion.friction_mesh, mesh) * now.mesh.per_input;
+        };
+        const auto output_friction = [&](const S& sense) {
+            return sliding(gear.friction_output, x.motion.friction_output, now.contacts.output.pushed(sense));
+        };
+        const S hold_input = input_sticks() ? this->hold_input(now) : S(0.0);
+        const S hold_output = output_sticks() ? this->hold_output(now) : S(0.0);
+        const Arrival input =
+            arrival(input_sticks(), x.sliding_input, x.motion.input_speed * input_inertia(), now.input_balance * dt,
+                    hold_input * dt, [&](const S& sense) { return input_friction(sense) * dt; });
+        const Arrival output =
+            arrival(output_sticks(), x.sliding_output, x.motion.output_speed * inertia_of(load), now.output_balance * dt,
+                    hold_output * dt, [&](const S& sense) { return output_friction(sense) * dt; });
+        y.sliding_input = input.sliding;
+        y.sliding_output = output.sliding;
+        y.motion.input_speed = input.momentum / input_inertia();
+        y.motion.output_speed = output.momentum / inertia_of(load);
+        const S half = S(0.5) * dt, inverse = gear.kinematics.inverse_ratio();
+        y.motion.input_angle = x.motion.input_angle + half * (x.motion.input_speed + y.motion.input_speed);
+        y.motion.transmission_error =
+            x.motion.transmission_error +
+            half * (inverse * (x.motion.input_speed + y.motion.input_speed) - (x.motion.output_speed + y.motion.output_speed));
+        return y;
     }
 
     /// At an event: the side whose margin is used up stops, or breaks away, or turns round.
@@ -380,11 +415,35 @@ private:
     /// The largest torque that holds the input against what drives it, and likewise the output.
     constexpr S hold_input(const Flow& now) const {
         const S push = sign(now.input_balance), per_input = now.mesh.per_input;
-        return friction::hold(gear.friction_input, now.contacts.input.pushed(push)) +
-               abs(per_input) * friction::hold(gear.friction_mesh, now.contacts.mesh.pushed(along(per_input, push)));
+        const S held = friction::hold(gear.friction_input, now.contacts.input.pushed(push)) +
+                       abs(per_input) * friction::hold(gear.friction_mesh, now.contacts.mesh.pushed(along(per_input, push)));
+        return max(held, S(negligible));
     }
     constexpr S hold_output(const Flow& now) const {
-        return friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_balance)));
+        const S held = friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_balance)));
+        return max(held, S(negligible));
+    }
+
+    /// How a side moves after an impulse.
+    struct Arrival {
+        S momentum, sliding;
+    };
+    /// A side of some momentum under a `push` [N.m.s] and the impulse of its friction, which a side at rest must overcome `hold`
+    /// to set off against.
+    template <class Friction>
+    static constexpr Arrival arrival(bool sticks, const S& sliding, const S& momentum, const S& push, const S& hold,
+                                     const Friction& friction) {
+        const S free = momentum + push;
+        if (!sticks) return {free, sliding};
+        const S way = sign(free), left = free - friction(way);
+        const auto rests = (hold >= abs(free)) & !(sliding * free > S(0.0));
+        const auto onward = !(S(0.0) >= left * way);
+        const auto moves = onward & !rests;
+        return {select(moves, left, S(0.0)), select(moves, way, S(0.0))};
+    }
+    template <class Law>
+    static constexpr S sliding(const Law& law, const typename Law::State& x, const Contact& contact) {
+        return friction::set_valued(law) ? friction::torque(law, x, contact) : S(0.0);
     }
 
     constexpr S margin_input(const State& x, const Flow& now) const {
@@ -395,14 +454,10 @@ private:
     }
     static constexpr S margin(bool sticks, const S& sliding, const S& speed, const S& hold, const S& balance) {
         if (!sticks) return S(unbounded);
-        return select(sliding == S(0.0), hold - abs(balance), select(hold > S(negligible), sliding * speed, S(unbounded)));
+        return select(sliding == S(0.0), hold - abs(balance), sliding * speed);
     }
-    static constexpr S released(const S& sliding, const S& speed, const S& hold, const S& balance) {
-        const S way = along(select(speed == S(0.0), balance, speed), S(1.0));
-        const S on = select((sliding == S(0.0)) & (hold < abs(balance)), sign(balance), sliding);
-        return select(hold > S(negligible), on, way);
-    }
-    /// N.m. A friction that holds less has no rest to find: its sense of sliding follows the speed, and no event is looked for.
+    /// N.m. What a side that can stick holds at the least: less is the rounding of its balance, to which it would set off and stop
+    /// without end.
     static constexpr double negligible = 1e-12;
 
     /// Which way a side goes at an event: one that stops sticks if its friction holds it.

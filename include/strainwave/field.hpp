@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/array.hpp>
+#include <strainwave/math.hpp>
 
 /// Parameters are written once: a model lists its members here, and Python, files, fits, reports and docs read the list.
 namespace strainwave {
@@ -142,6 +143,15 @@ constexpr X shaped(const Array<S, size_of<S, X>>& scalars) {
     X::fields(state, collect);
     for (int i = 0; i < scalars.size(); ++i) *to[i] = scalars[i];
     return state;
+}
+
+/// Of two states, in each lane the first where the mask holds.
+template <class S, Described X, class Mask>
+constexpr X chosen(const Mask& mask, const X& first, const X& second) {
+    auto scalars = flattened<S>(second);
+    const auto others = flattened<S>(first);
+    for (int i = 0; i < scalars.size(); ++i) scalars[i] = select(mask, others[i], scalars[i]);
+    return shaped<X>(scalars);
 }
 
 /// A state without members.

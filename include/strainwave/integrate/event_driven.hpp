@@ -1,0 +1,61 @@
+#pragma once
+#include <strainwave/integrate/exponential.hpp>
+#include <strainwave/integrate/moreau_jean.hpp>
+
+namespace strainwave::integrate {
+
+/// The moment within (from, 1] at which the margin first falls below zero, in lanes where it does by the end; 1 in the others.
+/// Illinois' variant of regula falsi, which keeps the bracket.
+template <class S, class Margin>
+constexpr S crossing(const Margin& margin, const S& from, const S& at_start, const S& at_end) {
+    const auto crosses = at_end < S(0.0);
+    S a = from, b{1.0}, fa = detached(max(at_start, S(0.0))), fb = detached(at_end), x{1.0};
+    for (int i = 0; i < 80; ++i) {
+        S guess = b - fb * (b - a) / select(crosses, fb - fa, S(-1.0));
+        guess = select((guess > a) & (guess < b), guess, S(0.5) * (a + b));
+        const S f = detached(margin(select(crosses, guess, S(1.0))));
+        const auto moved = crosses & (abs(guess - x) > S(1e-15)) & (b - a > S(1e-15));
+        x = select(crosses, guess, S(1.0));
+        if (!any(moved)) break;
+        const auto before = f > S(0.0);
+        fa = select(before, f, S(0.5) * fa);
+        fb = select(before, S(0.5) * fb, f);
+        a = select(before, x, a);
+        b = select(before, b, x);
+    }
+    if constexpr (differentiates<S>) {  // the moment moves with the parameters: implicit function theorem
+        const S h(1e-4);
+        const S slope = detached((margin(x + h) - margin(x - h)) / (S(2.0) * h));
+        x = select(crosses & (abs(slope) > S(smallest)), x - (margin(x) - detached(margin(x))) / slope, x);
+    }
+    return x;
+}
+
+/// How many events a step may hold before they count as chattering.
+inline constexpr int most_events = 16;
+
+/// One step with set-valued friction. Each stretch ends where a side stops or breaks away; that side is put exactly at rest or set
+/// sliding, and the next begins. Where events chatter, what is left of the step is one of Moreau and Jean's.
+template <class S, class Drive>
+constexpr typename Drive::State event_driven_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
+                                                  const S& dt) {
+    auto x = drive.released(before, u.start);
+    S done{0.0};
+    for (int events = 0;; ++events) {
+        const auto reach = [&](const S& fraction) {
+            return exponential_step(drive, x, u.part(done, fraction, dt), (fraction - done) * dt);
+        };
+        const auto end = reach(S(1.0));
+        const S margin = drive.margin(end, u.end);
+        const auto crosses = margin < S(0.0);
+        if (!any(crosses)) return end;
+        if (events == most_events)
+            return chosen<S>(crosses, moreau_jean_step(drive, x, u.part(done, S(1.0), dt), (S(1.0) - done) * dt), end);
+        const auto at = [&](const S& fraction) { return drive.margin(reach(fraction), u.part(S(0.0), fraction, dt).end); };
+        const S moment = crossing(at, done, drive.margin(x, u.part(S(0.0), done, dt).end), margin);
+        x = drive.settled(reach(moment), u.part(S(0.0), moment, dt).end, crosses);
+        done = moment;
+    }
+}
+
+}  // namespace strainwave::integrate

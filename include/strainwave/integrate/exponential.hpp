@@ -1,0 +1,116 @@
+#pragma once
+#include <strainwave/integrate/interval.hpp>
+
+namespace strainwave::integrate {
+
+/// Coefficients of Cox and Matthews (2002), eqs. (26)-(29), for one state that decays by e^-x over the step.
+template <class S>
+struct Exponential {
+    S half{1.0}, full{1.0}, stage{0.5}, first{1.0 / 6.0}, middle{1.0 / 3.0}, last{1.0 / 6.0};
+
+    static constexpr Exponential of(const S& x) {
+        const S half = exp(S(-0.5) * x), full = half * half;
+        const S c = select(x > S(series_below), x, S(1.0));
+        // phi_1, phi_2, phi_3 of -x: upwards from phi_1 where x is large, down from the series of phi_3 where it is small; the
+        // other way round each would lose its digits.
+        const auto large = x > S(series_below);
+        const S up1 = (S(1.0) - full) / c, up2 = (S(1.0) - up1) / c, up3 = (S(0.5) - up2) / c;
+        const S phi3 = select(large, up3, series(-min(x, S(series_below))));
+        const S phi2 = select(large, up2, S(0.5) - x * phi3), phi1 = select(large, up1, S(1.0) - x * phi2);
+        return {half,
+                full,
+                phi1 / (half + S(1.0)),
+                phi1 - S(3.0) * phi2 + S(4.0) * phi3,
+                S(2.0) * phi2 - S(4.0) * phi3,
+                S(4.0) * phi3 - phi2};
+    }
+
+private:
+    static constexpr double series_below = 0.5;
+    /// The sum of z^j / (j + 3)!, nested: 1/6 (1 + z/4 (1 + z/5 (...))). A template, so that 1/k is a constant of the scalar's
+    /// kind.
+    template <int k = 4>
+    static constexpr S series(const S& z) {
+        if constexpr (k == 4)
+            return S(1.0 / 6.0) * (S(1.0) + z * S(1.0 / k) * series<k + 1>(z));
+        else if constexpr (k < 16)
+            return S(1.0) + z * S(1.0 / k) * series<k + 1>(z);
+        else
+            return S(1.0);
+    }
+};
+
+/// One step of the exponential scheme: every member of X obeys y' = n(y) - decay y with its decay frozen at the step's start.
+/// Where the decay is zero this is the classical Runge-Kutta scheme.
+template <class S, class X>
+class Relaxation {
+    static constexpr int n = size_of<S, X>;
+    using Scalars = Array<S, n>;
+    Scalars decay, half, full, stage, first, middle, last;  // the last four times the step
+
+public:
+    constexpr Relaxation(const X& rates_of_decay, const S& dt) : decay(flattened<S>(rates_of_decay)) {
+        for (int i = 0; i < n; ++i) set(i, any(decay[i] > S(0.0)) ? Exponential<S>::of(decay[i] * dt) : Exponential<S>{}, dt);
+    }
+    constexpr Scalars forcing(const X& rate, const X& at) const {
+        Scalars force = flattened<S>(rate);
+        const Scalars y = flattened<S>(at);
+        for (int i = 0; i < n; ++i) force[i] = force[i] + decay[i] * y[i];
+        return force;
+    }
+    constexpr X halfway(const X& from, const Scalars& force) const {
+        Scalars y = flattened<S>(from);
+        for (int i = 0; i < n; ++i) y[i] = half[i] * y[i] + stage[i] * force[i];
+        return shaped<X>(y);
+    }
+    constexpr X onward(const X& halfway, const Scalars& force, const Scalars& at_start) const {
+        Scalars y = flattened<S>(halfway);
+        for (int i = 0; i < n; ++i) y[i] = half[i] * y[i] + stage[i] * (S(2.0) * force[i] - at_start[i]);
+        return shaped<X>(y);
+    }
+    /// Exponential Euler over the whole step.
+    constexpr X across(const X& from, const Scalars& force) const {
+        Scalars y = flattened<S>(from);
+        for (int i = 0; i < n; ++i) y[i] = full[i] * y[i] + stage[i] * (S(1.0) + half[i]) * force[i];
+        return shaped<X>(y);
+    }
+    constexpr X complete(const X& from, const Scalars& n1, const Scalars& n2, const Scalars& n3, const Scalars& n4) const {
+        Scalars y = flattened<S>(from);
+        for (int i = 0; i < n; ++i) y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]);
+        return shaped<X>(y);
+    }
+
+private:
+    constexpr void set(int i, const Exponential<S>& c, const S& dt) {
+        half[i] = c.half;
+        full[i] = c.full;
+        stage[i] = dt * c.stage;
+        first[i] = dt * c.first;
+        middle[i] = dt * c.middle;
+        last[i] = dt * c.last;
+    }
+};
+
+/// One step without events, of fourth order: the bristles relax exactly, the hysteresis is a return map, the rest is the classical
+/// Runge-Kutta scheme.
+template <class S, class Drive>
+constexpr typename Drive::State exponential_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
+                                                 const S& dt) {
+    const auto y1 = before.motion;
+    const auto now = drive.flow(before, y1, u.start);
+    auto x = drive.remembered(before, now.mesh.twist);
+    const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
+    const auto confined = [&](const auto& y) { return drive.confined(y, now.contacts, now.mesh.per_input); };
+    const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y1, now.contacts), dt);
+    const auto n1 = scheme.forcing(now.rate, y1);
+    const auto y2 = confined(scheme.halfway(y1, n1));
+    const auto n2 = scheme.forcing(rate(y2, u.middle), y2);
+    const auto y3 = confined(scheme.halfway(y1, n2));
+    const auto n3 = scheme.forcing(rate(y3, u.middle), y3);
+    const auto y4 = confined(scheme.onward(y2, n3, n1));
+    const auto n4 = scheme.forcing(rate(y4, u.end), y4);
+    x.motion = drive.renewed(confined(scheme.complete(y1, n1, n2, n3, n4)), now.contacts, now.mesh.per_input);
+    return drive.wrapped(x);
+}
+
+}  // namespace strainwave::integrate
