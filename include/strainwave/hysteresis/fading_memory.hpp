@@ -7,9 +7,21 @@ namespace strainwave::hysteresis {
 namespace detail {
 
 /// 1 / (k + 2)!, alternating: the series of (x - 1 + e^-x) / x^2, cut where x <= 1/2 needs no more.
-inline constexpr double decay_series[] = {
-    1.0 / 2,       -1.0 / 6,      1.0 / 24,        -1.0 / 120,        1.0 / 720,           -1.0 / 5040,         1.0 / 40320,
-    -1.0 / 362880, 1.0 / 3628800, -1.0 / 39916800, 1.0 / 479001600.0, -1.0 / 6227020800.0, 1.0 / 87178291200.0,
+template <class R>
+inline constexpr R decay_series[13] = {
+    R(1.0 / 2),
+    R(-1.0 / 6),
+    R(1.0 / 24),
+    R(-1.0 / 120),
+    R(1.0 / 720),
+    R(-1.0 / 5040),
+    R(1.0 / 40320),
+    R(-1.0 / 362880),
+    R(1.0 / 3628800),
+    R(-1.0 / 39916800),
+    R(1.0 / 479001600.0),
+    R(-1.0 / 6227020800.0),
+    R(1.0 / 87178291200.0),
 };
 
 }  // namespace detail
@@ -24,8 +36,7 @@ struct Decayed {
         constexpr double handover = 0.5, vanishing = 80.0;  // exp(-80) vanishes beside 1 in every scalar
         const S x = rate * path, small = min(x, S(handover));
         S series{0.0};
-        for (int k = static_cast<int>(sizeof(detail::decay_series) / sizeof(double)) - 1; k >= 0; --k)
-            series = series * small + S(detail::decay_series[k]);
+        for (int k = 12; k >= 0; --k) series = series * small + S(detail::decay_series<Real<S>>[k]);
         const S settled = (S(1.0) - exp(-min(x, S(vanishing)))) / rate;
         return {select(x < S(handover), path * (S(1.0) - small * series), settled),
                 select(x < S(handover), path * path * series, (path - settled) / rate)};
