@@ -1,6 +1,6 @@
 #include <nanobind/stl/function.h>
 
-#include "simulate.hpp"
+#include "instruction_set.hpp"
 #include "verbs.hpp"
 
 namespace strainwave::host {
@@ -45,6 +45,7 @@ nb::tuple run_one(const Drive& drive, const Drive::State& start, const Numbers& 
     Values out = array({std::size_t(channels), request.kept});
     const Pause pause = pausing(progress);
     Drive::State end;
+    const auto simulate = kernels().simulate;
     {
         nb::gil_scoped_release free;
         end = simulate(drive, start, request.course, out.data(), request.kept, pause);
@@ -52,18 +53,34 @@ nb::tuple run_one(const Drive& drive, const Drive::State& start, const Numbers& 
     return nb::make_tuple(out, end);
 }
 
-Values run_many(const std::vector<Drive>& drives, const Numbers& instants, const Numbers& inputs, const Flags& keep,
-                const nb::object& progress) {
+/// What went wrong, in words.
+std::string text_of(const OutOfBounds& error) {
+    return std::string(error.part) + ": " + outside(error.domain) + "; first at t = " + with_unit(error.time, "s");
+}
+
+nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Numbers& values, const Numbers& instants,
+                   const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded, int threads,
+                   const nb::object& progress) {
     const Request request(instants, inputs, keep);
-    for (const Drive& drive : drives)
-        if (parts_of(drive).shape != parts_of(drives[0]).shape)
-            throw nb::value_error(
-                "drives run side by side must choose the same models, with equally many elements and the same teeth");
-    Values out = array({drives.size(), std::size_t(channels), request.kept});
+    if (values.ndim() != 2 || values.shape(0) != numbers.size())
+        throw nb::value_error("values of n numbers and m members have shape (n, m)");
+    const Variation variation{numbers, values.data(), values.shape(1)};
+    Values out = array({recorded.size(), variation.members, request.kept + 1});
     const Pause pause = pausing(progress);
-    nb::gil_scoped_release free;
-    simulate_packed(drives, request.course, out.data(), request.kept, pause);
-    return out;
+    const auto simulate_many = kernels().simulate_many;
+    std::vector<Verdict> verdicts;
+    {
+        nb::gil_scoped_release free;
+        verdicts = simulate_many(drive, variation, request.course, recorded, threads, out.data(), request.kept, pause);
+    }
+    Values twists = array({variation.members}), vibrations = array({variation.members});
+    nb::dict refusals;
+    for (std::size_t m = 0; m < verdicts.size(); ++m) {
+        twists.data()[m] = verdicts[m].twist;
+        vibrations.data()[m] = verdicts[m].vibration;
+        if (verdicts[m].refusal) refusals[nb::int_(m)] = text_of(*verdicts[m].refusal);
+    }
+    return nb::make_tuple(out, twists, vibrations, refusals);
 }
 
 nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Numbers& inputs, const Flags& keep,
@@ -72,12 +89,15 @@ nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Num
     Values out = array({std::size_t(channels), request.kept}),
            slopes = array({parameters.size(), std::size_t(channels), request.kept});
     const Pause pause = pausing(progress);
+    const auto differentiate = kernels().differentiate;
     {
         nb::gil_scoped_release free;
         differentiate(drive, request.course, parameters, out.data(), slopes.data(), request.kept, pause);
     }
     return nb::make_tuple(out, slopes);
 }
+
+double vibration(const Drive& drive, double twist) { return drive.vibration(std::abs(twist)); }
 
 Input<double> input_of(const Numbers& u) {
     if (u.size() != 4) throw nb::value_error("inputs at an instant are command, its rate, load torque and temperature");
@@ -86,20 +106,20 @@ Input<double> input_of(const Numbers& u) {
 
 Values now(const Drive& drive, const Drive::State& x, const Numbers& u) {
     Values out = array({std::size_t(channels), 1});
-    observe(drive, x, input_of(u), out.data());
+    kernels().observe(drive, x, input_of(u), out.data());
     return out;
 }
 
 nb::tuple now_derivatives(const Drive& drive, const Numbers& u, const std::vector<int>& parameters) {
     Values out = array({std::size_t(channels), 1}), slopes = array({parameters.size(), std::size_t(channels), 1});
-    observe_derivatives(drive, input_of(u), parameters, out.data(), slopes.data());
+    kernels().observe_derivatives(drive, input_of(u), parameters, out.data(), slopes.data());
     return nb::make_tuple(out, slopes);
 }
 
-template <auto differentiate_curve>
+template <auto differentiate>
 nb::tuple curve(const AnyGear<double>& gear, const Numbers& path, const std::vector<int>& parameters) {
     Values out = array({path.size()}), slopes = array({parameters.size(), path.size()});
-    differentiate_curve(gear, path.data(), path.size(), parameters, out.data(), slopes.data());
+    (kernels().*differentiate)(gear, path.data(), path.size(), parameters, out.data(), slopes.data());
     return nb::make_tuple(out, slopes);
 }
 
@@ -217,9 +237,7 @@ void bind_drives(nb::module_& core) {
         try {
             std::rethrow_exception(thrown);
         } catch (const OutOfBounds& error) {
-            PyErr_SetString(
-                PyExc_ValueError,
-                (std::string(error.part) + ": " + outside(error.domain) + "; first at t = " + with_unit(error.time, "s")).c_str());
+            PyErr_SetString(PyExc_ValueError, text_of(error).c_str());
         }
     });
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
@@ -253,11 +271,20 @@ void bind_drives(nb::module_& core) {
              nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE SW_PROGRESS
                      ") -> tuple[" SW_ARRAY ", State]"),
              "Outputs, shape (channels, kept), and the state at the end.");
-    core.def("simulate_packed", &run_many, nb::arg("drives"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
-             nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate_packed(drives: collections.abc.Sequence[strainwave.drives.PositionDrive], " SW_COURSE SW_PROGRESS
-                     ") -> " SW_ARRAY),
-             "Outputs from rest, shape (drives, channels, kept).");
+    core.def(
+        "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("instants"), nb::arg("inputs"),
+        nb::arg("keep"), nb::arg("recorded"), nb::arg("threads"), nb::arg("progress").none() = nb::none(),
+        nb::sig(
+            "def simulate_many(drive: strainwave.drives.PositionDrive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
+            ", " SW_COURSE ", recorded: collections.abc.Sequence[int], threads: int" SW_PROGRESS ") -> tuple[" SW_ARRAY
+            ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
+        "Outputs of members from rest, shape (recorded, members, 1 + kept); the largest twist of each [rad], the fastest vibration "
+        "of its gear up to there [rad/s], and why members ended early, if any did. `values`, shape (numbers, members), takes the "
+        "place of the numbered parameters.");
+    core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
+             nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
+             "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
+    core.def("instruction_set", &instruction_set, "The instruction set that the loops over time are compiled for.");
     core.def("differentiate", &run_derivatives, nb::arg("drive"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("parameters"), nb::arg("progress").none() = nb::none(),
              nb::sig("def differentiate(drive: strainwave.drives.PositionDrive, " SW_COURSE
@@ -270,12 +297,13 @@ void bind_drives(nb::module_& core) {
              nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Outputs at rest and their derivatives, as `differentiate` gives them for one sample.");
-    core.def("differentiate_loop", &curve<differentiate_loop>, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
+    core.def("differentiate_loop", &curve<&Kernels::differentiate_loop>, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
              nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape "
              "(parameters, n).");
-    core.def("differentiate_steady", &curve<differentiate_steady>, nb::arg("gear"), nb::arg("speed"), nb::arg("parameters"),
+    core.def("differentiate_steady", &curve<&Kernels::differentiate_steady>, nb::arg("gear"), nb::arg("speed"),
+             nb::arg("parameters"),
              nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).");

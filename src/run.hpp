@@ -1,8 +1,9 @@
 #pragma once
-#include <strainwave/any.hpp>
 #include <strainwave/integrate.hpp>
 #include <strainwave/scalar/dual.hpp>
 #include <strainwave/scalar/pack.hpp>
+
+#include "narrow.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -60,34 +61,66 @@ void check_bounds(const Drive& drive, const typename Drive::State& x, const Inpu
 /// How many steps pass between two calls of `pause`, which may throw.
 inline constexpr std::size_t steps_between_pauses = 1 << 14;
 
+/// A step without events, every call on the way inlined: worth its size where few models are left to choose from.
+template <class S, class Drive>
+[[gnu::flatten, gnu::noinline]] typename Drive::State inlined_step(const Drive& drive, const typename Drive::State& x,
+                                                                   const Interval<S>& u, const S& dt) {
+    return integrate::exponential_step(drive, x, u, dt);
+}
+template <class S, class Drive>
+[[gnu::noinline]] typename Drive::State called_step(const Drive& drive, const typename Drive::State& x, const Interval<S>& u,
+                                                    const S& dt) {
+    return integrate::exponential_step(drive, x, u, dt);
+}
+
 /// Runs a compiled drive from `x` and calls record(output) at the end of each step to be kept. Returns the state at the end.
-template <class S, class Drive, class Record>
+template <class S, class Drive, class Record, class Smooth>
 typename Drive::State run_compiled(const Drive& drive, typename Drive::State x, const Course& course, Record& record,
-                                   const std::function<void(std::size_t)>& pause) {
+                                   const std::function<void(std::size_t)>& pause, const Smooth& smooth) {
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
     if (has_bounds && course.steps > 0) check_bounds(drive, x, interval<S>(course.inputs).start, course.instants[0]);
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % steps_between_pauses == 0) pause(i);
         const Interval<S> u = interval<S>(course.inputs + 12 * i);
-        x = step<S>(drive, x, u, S(course.instants[i + 1] - course.instants[i]));
+        x = step(drive, x, u, S(course.instants[i + 1] - course.instants[i]), smooth);
         if (has_bounds) check_bounds(drive, x, u.end, course.instants[i + 1]);
         if (course.keep[i]) record(drive.output(x, u.end));
     }
     return x;
 }
 
-/// Runs `drive`, with short states if its laws allow it.
+/// Runs `drive` in the code of the first of some lists of models that hold it; in that of all models if none does.
+template <class S, class Record, class First, class... Rest>
+typename AnyPositionDrive<S>::State run_among(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
+                                              const Course& course, Record& record, const std::function<void(std::size_t)>& pause,
+                                              First*, Rest*... rest) {
+    NarrowDrive<S, First> narrow{};
+    if (narrowed<S>(narrow, drive)) {
+        const auto compiled = narrow.compile();
+        const auto from = refilled<S, typename decltype(narrow.compile())::State>(start);
+        const auto end = [&] {
+            using Compiled = decltype(narrow.compile());
+            if constexpr (few_models<First>)
+                return run_compiled<S>(compiled, from, course, record, pause, inlined_step<S, Compiled>);
+            else
+                return run_compiled<S>(compiled, from, course, record, pause, called_step<S, Compiled>);
+        }();
+        return refilled<S, typename AnyPositionDrive<S>::State>(end);
+    }
+    if constexpr (sizeof...(Rest) > 0)
+        return run_among<S>(drive, start, course, record, pause, rest...);
+    else
+        return run_compiled<S>(drive.compile(), start, course, record, pause, called_step<S, decltype(drive.compile())>);
+}
+
 template <class S, class Record>
 typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
                                         const Course& course, Record&& record, const std::function<void(std::size_t)>& pause) {
-    using State = typename AnyPositionDrive<S>::State;
-    if (is_small<S>(drive)) {
-        const auto fast = drive.template compile<small_friction, small_hysteresis>();
-        using Small = typename decltype(drive.template compile<small_friction, small_hysteresis>())::State;
-        return refilled<State>(run_compiled<S>(fast, refilled<Small>(start), course, record, pause));
-    }
-    return run_compiled<S>(drive.compile(), start, course, record, pause);
+    const auto among = [&]<class... List>(List*... lists) { return run_among<S>(drive, start, course, record, pause, lists...); };
+    return among(static_cast<Usual<friction::LuGre>*>(nullptr),
+                 static_cast<Usual<friction::Viscous, friction::Coulomb, friction::Stribeck>*>(nullptr),
+                 static_cast<Small*>(nullptr));
 }
 
 }  // namespace strainwave::host

@@ -1,9 +1,10 @@
 #pragma once
 #include "run.hpp"
 
+#include <optional>
 #include <vector>
 
-/// The three ways to run a course. One translation unit each, so that they compile side by side.
+/// The ways to run a course, compiled once for every instruction set.
 namespace strainwave::host {
 
 using Drive = AnyPositionDrive<double>;
@@ -11,29 +12,47 @@ using Pause = std::function<void(std::size_t)>;
 
 inline constexpr int channels = [] {
     Output<double> output{};
-    detail::Counter<double> counter;
+    strainwave::detail::Counter<double> counter;
     Output<double>::fields(output, counter);
     return counter.count;
 }();
+
+/// Drives that differ from one in some of its numbers: number `numbers[p]` of member m is values[p * members + m].
+struct Variation {
+    std::vector<int> numbers;
+    const double* values;
+    std::size_t members;
+};
+
+/// How the run of a member went.
+struct Verdict {
+    double twist = 0.0;                    ///< largest recorded, rad
+    double vibration = 0.0;                ///< the fastest of the gear up to that twist, rad/s
+    std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
+};
 
 /// One trajectory. Writes channel c of kept sample k to out[c * kept + k].
 Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, double* out, std::size_t kept,
                       const Pause& pause);
 
-/// Drives of equal shape side by side, from rest, several to a pack. Writes to out[(member * channels + c) * kept + k].
-void simulate_packed(const std::vector<Drive>& drives, const Course& course, double* out, std::size_t kept, const Pause& pause);
+/// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
+/// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
+/// not-a-number behind. `pause` is called with the number of steps done, on this thread.
+std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
+                                   const std::vector<int>& recorded, int threads, double* out, std::size_t kept,
+                                   const Pause& pause);
 
 /// The outputs of a drive in state `x`.
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
-
-/// The outputs of a drive at rest, and their derivatives as `differentiate` gives them, for one sample.
-void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
-                         double* slopes);
 
 /// One trajectory from rest and its derivatives with respect to the numbered parameters of the drive.
 /// Writes values to out[c * kept + k], derivatives to slopes[(p * channels + c) * kept + k].
 void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
                    std::size_t kept, const Pause& pause);
+
+/// The outputs of a drive at rest, and their derivatives as `differentiate` gives them, for one sample.
+void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
+                         double* slopes);
 
 /// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i].
 void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
@@ -42,5 +61,16 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
 /// Steady friction torque at the input; derivatives in slopes[p * n + i].
 void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters,
                           double* out, double* slopes);
+
+/// All of them, as one module holds them.
+struct Kernels {
+    decltype(&host::simulate) simulate;
+    decltype(&host::simulate_many) simulate_many;
+    decltype(&host::observe) observe;
+    decltype(&host::differentiate) differentiate;
+    decltype(&host::observe_derivatives) observe_derivatives;
+    decltype(&host::differentiate_loop) differentiate_loop;
+    decltype(&host::differentiate_steady) differentiate_steady;
+};
 
 }  // namespace strainwave::host

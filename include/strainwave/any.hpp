@@ -35,27 +35,6 @@ constexpr int state_size() {
         return 0;
 }
 
-/// Whether a law is a plain one whose state is no larger than `most` scalars; without a limit, any law.
-template <class S, int most, class Law>
-inline constexpr bool fits = most == any_size || (state_size<S, Law>() <= most && !friction::Modulation<Law>);
-
-template <class... Law>
-struct Laws {
-    template <class S>
-    using Into = Choice<S, Law...>;
-};
-
-/// The laws that fit.
-template <class S, int most, class Found, class... Law>
-struct Fitting;
-template <class S, int most, class... Found>
-struct Fitting<S, most, Laws<Found...>> {
-    using type = Laws<Found...>;
-};
-template <class S, int most, class... Found, class First, class... Rest>
-struct Fitting<S, most, Laws<Found...>, First, Rest...>
-    : Fitting<S, most, std::conditional_t<fits<S, most, First>, Laws<Found..., First>, Laws<Found...>>, Rest...> {};
-
 }  // namespace detail
 
 template <class S, class... Law>
@@ -75,29 +54,14 @@ struct Choice {
         }
     }
 
-    /// Whether the law chosen is a plain one whose state is no larger than `most` scalars.
-    template <int most>
-    constexpr bool fits() const {
-        return visit([]<class Chosen>(const Chosen&) { return detail::fits<S, most, Chosen>; });
-    }
-
-    /// The same choice, of laws rearranged for speed, among those that fit; no choice any more where all come out alike.
-    template <int most = any_size>
+    /// The same choice, of laws rearranged for speed; no choice any more where all come out alike.
     constexpr auto compile() const {
-        using Fitting = typename detail::Fitting<S, most, detail::Laws<>, decltype(compiled(std::declval<Law>()))...>::type;
         using First = decltype(compiled(std::get<0>(model)));
         if constexpr (!requires { typename First::State; } &&
-                      (std::is_same_v<First, decltype(compiled(std::declval<Law>()))> && ...)) {
+                      (std::is_same_v<First, decltype(compiled(std::declval<Law>()))> && ...))
             return visit([](const auto& law) { return compiled(law); });
-        } else {
-            using Compiled = typename Fitting::template Into<S>;
-            return visit([]<class Chosen>(const Chosen& law) {
-                if constexpr (detail::fits<S, most, decltype(compiled(law))>)
-                    return Compiled{compiled(law)};
-                else
-                    return Compiled{};  // never asked for: see fits
-            });
-        }
+        else
+            return visit([](const auto& law) { return Choice<S, decltype(compiled(std::declval<Law>()))...>{compiled(law)}; });
     }
 
 // Calls the verb of the model chosen, with its own state in place of the slots.
@@ -248,47 +212,5 @@ using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::
 
 template <class S>
 using AnyPositionDrive = PositionDrive<S, AnyGear<S>, AnyOf<S, motor::Models>, AnyOf<S, control::Models>, AnyOf<S, load::Models>>;
-
-/// Limits on states within which most drives stay, and far faster: what is carried through every stage of a step is then short.
-inline constexpr int small_friction = 1, small_hysteresis = 16;
-
-/// Whether all laws of a drive with memory have a small one.
-template <class S>
-constexpr bool is_small(const AnyPositionDrive<S>& drive) {
-    const auto& gear = drive.gear;
-    return gear.hysteresis.template fits<small_hysteresis>() && gear.friction_input.template fits<small_friction>() &&
-           gear.friction_mesh.template fits<small_friction>() && gear.friction_output.template fits<small_friction>();
-}
-
-namespace detail {
-
-template <class S, int to, int from>
-constexpr void refill(Slots<S, to>& target, const Slots<S, from>& source) {
-    for (int i = 0; i < (to < from ? to : from); ++i) target.slot[i] = source.slot[i];
-}
-
-}  // namespace detail
-
-/// The state of a drive as one with other limits has it.
-template <class To, class From>
-constexpr To refilled(const From& from) {
-    To to{};
-    to.held_twist = from.held_twist;
-    to.turns = from.turns;
-    to.sliding_input = from.sliding_input;
-    to.sliding_output = from.sliding_output;
-    detail::refill(to.hysteresis, from.hysteresis);
-    auto& motion = to.motion;
-    motion.motor = from.motion.motor;
-    motion.control = from.motion.control;
-    motion.input_angle = from.motion.input_angle;
-    motion.input_speed = from.motion.input_speed;
-    motion.transmission_error = from.motion.transmission_error;
-    motion.output_speed = from.motion.output_speed;
-    detail::refill(motion.friction_input, from.motion.friction_input);
-    detail::refill(motion.friction_mesh, from.motion.friction_mesh);
-    detail::refill(motion.friction_output, from.motion.friction_output);
-    return to;
-}
 
 }  // namespace strainwave

@@ -146,12 +146,10 @@ struct PositionDrive {
                    : "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
     }
 
-    /// Every part as the integrator wants it, with frictions and hysteresis of limited state.
-    template <int most_friction = any_size, int most_hysteresis = any_size>
+    /// Every part as the integrator wants it.
     constexpr auto compile() const {
-        const auto parts = gear.template compile<most_friction, most_hysteresis>();
-        using Parts = decltype(gear.template compile<most_friction, most_hysteresis>());
-        return PositionDrive<S, Parts, decltype(compiled(motor)), Control, Load>{parts, compiled(motor), control, load};
+        return PositionDrive<S, decltype(gear.compile()), decltype(compiled(motor)), decltype(compiled(control)),
+                             decltype(compiled(load))>{gear.compile(), compiled(motor), compiled(control), compiled(load)};
     }
 
     using FrictionInput = decltype(Gear{}.friction_input);
@@ -195,9 +193,9 @@ struct PositionDrive {
         const S voltage = control.voltage(y.control, reference);
         const S motor_torque = motor.torque(motor.current(y.motor, voltage, y.input_speed));
 
-        Flow flow{};
-        const auto mesh = flow.mesh = this->mesh(x, y);
-        const auto& at = flow.contacts = contacts(x, y, mesh, u);
+        const auto mesh = this->mesh(x, y);
+        Flow flow{{}, mesh, contacts(x, y, mesh, u), S(0.0), S(0.0)};
+        const Contacts& at = flow.contacts;
         Motion& rate = flow.rate;
         const Resistance input = resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
         const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
@@ -261,6 +259,12 @@ struct PositionDrive {
         x.sliding_input = sense_of(input_sticks(), x.motion.input_speed, x.sliding_input);
         x.sliding_output = sense_of(output_sticks(), x.motion.output_speed, x.sliding_output);
         return x;
+    }
+
+    /// The fastest angular frequency [rad/s] of the gear's own vibration at twists up to `twist` [rad].
+    constexpr S vibration(const S& twist) const {
+        const S inverse = gear.kinematics.inverse_ratio();
+        return sqrt(gear.steepest(twist) * (S(1.0) / inertia_of(load) + inverse * inverse / input_inertia()));
     }
 
     /// Whether a side can stick.
@@ -404,12 +408,10 @@ private:
     constexpr Contacts contacts(const State& x, const Motion& y, const typename Gear::Mesh& mesh, const Input<S>& u) const {
         const S inverse = gear.kinematics.inverse_ratio(), turned = x.turns * inverse, turns = rint(turned);
         const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse;
-        Contacts at{};
-        at.input = {y.input_speed, x.sliding_input, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, u.temperature};
-        at.mesh = {
-            y.input_speed * mesh.per_input, along(mesh.per_input, x.sliding_input), {rigid, turns}, mesh.torque, u.temperature};
-        at.output = {y.output_speed, x.sliding_output, {rigid - y.transmission_error, turns}, mesh.torque, u.temperature};
-        return at;
+        return {
+            {y.input_speed, x.sliding_input, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, u.temperature},
+            {y.input_speed * mesh.per_input, along(mesh.per_input, x.sliding_input), {rigid, turns}, mesh.torque, u.temperature},
+            {y.output_speed, x.sliding_output, {rigid - y.transmission_error, turns}, mesh.torque, u.temperature}};
     }
 
     /// The largest torque that holds the input against what drives it, and likewise the output.

@@ -96,19 +96,33 @@ struct Counter {
     }
 };
 
-/// Collects the addresses of scalars.
-template <class S, class Pointer>
-struct Collect {
-    Pointer* target;
+/// Copies scalars one after the other: out of a state, or into one.
+template <class S>
+struct Read {
+    S* target;
+    int count = 0;
+    template <class T>
+    constexpr void operator()(const T& member, const Field&) {
+        if constexpr (Described<T>)
+            T::fields(member, *this);
+        else if constexpr (requires { member.item; })
+            for (const auto& x : member.item) target[count++] = x;
+        else
+            target[count++] = member;
+    }
+};
+template <class S>
+struct Write {
+    const S* source;
     int count = 0;
     template <class T>
     constexpr void operator()(T& member, const Field&) {
         if constexpr (Described<T>)
             T::fields(member, *this);
         else if constexpr (requires { member.item; })
-            for (auto& x : member.item) target[count++] = &x;
+            for (auto& x : member.item) x = source[count++];
         else
-            target[count++] = &member;
+            member = source[count++];
     }
 };
 
@@ -127,10 +141,8 @@ inline constexpr int size_of = [] {
 template <class S, Described X>
 constexpr Array<S, size_of<S, X>> flattened(const X& state) {
     Array<S, size_of<S, X>> scalars{};
-    const S* from[size_of<S, X> + 1]{};
-    detail::Collect<S, const S*> collect{from};
-    X::fields(state, collect);
-    for (int i = 0; i < scalars.size(); ++i) scalars[i] = *from[i];
+    detail::Read<S> read{scalars.item};
+    X::fields(state, read);
     return scalars;
 }
 
@@ -138,10 +150,8 @@ constexpr Array<S, size_of<S, X>> flattened(const X& state) {
 template <Described X, class S>
 constexpr X shaped(const Array<S, size_of<S, X>>& scalars) {
     X state{};
-    S* to[size_of<S, X> + 1]{};
-    detail::Collect<S, S*> collect{to};
-    X::fields(state, collect);
-    for (int i = 0; i < scalars.size(); ++i) *to[i] = scalars[i];
+    detail::Write<S> write{scalars.item};
+    X::fields(state, write);
     return state;
 }
 

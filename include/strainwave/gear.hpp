@@ -60,20 +60,16 @@ struct Gear {
         visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
     }
 
-    /// Every part as the integrator wants it, with frictions and hysteresis of limited state.
-    template <int most_friction = any_size, int most_hysteresis = any_size>
+    /// Every part as the integrator wants it.
     constexpr auto compile() const {
-        const auto error = compiled(kinematic_error);
-        const auto noise = compiled(kinematic_noise);
-        const auto memory = compiled<most_hysteresis>(hysteresis);
-        const auto input = compiled<most_friction>(friction_input);
-        const auto mesh = compiled<most_friction>(friction_mesh);
-        const auto output = compiled<most_friction>(friction_output);
         return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), decltype(compiled(kinematic_noise)),
-                    decltype(compiled(stiffness)), decltype(compiled<most_hysteresis>(hysteresis)),
-                    decltype(compiled<most_friction>(friction_input)), decltype(compiled<most_friction>(friction_mesh)),
-                    decltype(compiled<most_friction>(friction_output))>{
-            compiled(kinematics), error, noise, compiled(stiffness), memory, damping, input, mesh, output, input_inertia};
+                    decltype(compiled(stiffness)), decltype(compiled(hysteresis)), decltype(compiled(friction_input)),
+                    decltype(compiled(friction_mesh)), decltype(compiled(friction_output))>{
+            compiled(kinematics),      compiled(kinematic_error),
+            compiled(kinematic_noise), compiled(stiffness),
+            compiled(hysteresis),      damping,
+            compiled(friction_input),  compiled(friction_mesh),
+            compiled(friction_output), input_inertia};
     }
 
     /// How the two shafts stand to each other.
@@ -93,6 +89,15 @@ struct Gear {
         const S twist_rate = per_input * input_speed - output_speed;
         const S torque = stiffness.torque(twist) + hysteresis.torque(held, twist - held_twist) + damping * twist_rate;
         return {error.value, per_input, twist, torque};
+    }
+
+    /// The largest stiffness [N.m/rad] that spring and hysteresis show together at twists up to `twist` [rad], of either sign.
+    constexpr S steepest(const S& twist) const {
+        constexpr int parts = 64;
+        S largest = stiffness.tangent(S(0.0));
+        for (int i = -parts; i <= parts; ++i) largest = max(largest, stiffness.tangent(twist * S(double(i) / parts)));
+        const S little = S(1e-9) * max(twist, S(1e-9));
+        return largest + hysteresis.torque(typename Hysteresis::State{}, little) / little;
     }
 
 private:

@@ -2,6 +2,8 @@
 /// The one place that knows where a scalar's mathematics comes from. Physics calls these names unqualified; packs and
 /// dual numbers bring their own through argument-dependent lookup. No `if` on a scalar: `select` serves every lane.
 #if !defined(__CUDACC_RTC__)
+#include <strainwave/scalar/elementary.hpp>
+
 #include <cmath>
 #endif
 
@@ -18,13 +20,16 @@ using ::sin;
 using ::sqrt;
 #else
 using std::atan;
-using std::cos;
-using std::exp;
 using std::fabs;
 using std::log;
 using std::rint;
-using std::sin;
 using std::sqrt;
+inline float exp(float x) { return std::exp(x); }
+inline float sin(float x) { return std::sin(x); }
+inline float cos(float x) { return std::cos(x); }
+inline double exp(double x) { return elementary::exp(x); }
+inline double sin(double x) { return fabs(x) < elementary::farthest ? elementary::sincos(x).sine : std::sin(x); }
+inline double cos(double x) { return fabs(x) < elementary::farthest ? elementary::sincos(x).cosine : std::cos(x); }
 #endif
 
 inline constexpr double pi = 3.14159265358979323846;
@@ -45,6 +50,11 @@ inline constexpr bool differentiates = false;
 template <class S>
 constexpr S detached(const S& x) {
     return x;
+}
+/// Whether derivatives with respect to `x` are asked for.
+template <class S>
+constexpr bool sought(const S&) {
+    return false;
 }
 
 /// The numbers that tables of constants for a scalar are made of: its own kind, so that none is converted at run time.
@@ -72,7 +82,15 @@ struct SinCos {
     S sin, cos;
 };
 
+#if defined(__CUDACC_RTC__)
 inline SinCos<double> sincos(double x) { return {sin(x), cos(x)}; }
+#else
+inline SinCos<double> sincos(double x) {
+    if (!(fabs(x) < elementary::farthest)) return {std::sin(x), std::cos(x)};
+    const auto found = elementary::sincos(x);
+    return {found.sine, found.cosine};
+}
+#endif
 inline SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
 
 template <class S>

@@ -27,14 +27,17 @@ from strainwave._core import (
 
 if TYPE_CHECKING:
     from strainwave import scenario
+    from strainwave.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
     from strainwave.gear_set import GearSet, catalogue, load, save
     from strainwave.identify.fit import Fit, fit
     from strainwave.identify.twin import Twin, twin
     from strainwave.recording import Recording
-    from strainwave.simulation import simulate, simulate_many
+    from strainwave.simulation import simulate
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
+    "Ensemble": "ensemble",
+    "EnsembleWarning": "ensemble",
     "Fit": "identify.fit",
     "GearSet": "gear_set",
     "Recording": "recording",
@@ -45,11 +48,14 @@ _LAZY = {
     "save": "gear_set",
     "scenario": "scenario",
     "simulate": "simulation",
-    "simulate_many": "simulation",
+    "simulate_many": "ensemble",
+    "simulate_to": "ensemble",
     "twin": "identify.twin",
 }
 
 __all__ = [
+    "Ensemble",
+    "EnsembleWarning",
     "Fit",
     "Gear",
     "GearSet",
@@ -71,6 +77,7 @@ __all__ = [
     "scenario",
     "simulate",
     "simulate_many",
+    "simulate_to",
     "stiffness",
     "twin",
 ]

@@ -294,8 +294,18 @@ outputs: tuple[tuple[str, str, str], ...]
 def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State]:
     """Outputs, shape (channels, kept), and the state at the end."""
 
-def simulate_packed(drives: Sequence[strainwave.drives.PositionDrive], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], progress: Callable[[int], None] | None = None) -> numpy.typing.NDArray[numpy.float64]:
-    """Outputs from rest, shape (drives, channels, kept)."""
+def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], threads: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
+    """
+    Outputs of members from rest, shape (recorded, members, 1 + kept); the largest twist of each [rad], the fastest vibration of its gear up to there [rad/s], and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters.
+    """
+
+def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float:
+    """
+    The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].
+    """
+
+def instruction_set() -> str:
+    """The instruction set that the loops over time are compiled for."""
 
 def differentiate(drive: strainwave.drives.PositionDrive, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], parameters: Sequence[int], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

@@ -152,53 +152,12 @@ def simulate(
     course = excitation.course(dt, sample)
     state = drive.rest() if start is None else start
     pieces = [_core.now(drive, state, excitation.first())]
-    with _progress(progress, len(course.instants) - 1) as shown:
+    with progressing(progress, len(course.instants) - 1) as shown:
         for number, chunk in enumerate(course.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
             outputs, state = _core.simulate(drive, state, chunk.instants, excitation.over(chunk), chunk.samples[1:], report)
             pieces.append(outputs)
     return _recording(drive, course, np.concatenate(pieces, axis=1), dt)
-
-
-def simulate_many(
-    drives: Sequence[PositionDrive],
-    command: Scenario,
-    dt: float = 2e-4,
-    *,
-    sample: float | None = None,
-    load_torque: Scenario | float = 0.0,
-    temperature: Scenario | float = ROOM_TEMPERATURE,
-    progress: bool = False,
-) -> list[Recording]:
-    """Runs drives that differ in numbers alone through one command, several to a vector register.
-
-    The same trajectories as `simulate` from rest, to rounding.
-
-    Args:
-        drives: drives that choose the same models with equally many elements
-        command, dt, sample, load_torque, temperature, progress: as for `simulate`
-
-    Returns:
-        one Recording a drive, in their order
-
-    Raises:
-        ValueError: as `simulate`, or drives that choose different models
-        FloatingPointError: as `simulate`; says which drive
-
-    >>> import strainwave as sw
-    >>> drives = [sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=j)) for j in (0.01, 0.02)]
-    >>> [len(run) for run in sw.simulate_many(drives, sw.scenario.step(amplitude=5.0, duration=0.1))]
-    [501, 501]
-    """
-    if not drives:
-        return []
-    excitation = Excitation(command, load_torque, temperature)
-    course = excitation.course(dt, sample)
-    first = np.stack([_core.now(drive, drive.rest(), excitation.first()) for drive in drives])
-    with _progress(progress, len(drives) * (len(course.instants) - 1)) as shown:
-        outputs = _core.simulate_packed(list(drives), course.instants, excitation.over(course), course.samples[1:], shown)
-    whole = np.concatenate((first, outputs), axis=2)
-    return [_recording(drive, course, member, dt) for drive, member in zip(drives, whole, strict=True)]
 
 
 def derivatives(
@@ -267,40 +226,40 @@ def _recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) 
         where = int(np.argmin(finite))
         names = [name for (name, _, _), ok in zip(_core.outputs, np.isfinite(outputs[:, where]), strict=True) if not ok]
         raise FloatingPointError(
-            f"the simulation left the finite numbers at t = {time[where]:.6g} s ({', '.join(names)}); "
-            f"take a smaller dt (now {dt:g} s) or check the parameters"
+            f"the simulation left the finite numbers at t = {time[where]:.6g} s ({', '.join(names)}); {remedy(dt)}"
         )
-    _check_resolution(drive, dt, float(np.abs(outputs[_TWIST]).max()))
-    units = {name: unit for name, unit, _ in _core.outputs} | {"time": "s", "command": drive.control.command_unit}
+    twist = float(np.abs(outputs[_TWIST]).max())
+    vibration = _core.vibration(drive, twist)
+    if dt * vibration > COARSEST:
+        raise FloatingPointError(too_coarse(dt, twist, vibration))
     columns = {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
-    return Recording(columns, units, title="simulation")
+    return Recording(columns, output_units(drive), title="simulation")
 
 
-def _check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
-    """Refuses steps that cannot follow the gear's own vibration, which would end in numbers that mean nothing.
+def output_units(drive: PositionDrive) -> dict[str, str]:
+    """The unit of the time and of each output of a drive."""
+    return {name: unit for name, unit, _ in _core.outputs} | {"time": "s", "command": drive.control.command_unit}
+
+
+def too_coarse(dt: float, twist: float, vibration: float) -> str:
+    """Says that steps of `dt` [s] cannot follow the gear's own vibration [rad/s], which would end in numbers that mean nothing.
 
     Of a vibration of angular frequency w the classical scheme diverges beyond dt w = 2.8, and loses a hundredth of the
     amplitude each step at 1.
     """
-    gear = drive.gear
-    small = 1e-9 * max(abs(twist), 1e-9)
-    stiffness = _steepest(gear.stiffness, twist) + float(gear.hysteresis.trace([0.0, small])[-1]) / small
-    ratio, input_inertia = gear.kinematics.ratio, drive.motor.inertia + gear.input_inertia
-    frequency = float(np.sqrt(stiffness * (1.0 / drive.load.inertia + 1.0 / (ratio**2 * input_inertia))))
-    if dt * frequency > COARSEST:
-        raise FloatingPointError(
-            f"dt = {dt:g} s is too coarse for this drive: its gear vibrates at {frequency:.4g} rad/s at a twist of "
-            f"{twist:.3g} rad; take dt = {COARSEST / frequency:.2g} s or less"
-        )
+    return (
+        f"dt = {dt:g} s is too coarse for this drive: its gear vibrates at {vibration:.4g} rad/s at a twist of "
+        f"{twist:.3g} rad; take dt = {COARSEST / vibration:.2g} s or less"
+    )
 
 
-def _steepest(stiffness: object, twist: float) -> float:
-    """The largest stiffness [N.m/rad] up to a twist; a spring need not harden."""
-    return float(np.max(stiffness.tangent(np.linspace(0.0, twist, 65))))  # type: ignore[attr-defined]
+def remedy(dt: float) -> str:
+    """What to do about a run that left the finite numbers."""
+    return f"take a smaller dt (now {dt:g} s) or check the parameters"
 
 
 @contextmanager
-def _progress(wanted: bool, total: int) -> Iterator[Callable[[int], None] | None]:
+def progressing(wanted: bool, total: int) -> Iterator[Callable[[int], None] | None]:
     if not wanted:
         yield None
         return

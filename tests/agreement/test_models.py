@@ -15,6 +15,7 @@ from strainwave import _core
 from strainwave.drives import PositionDrive
 from strainwave.simulation import derivatives
 
+from tests.side_by_side import side_by_side
 from tests.strategies import built
 
 Array = NDArray[np.float64]
@@ -69,11 +70,11 @@ def test_every_model_runs_one_trajectory_in_every_scalar(part: str, kind: Any, d
             singles = [sw.simulate(each, SWING, 1e-4, sample=1e-3, temperature=WARMING) for each in drives]
     except (FloatingPointError, ValueError):  # too coarse a step, or out of bounds: said, and not this test's matter
         assume(False)
-    packed = sw.simulate_many(drives, SWING, 1e-4, sample=1e-3, temperature=WARMING)
+    packed = side_by_side(drives, SWING, 1e-4, sample=1e-3, temperature=WARMING)
     others = [i for i, (path, *_) in enumerate(_core.parameters(drive)) if ".order[" not in path]  # whole orders stay whole
     chosen = np.random.default_rng(seed).choice(others, 3, replace=False)
     dual, _ = derivatives(drives[0], SWING, chosen, 1e-4, 1e-3, temperature=WARMING)
-    for single, other in zip([*singles, singles[0]], [*packed, dual], strict=True):
+    for single, other in zip([*singles, singles[0]], [*map(packed.member, range(9)), dual], strict=True):
         scale = np.abs(columns(single)).max(axis=1, keepdims=True)
         difference = np.abs(columns(other) - columns(single))
         apart = (difference > 1e-11 * scale).any(axis=1)

@@ -13,6 +13,7 @@ from strainwave.drives import PositionDrive
 from strainwave.simulation import derivatives
 
 from tests.reference_drive import DRIVE, command
+from tests.side_by_side import side_by_side
 
 Array = NDArray[np.float64]
 
@@ -77,9 +78,10 @@ def test_double_pack_and_dual_run_one_trajectory(drive: PositionDrive, seed: int
     course = SWING if swing else command(0.2)
     drives = scattered(drive, 9, seed, whole_orders)
     chosen = np.random.default_rng(seed).choice(numbers(drive).size, 3, replace=False)
-    for each, packed in zip(drives, sw.simulate_many(drives, course, DT, sample=SAMPLE), strict=True):
+    packed = side_by_side(drives, course, DT, sample=SAMPLE)
+    for member, each in enumerate(drives):
         single = sw.simulate(each, course, DT, sample=SAMPLE)
-        assert np.all(np.abs(columns(packed) - columns(single)) <= 1e-12 * scales(each, single))
+        assert np.all(np.abs(columns(packed.member(member)) - columns(single)) <= 1e-12 * scales(each, single))
     dual, _ = derivatives(each, course, chosen, DT, SAMPLE)
     assert np.all(np.abs(columns(dual) - columns(single)) <= 1e-12 * scales(each, single))
 

@@ -18,6 +18,7 @@ from strainwave import _core, simulation
 from strainwave.simulation import ROOM_TEMPERATURE, Course, Excitation, derivatives
 
 from tests.reference_drive import DRIVE, command
+from tests.side_by_side import side_by_side
 
 DT = 2.0**-12  # s: its multiples are exact, so that the steps of a run and of a part of it are the same
 HELD = sw.scenario.constant(0.02, 0.25)
@@ -155,16 +156,6 @@ def test_steps_by_hand_are_the_steps_of_a_run() -> None:
     assert by_hand == pytest.approx([run[name][-1] for name in COLUMNS], rel=1e-12)
 
 
-def test_many_drives_come_back_in_their_order() -> None:
-    inertias = [0.5, 0.3, 0.7, 0.4, 0.6, 0.2, 0.9, 0.8, 1.0, 0.1, 0.55]
-    members = [DRIVE.replace(load=DRIVE.load.replace(inertia=inertia)) for inertia in inertias]
-    runs = sw.simulate_many(members, command(0.02))
-    speeds = [run["output_speed"][-1] for run in runs]
-    assert speeds == pytest.approx([sw.simulate(member, command(0.02))["output_speed"][-1] for member in members], rel=1e-12)
-    assert len(set(speeds)) == len(inertias)
-    assert sw.simulate_many([], command(0.02)) == []
-
-
 # Friction at three places, noise and temperature
 
 MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4)
@@ -259,7 +250,7 @@ def test_drives_side_by_side_and_derivatives_see_mesh_and_temperature_too() -> N
     arguments = {"load_torque": 3.0, "temperature": sw.scenario.ramp(100.0, 0.3) + sw.scenario.constant(293.15, 0.3)}
     voltage = sw.scenario.sine(24.0, 5.0, 0.3)
     alone = sw.simulate(drive, voltage, dt=1e-4, sample=1e-3, **arguments)
-    (packed,) = sw.simulate_many([drive], voltage, dt=1e-4, sample=1e-3, **arguments)
+    packed = side_by_side([drive], voltage, dt=1e-4, sample=1e-3, **arguments).member(0)
     dual, _ = derivatives(drive, voltage, [0], 1e-4, 1e-3, **arguments)
     for name in ("input_speed", "friction_mesh", "temperature"):
         size = np.abs(alone[name]).max()
@@ -288,7 +279,6 @@ def test_a_drive_that_leaves_the_domain_of_a_part_is_refused_with_part_numbers_a
     drive = open_loop(friction_input=law)
     for run in (
         lambda: sw.simulate(drive, voltage),
-        lambda: sw.simulate_many([drive] * 3, voltage),
         lambda: derivatives(drive, voltage, [0], 2e-4, 1e-2),
     ):
         with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = ") as refusal:
@@ -320,8 +310,6 @@ def test_the_place_that_is_out_of_its_domain_is_named_also_inside_another_law(pl
 def test_a_step_or_a_sample_that_is_not_positive_is_refused(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=rf"^{name} = {value} s must lie in \(0, inf\)$"):
         sw.simulate(DRIVE, command(0.1), **{name: value})
-    with pytest.raises(ValueError, match=rf"^{name} = {value} s must lie in \(0, inf\)$"):
-        sw.simulate_many([DRIVE], command(0.1), **{name: value})
 
 
 @pytest.mark.parametrize("name", ["load_torque", "temperature"])
@@ -329,7 +317,7 @@ def test_a_load_torque_or_a_temperature_of_another_length_or_not_finite_is_refus
     with pytest.raises(ValueError, match=rf"^{name} lasts 0\.2 s, command 0\.1 s; both must last equally long$"):
         sw.simulate(DRIVE, command(0.1), **{name: sw.scenario.constant(300.0, 0.2)})
     with pytest.raises(ValueError, match=rf"^{name} = nan must be finite$"):
-        sw.simulate_many([DRIVE], command(0.1), **{name: float("nan")})
+        sw.simulate(DRIVE, command(0.1), **{name: float("nan")})
 
 
 @pytest.mark.parametrize("temperature", [-20.0, sw.scenario.step(-313.15, 0.1, start=0.07) + sw.scenario.constant(293.15, 0.1)])
@@ -338,18 +326,12 @@ def test_a_temperature_below_absolute_zero_is_refused(temperature: sw.scenario.S
         sw.simulate(DRIVE, command(0.1), temperature=temperature)
 
 
-def test_drives_of_different_models_do_not_run_side_by_side() -> None:
-    with pytest.raises(ValueError, match=r"^drives run side by side must choose the same models"):
-        sw.simulate_many([DRIVE, STICKING], command(0.1))
-
-
 DIVERGED = r"left the finite numbers at t = [\d.]+ s \(.*\); take a smaller dt \(now 0\.05 s\)"
 
 
 def diverging(drive: sw.drives.PositionDrive) -> Iterator[Callable[[], object]]:
     """The same too coarse run, each way there is."""
     yield lambda: sw.simulate(drive, command(5.0), dt=0.05)
-    yield lambda: sw.simulate_many([drive], command(5.0), dt=0.05)
     yield lambda: derivatives(drive, command(5.0), [0], 0.05, 0.05)
 
 

@@ -35,16 +35,15 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
 inline constexpr int most_events = 16;
 
 /// One step with set-valued friction. Each stretch ends where a side stops or breaks away; that side is put exactly at rest or set
-/// sliding, and the next begins. Where events chatter, what is left of the step is one of Moreau and Jean's.
-template <class S, class Drive>
+/// sliding, and the next begins. Where events chatter, what is left of the step is one of Moreau and Jean's. `smooth` takes a step
+/// without events.
+template <class S, class Drive, class Smooth>
 constexpr typename Drive::State event_driven_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
-                                                  const S& dt) {
+                                                  const S& dt, const Smooth& smooth) {
     auto x = drive.released(before, u.start);
     S done{0.0};
     for (int events = 0;; ++events) {
-        const auto reach = [&](const S& fraction) {
-            return exponential_step(drive, x, u.part(done, fraction, dt), (fraction - done) * dt);
-        };
+        const auto reach = [&](const S& fraction) { return smooth(drive, x, u.part(done, fraction, dt), (fraction - done) * dt); };
         const auto end = reach(S(1.0));
         const S margin = drive.margin(end, u.end);
         const auto crosses = margin < S(0.0);

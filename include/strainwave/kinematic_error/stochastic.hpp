@@ -145,12 +145,7 @@ struct Stochastic {
     };
 
     /// Whether it makes any difference, or could be sought to make one.
-    constexpr bool active() const {
-        if constexpr (differentiates<S>)
-            for (const auto& sought : amplitude.slope)
-                if (sought != 0.0) return true;
-        return any(amplitude > S(0.0));
-    }
+    constexpr bool active() const { return sought(amplitude) || any(amplitude > S(0.0)); }
 
     constexpr S rms(const S& torque, const S& speed) const { return scaled().rms(torque, speed); }
 

@@ -1,9 +1,20 @@
 #pragma once
-#include <strainwave/math.hpp>
+#include <strainwave/scalar/pack.hpp>
 
 namespace strainwave {
 
-/// A number with its derivatives with respect to n parameters: forward-mode differentiation, exact to rounding.
+namespace detail {
+
+/// A vector that lies anywhere: a number and its derivatives without a gap between them.
+template <class T, int bytes>
+struct Slope {
+    typedef T type [[gnu::vector_size(bytes), gnu::aligned(alignof(T))]];
+};
+
+}  // namespace detail
+
+/// A number with its derivatives with respect to n parameters, n a power of two: forward-mode differentiation, exact to rounding.
+/// The derivatives are the lanes of a vector.
 template <int n>
 struct Dual {
     /// Whether a comparison holds. Not a bool, for which `&` looks like a slip of the pen to a compiler.
@@ -15,42 +26,49 @@ struct Dual {
     };
 
     double value{0.0};
-    double slope[n]{};
+    typename detail::Slope<double, n * sizeof(double)>::type slope{};
 
     constexpr Dual() = default;
+    // Written out, so that the derivatives are copied as a vector: of types it may copy as bytes, GCC copies bytes.
+    constexpr Dual(const Dual& x) : value(x.value), slope(x.slope) {}
+    constexpr Dual& operator=(const Dual& x) {
+        value = x.value;
+        slope = x.slope;
+        return *this;
+    }
     constexpr Dual(double x) : value(x) {}
 
     /// A function of `x` with this value and derivative.
     static constexpr Dual chain(const Dual& x, double value, double derivative) {
         Dual y(value);
-        for (int i = 0; i < n; ++i) y.slope[i] = derivative * x.slope[i];
+        y.slope = x.slope * derivative;
         return y;
     }
 
     friend constexpr Dual operator+(const Dual& a, const Dual& b) {
         Dual y(a.value + b.value);
-        for (int i = 0; i < n; ++i) y.slope[i] = a.slope[i] + b.slope[i];
+        y.slope = a.slope + b.slope;
         return y;
     }
     friend constexpr Dual operator-(const Dual& a, const Dual& b) {
         Dual y(a.value - b.value);
-        for (int i = 0; i < n; ++i) y.slope[i] = a.slope[i] - b.slope[i];
+        y.slope = a.slope - b.slope;
         return y;
     }
     friend constexpr Dual operator-(const Dual& a) {
         Dual y(-a.value);
-        for (int i = 0; i < n; ++i) y.slope[i] = -a.slope[i];
+        y.slope = -a.slope;
         return y;
     }
     friend constexpr Dual operator*(const Dual& a, const Dual& b) {
         Dual y(a.value * b.value);
-        for (int i = 0; i < n; ++i) y.slope[i] = a.slope[i] * b.value + a.value * b.slope[i];
+        y.slope = a.slope * b.value + b.slope * a.value;
         return y;
     }
     friend constexpr Dual operator/(const Dual& a, const Dual& b) {
         const double quotient = a.value / b.value, inverse = 1.0 / b.value;
         Dual y(quotient);
-        for (int i = 0; i < n; ++i) y.slope[i] = (a.slope[i] - quotient * b.slope[i]) * inverse;
+        y.slope = (a.slope - b.slope * quotient) * inverse;
         return y;
     }
     friend constexpr Mask operator<(const Dual& a, const Dual& b) { return {a.value < b.value}; }
@@ -58,7 +76,11 @@ struct Dual {
     friend constexpr Mask operator>=(const Dual& a, const Dual& b) { return {a.value >= b.value}; }
     friend constexpr Mask operator==(const Dual& a, const Dual& b) { return {a.value == b.value}; }
 
-    friend constexpr Dual select(bool mask, const Dual& a, const Dual& b) { return mask ? a : b; }
+    friend constexpr Dual select(bool mask, const Dual& a, const Dual& b) {
+        Dual y(mask ? a.value : b.value);
+        y.slope = mask ? a.slope : b.slope;
+        return y;
+    }
     friend constexpr Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
     friend constexpr Dual detached(const Dual& x) { return Dual(x.value); }
     friend Dual rint(const Dual& x) { return Dual(strainwave::rint(x.value)); }
@@ -72,18 +94,19 @@ struct Dual {
         const double y = strainwave::sqrt(x.value);
         return chain(x, y, 0.5 / y);
     }
-    friend Dual sin(const Dual& x) { return chain(x, strainwave::sin(x.value), strainwave::cos(x.value)); }
-    friend Dual cos(const Dual& x) { return chain(x, strainwave::cos(x.value), -strainwave::sin(x.value)); }
+    friend Dual sin(const Dual& x) { return sincos(x).sin; }
+    friend Dual cos(const Dual& x) { return sincos(x).cos; }
     friend SinCos<Dual> sincos(const Dual& x) {
-        const double s = strainwave::sin(x.value), c = strainwave::cos(x.value);
+        const auto [s, c] = strainwave::sincos(x.value);
         return {chain(x, s, c), chain(x, c, -s)};
     }
-    /// A number that a derivative is sought for is treated as any other, whole or not.
-    friend constexpr int whole(const Dual& x, int highest) {
-        for (double d : x.slope)
-            if (d != 0.0) return 0;
-        return strainwave::whole(x.value, highest);
+    friend constexpr bool sought(const Dual& x) {
+        for (int i = 0; i < n; ++i)
+            if (x.slope[i] != 0.0) return true;
+        return false;
     }
+    /// A number that a derivative is sought for is treated as any other, whole or not.
+    friend constexpr int whole(const Dual& x, int highest) { return sought(x) ? 0 : strainwave::whole(x.value, highest); }
 };
 
 template <int n>

@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/math.hpp>
+#include <strainwave/scalar/elementary.hpp>
 
 namespace strainwave {
 
@@ -10,84 +11,155 @@ struct Vector {
     typedef T type [[gnu::vector_size(bytes)]];
 };
 
+/// Doubles in a register of the instruction set compiled for.
+#if defined(__AVX512F__)
+inline constexpr int register_width = 8;
+#elif defined(__AVX__)
+inline constexpr int register_width = 4;
+#else
+inline constexpr int register_width = 2;
+#endif
+
 }  // namespace detail
 
-/// `n` numbers that take every step together: one vector register, or several, of whatever the machine has.
+/// `n` numbers that take every step together, in as many vector registers as they need. Every lane holds the same numbers whatever
+/// the registers.
 template <int n>
 struct Pack {
-    using Lanes = typename detail::Vector<double, n * sizeof(double)>::type;
-    using Bits = typename detail::Vector<long long, n * sizeof(double)>::type;
+    static constexpr int width = detail::register_width < n ? detail::register_width : n, count = n / width;
+    using Lanes = typename detail::Vector<double, width * sizeof(double)>::type;
+    using Bits = elementary::WordOf<Lanes>;
 
     /// Which lanes a comparison holds in: all bits of a lane, or none.
     struct Mask {
-        Bits bits;
-        friend constexpr Mask operator&(const Mask& a, const Mask& b) { return {a.bits & b.bits}; }
-        friend constexpr Mask operator!(const Mask& a) { return {~a.bits}; }
+        Bits part[count];
+        friend constexpr Mask operator&(const Mask& a, const Mask& b) {
+            Mask y;
+            for (int i = 0; i < count; ++i) y.part[i] = a.part[i] & b.part[i];
+            return y;
+        }
+        friend constexpr Mask operator!(const Mask& a) {
+            Mask y;
+            for (int i = 0; i < count; ++i) y.part[i] = ~a.part[i];
+            return y;
+        }
         friend bool any(const Mask& mask) {
-            long long either = 0;
-            for (int i = 0; i < n; ++i) either |= mask.bits[i];
-            return either != 0;
+            Bits either = mask.part[0];
+            for (int i = 1; i < count; ++i) either |= mask.part[i];
+            long long found = 0;
+            for (int i = 0; i < width; ++i) found |= either[i];
+            return found != 0;
         }
         friend bool all(const Mask& mask) { return !any(!mask); }
     };
 
-    Lanes lanes;
+    Lanes part[count];
 
-    constexpr Pack() : lanes{} {}
-    constexpr Pack(double x) : lanes(Lanes{} + x) {}
-    constexpr explicit Pack(Lanes x) : lanes(x) {}
-
-    double operator[](int i) const { return lanes[i]; }
-    void set(int i, double x) { lanes[i] = x; }
-
-    friend constexpr Pack operator+(const Pack& a, const Pack& b) { return Pack(a.lanes + b.lanes); }
-    friend constexpr Pack operator-(const Pack& a, const Pack& b) { return Pack(a.lanes - b.lanes); }
-    friend constexpr Pack operator*(const Pack& a, const Pack& b) { return Pack(a.lanes * b.lanes); }
-    friend constexpr Pack operator/(const Pack& a, const Pack& b) { return Pack(a.lanes / b.lanes); }
-    friend constexpr Pack operator-(const Pack& a) { return Pack(-a.lanes); }
-    friend constexpr Mask operator<(const Pack& a, const Pack& b) { return {a.lanes < b.lanes}; }
-    friend constexpr Mask operator>(const Pack& a, const Pack& b) { return {a.lanes > b.lanes}; }
-    friend constexpr Mask operator>=(const Pack& a, const Pack& b) { return {a.lanes >= b.lanes}; }
-    friend constexpr Mask operator==(const Pack& a, const Pack& b) { return {a.lanes == b.lanes}; }
-
-    friend Pack select(const Mask& mask, const Pack& a, const Pack& b) {
-        return Pack((Lanes)(((Bits)a.lanes & mask.bits) | ((Bits)b.lanes & ~mask.bits)));
+    constexpr Pack() : part{} {}
+    constexpr Pack(double x) {
+        for (Lanes& lanes : part) lanes = Lanes{} + x;
     }
-    friend Pack abs(const Pack& x) { return Pack((Lanes)((Bits)x.lanes & 0x7fffffffffffffffLL)); }
+    // Written out, so that states are copied register by register: of types it may copy as bytes, GCC copies bytes.
+    constexpr Pack(const Pack& x) {
+        for (int i = 0; i < count; ++i) part[i] = x.part[i];
+    }
+    constexpr Pack& operator=(const Pack& x) {
+        for (int i = 0; i < count; ++i) part[i] = x.part[i];
+        return *this;
+    }
+
+    double operator[](int i) const { return part[i / width][i % width]; }
+    void set(int i, double x) { part[i / width][i % width] = x; }
+
+    friend constexpr Pack operator+(const Pack& a, const Pack& b) {
+        return each([](const Lanes& x, const Lanes& y) { return x + y; }, a, b);
+    }
+    friend constexpr Pack operator-(const Pack& a, const Pack& b) {
+        return each([](const Lanes& x, const Lanes& y) { return x - y; }, a, b);
+    }
+    friend constexpr Pack operator*(const Pack& a, const Pack& b) {
+        return each([](const Lanes& x, const Lanes& y) { return x * y; }, a, b);
+    }
+    friend constexpr Pack operator/(const Pack& a, const Pack& b) {
+        return each([](const Lanes& x, const Lanes& y) { return x / y; }, a, b);
+    }
+    friend constexpr Pack operator-(const Pack& a) {
+        return each([](const Lanes& x) { return -x; }, a);
+    }
+    friend constexpr Mask operator<(const Pack& a, const Pack& b) {
+        return where([](const Lanes& x, const Lanes& y) { return x < y; }, a, b);
+    }
+    friend constexpr Mask operator>(const Pack& a, const Pack& b) {
+        return where([](const Lanes& x, const Lanes& y) { return x > y; }, a, b);
+    }
+    friend constexpr Mask operator>=(const Pack& a, const Pack& b) {
+        return where([](const Lanes& x, const Lanes& y) { return x >= y; }, a, b);
+    }
+    friend constexpr Mask operator==(const Pack& a, const Pack& b) {
+        return where([](const Lanes& x, const Lanes& y) { return x == y; }, a, b);
+    }
+
+    friend constexpr Pack select(const Mask& mask, const Pack& a, const Pack& b) {
+        Pack y;
+        for (int i = 0; i < count; ++i) y.part[i] = elementary::blend(mask.part[i], a.part[i], b.part[i]);
+        return y;
+    }
+    friend constexpr Pack abs(const Pack& x) {
+        return each([](const Lanes& lanes) { return (Lanes)((Bits)lanes & 0x7fffffffffffffffLL); }, x);
+    }
     /// Nearest whole number, ties to even; exact for |x| < 2^51.
-    friend Pack rint(const Pack& x) {
-        const Pack magic(6755399441055744.0);
-        return (x + magic) - magic;
-    }
-    friend Pack sqrt(const Pack& x) {
-        return each(x, [](double lane) { return strainwave::sqrt(lane); });
+    friend constexpr Pack rint(const Pack& x) {
+        return each([](const Lanes& lanes) { return (lanes + elementary::rounder) - elementary::rounder; }, x);
     }
     friend Pack exp(const Pack& x) {
-        return each(x, [](double lane) { return strainwave::exp(lane); });
-    }
-    friend Pack log(const Pack& x) {
-        return each(x, [](double lane) { return strainwave::log(lane); });
-    }
-    friend Pack atan(const Pack& x) {
-        return each(x, [](double lane) { return strainwave::atan(lane); });
+        return each([](const Lanes& lanes) { return elementary::exp(lanes); }, x);
     }
     friend SinCos<Pack> sincos(const Pack& x) {
-        SinCos<Pack> y{};
-        for (int i = 0; i < n; ++i) {
-            const auto one = strainwave::sincos(x[i]);
-            y.sin.set(i, one.sin);
-            y.cos.set(i, one.cos);
+        SinCos<Pack> y;
+        if (any(!(abs(x) < Pack(elementary::farthest)))) {
+            for (int i = 0; i < n; ++i) {
+                const auto one = strainwave::sincos(x[i]);
+                y.sin.set(i, one.sin);
+                y.cos.set(i, one.cos);
+            }
+            return y;
+        }
+        for (int i = 0; i < count; ++i) {
+            const auto found = elementary::sincos(x.part[i]);
+            y.sin.part[i] = found.sine;
+            y.cos.part[i] = found.cosine;
         }
         return y;
     }
     friend Pack sin(const Pack& x) { return sincos(x).sin; }
     friend Pack cos(const Pack& x) { return sincos(x).cos; }
+    friend Pack sqrt(const Pack& x) {
+        return one_by_one(x, [](double lane) { return strainwave::sqrt(lane); });
+    }
+    friend Pack log(const Pack& x) {
+        return one_by_one(x, [](double lane) { return strainwave::log(lane); });
+    }
+    friend Pack atan(const Pack& x) {
+        return one_by_one(x, [](double lane) { return strainwave::atan(lane); });
+    }
     /// Whole in every lane, and the same.
     friend int whole(const Pack& x, int highest) { return all(x == Pack(x[0])) ? strainwave::whole(x[0], highest) : 0; }
 
 private:
+    template <class F, class... Packs>
+    static constexpr Pack each(F&& f, const Packs&... x) {
+        Pack y;
+        for (int i = 0; i < count; ++i) y.part[i] = f(x.part[i]...);
+        return y;
+    }
     template <class F>
-    static Pack each(const Pack& x, F&& f) {
+    static constexpr Mask where(F&& f, const Pack& a, const Pack& b) {
+        Mask mask;
+        for (int i = 0; i < count; ++i) mask.part[i] = f(a.part[i], b.part[i]);
+        return mask;
+    }
+    template <class F>
+    static Pack one_by_one(const Pack& x, F&& f) {
         Pack y;
         for (int i = 0; i < n; ++i) y.set(i, f(x[i]));
         return y;

@@ -7,7 +7,7 @@ namespace strainwave::host {
 
 namespace {
 
-constexpr int width = 4;
+constexpr int width = 8;
 using Slope = Dual<width>;
 
 /// The same set with its parameters number `first` and following as the numbers that derivatives are taken by.

@@ -1,0 +1,28 @@
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+
+#include "simulate.hpp"
+
+/// A module that holds the loops over time, compiled for one instruction set, and hands out where they are.
+namespace {
+
+using namespace strainwave::host;
+
+const Kernels kernels{&simulate,           &simulate_many,       &observe, &differentiate, &observe_derivatives,
+                      &differentiate_loop, &differentiate_steady};
+
+PyModuleDef definition{PyModuleDef_HEAD_INIT, SW_MODULE, nullptr, -1, nullptr, nullptr, nullptr, nullptr, nullptr};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) PyObject* SW_INITIALISE() {
+    PyObject* module = PyModule_Create(&definition);
+    if (!module) return nullptr;
+    PyObject* capsule = PyCapsule_New(const_cast<Kernels*>(&kernels), "strainwave." SW_MODULE ".kernels", nullptr);
+    if (!capsule || PyModule_AddObject(module, "kernels", capsule) < 0) {
+        Py_XDECREF(capsule);
+        Py_DECREF(module);
+        return nullptr;
+    }
+    return module;
+}

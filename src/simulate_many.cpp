@@ -1,0 +1,167 @@
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+#include "describe.hpp"
+#include "simulate.hpp"
+
+namespace strainwave::host {
+
+namespace {
+
+constexpr int lanes = 8;
+using Lanes = Pack<lanes>;
+
+/// Thrown in a thread whose work nobody wants any more.
+struct Stopped {};
+
+/// A run of many members: what all threads share.
+class Crowd {
+    const Parts parts;
+    const Variation& variation;
+    const Course& course;
+    const std::vector<int>& recorded;
+    double* const out;
+    const std::size_t samples;
+    std::vector<int> place_of;  // of each number in the variation, or -1
+    std::vector<Verdict> verdicts;
+    std::atomic<std::size_t> next{0}, done{0};
+    std::atomic<bool> stopping{false};
+
+public:
+    Crowd(const Drive& drive, const Variation& variation_, const Course& course_, const std::vector<int>& recorded_, double* out_,
+          std::size_t kept)
+        : parts(parts_of(drive)),
+          variation(variation_),
+          course(course_),
+          recorded(recorded_),
+          out(out_),
+          samples(kept + 1),
+          place_of(parts.numbers.size(), -1),
+          verdicts(variation.members) {
+        for (std::size_t p = 0; p < variation.numbers.size(); ++p) place_of[variation.numbers[p]] = int(p);
+    }
+
+    std::size_t packs() const { return (variation.members + lanes - 1) / lanes; }
+    std::size_t steps_done() const { return done; }
+    std::vector<Verdict> result() { return std::move(verdicts); }
+    void stop() { stopping = true; }
+
+    /// Runs packs until none is left.
+    void work() {
+        for (std::size_t pack; (pack = next++) < packs();) {
+            const std::size_t first = pack * lanes, count = std::min<std::size_t>(lanes, variation.members - first);
+            try {
+                run_members<Lanes>(first, count);
+            } catch (const OutOfBounds&) {  // of one member: the others of its pack go on by themselves
+                for (std::size_t member = first; member < first + count; ++member) run_alone(member);
+            }
+            done += count * course.steps;
+        }
+    }
+
+private:
+    double number(int i, std::size_t member) const {
+        const int place = place_of[i];
+        return place < 0 ? parts.numbers[i] : variation.values[place * variation.members + member];
+    }
+
+    /// Members `first` and following as one drive; a pack that is not full repeats its last member.
+    template <class S>
+    AnyPositionDrive<S> assembled_from(std::size_t first, std::size_t count) const {
+        return assembled<AnyPositionDrive<S>, S>(parts.shape, [&](int i) {
+            if constexpr (std::is_same_v<S, double>) {
+                return number(i, first);
+            } else {
+                S x;
+                for (int lane = 0; lane < lanes; ++lane) x.set(lane, number(i, first + std::min<std::size_t>(lane, count - 1)));
+                return x;
+            }
+        });
+    }
+
+    template <class S>
+    void run_members(std::size_t first, std::size_t count) {
+        const auto drive = assembled_from<S>(first, count);
+        std::size_t k = 0;
+        S twist{0.0};
+        const auto record = [&](const Output<S>& output) {
+            write(flattened<S>(output), first, count, k++);
+            twist = select(abs(output.twist) < twist, twist, abs(output.twist));  // keeps what is not a number
+        };
+        record(drive.output(drive.rest(), interval<S>(course.inputs).start));
+        run<S>(drive, drive.rest(), course, record, [this](std::size_t) {
+            if (stopping) throw Stopped{};
+        });
+        const S vibration = drive.vibration(twist);
+        for (std::size_t i = 0; i < count; ++i) verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), {}};
+    }
+
+    void run_alone(std::size_t member) {
+        for (std::size_t c = 0; c < recorded.size(); ++c) {
+            double* const row = out + (c * variation.members + member) * samples;
+            std::fill(row, row + samples, std::numeric_limits<double>::quiet_NaN());
+        }
+        try {
+            run_members<double>(member, 1);
+        } catch (const OutOfBounds& error) {
+            verdicts[member].refusal = error;
+        }
+    }
+
+    template <class S>
+    void write(const Array<S, channels>& values, std::size_t first, std::size_t count, std::size_t k) {
+        for (std::size_t c = 0; c < recorded.size(); ++c)
+            for (std::size_t i = 0; i < count; ++i)
+                out[(c * variation.members + first + i) * samples + k] = lane_of(values[recorded[c]], i);
+    }
+    static double lane_of(double x, std::size_t) { return x; }
+    static double lane_of(const Lanes& x, std::size_t i) { return x[int(i)]; }
+};
+
+}  // namespace
+
+std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
+                                   const std::vector<int>& recorded, int threads, double* out, std::size_t kept,
+                                   const Pause& pause) {
+    Crowd crowd(drive, variation, course, recorded, out, kept);
+    std::mutex lock;
+    std::condition_variable ended;
+    std::exception_ptr failure;
+    std::size_t working = std::min<std::size_t>(std::max(threads, 1), crowd.packs());
+    const auto work = [&] {
+        std::exception_ptr caught;
+        try {
+            crowd.work();
+        } catch (const Stopped&) {
+        } catch (...) {
+            caught = std::current_exception();
+            crowd.stop();
+        }
+        const std::lock_guard held(lock);
+        if (caught) failure = caught;
+        --working;
+        ended.notify_one();
+    };
+    std::vector<std::jthread> team;
+    for (std::size_t i = working; i > 0; --i) team.emplace_back(work);
+    std::unique_lock held(lock);
+    while (!ended.wait_for(held, std::chrono::milliseconds(50), [&] { return working == 0; })) {
+        held.unlock();
+        try {
+            pause(crowd.steps_done());
+        } catch (...) {
+            crowd.stop();
+            throw;  // the threads are joined on the way
+        }
+        held.lock();
+    }
+    if (failure) std::rethrow_exception(failure);
+    return crowd.result();
+}
+
+}  // namespace strainwave::host

@@ -1,0 +1,21 @@
+"""Drives of one shape, run as members of an ensemble."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import strainwave as sw
+from strainwave import _core
+
+
+def side_by_side(
+    drives: Sequence[sw.drives.PositionDrive], command: sw.scenario.Scenario, dt: float, **others: Any
+) -> sw.Ensemble:
+    """All numbers of all drives, all outputs recorded."""
+    paths = [path for path, *_ in _core.parameters(drives[0])]
+    values = np.array([[value for _, value, *_ in _core.parameters(drive)] for drive in drives])
+    record = [name for name, _, _ in _core.outputs]
+    parameters = dict(zip(paths, values.T, strict=True))
+    return sw.simulate_many(drives[0], command, parameters, dt, record=record, **others)
