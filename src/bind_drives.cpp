@@ -116,10 +116,17 @@ nb::tuple now_derivatives(const Drive& drive, const Numbers& u, const std::vecto
     return nb::make_tuple(out, slopes);
 }
 
-template <auto differentiate>
-nb::tuple curve(const AnyGear<double>& gear, const Numbers& path, const std::vector<int>& parameters) {
-    Values out = array({path.size()}), slopes = array({parameters.size(), path.size()});
-    (kernels().*differentiate)(gear, path.data(), path.size(), parameters, out.data(), slopes.data());
+nb::tuple loop_derivatives(const AnyGear<double>& gear, const Numbers& twist, const std::vector<int>& parameters) {
+    const std::size_t n = twist.size();
+    for (std::size_t i = 0; i < n; ++i) check_domain("gear.stiffness", domain<double>(gear.stiffness, twist.data()[i]));
+    Values out = array({n}), slopes = array({parameters.size() + 1, n});
+    kernels().differentiate_loop(gear, twist.data(), n, parameters, out.data(), slopes.data());
+    return nb::make_tuple(out, slopes);
+}
+
+nb::tuple steady_derivatives(const AnyGear<double>& gear, const Numbers& speed, const std::vector<int>& parameters) {
+    Values out = array({speed.size()}), slopes = array({parameters.size(), speed.size()});
+    kernels().differentiate_steady(gear, speed.data(), speed.size(), parameters, out.data(), slopes.data());
     return nb::make_tuple(out, slopes);
 }
 
@@ -297,13 +304,12 @@ void bind_drives(nb::module_& core) {
              nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Outputs at rest and their derivatives, as `differentiate` gives them for one sample.");
-    core.def("differentiate_loop", &curve<&Kernels::differentiate_loop>, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
+    core.def("differentiate_loop", &loop_derivatives, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
              nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape "
-             "(parameters, n).");
-    core.def("differentiate_steady", &curve<&Kernels::differentiate_steady>, nb::arg("gear"), nb::arg("speed"),
-             nb::arg("parameters"),
+             "(parameters + 1, n), the last by a shift of all points but the first.");
+    core.def("differentiate_steady", &steady_derivatives, nb::arg("gear"), nb::arg("speed"), nb::arg("parameters"),
              nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).");

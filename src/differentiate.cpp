@@ -59,15 +59,20 @@ void observe_derivatives(const Drive& drive, const Input<double>& u, const std::
 void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
                         double* out, double* slopes) {
     const Parts parts = parts_of(gear);
-    for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
+    const std::size_t shift = parameters.size();
+    for (std::size_t first = 0; first <= shift; first += width) {
         const auto dual = seeded<AnyGear<Slope>>(parts, parameters, first);
+        const auto point = [&](std::size_t i) {
+            Slope x(twist[i]);
+            if (i > 0 && shift < first + width) x.slope[shift - first] = 1.0;
+            return x;
+        };
         auto held = typename decltype(dual.hysteresis)::State{};
         for (std::size_t i = 0; i < n; ++i) {
-            if (i > 0) held = dual.hysteresis.advance(held, Slope(twist[i] - twist[i - 1]));
-            const Slope torque = dual.stiffness.torque(Slope(twist[i])) + dual.hysteresis.torque(held, Slope(0.0));
+            if (i > 0) held = dual.hysteresis.advance(held, point(i) - point(i - 1));
+            const Slope torque = dual.stiffness.torque(point(i)) + dual.hysteresis.torque(held, Slope(0.0));
             out[i] = torque.value;
-            for (std::size_t p = first; p < first + width && p < parameters.size(); ++p)
-                slopes[p * n + i] = torque.slope[p - first];
+            for (std::size_t p = first; p < first + width && p <= shift; ++p) slopes[p * n + i] = torque.slope[p - first];
         }
     }
 }

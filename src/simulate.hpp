@@ -54,7 +54,8 @@ void differentiate(const Drive& drive, const Course& course, const std::vector<i
 void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
                          double* slopes);
 
-/// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i].
+/// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i], the last
+/// by a shift of all points but the first.
 void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
                         double* out, double* slopes);
 

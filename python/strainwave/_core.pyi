@@ -322,7 +322,7 @@ def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: numpy.typing
 
 def differentiate_loop(gear: Gear, twist: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
-    Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape (parameters, n).
+    Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape (parameters + 1, n), the last by a shift of all points but the first.
     """
 
 def differentiate_steady(gear: Gear, speed: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:

@@ -161,16 +161,17 @@ class TorsionLoop:
         return 0.5 * float(self.twist.min() + self.twist.max())
 
     def path(self, twist_zero: float) -> Array:
-        """The twist from its zero, with the run before that a cyclic history needs."""
+        """The twist from its zero, where the gear is virgin, with the run before that a cyclic history needs."""
         path = self.twist - twist_zero
-        return np.concatenate((path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
+        return np.concatenate(([0.0], path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
 
     def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         torque_zero, twist_zero = (*nuisances, self.twist_zero)[:2]
         n = len(self.twist)
         torque, slopes = _core.differentiate_loop(model, self.path(twist_zero), list(numbers))
-        by_zeros = np.stack((np.ones(n), -model.stiffness.tangent(self.twist - twist_zero)))[: len(nuisances)]
-        return torque[np.newaxis, -n:] + torque_zero, np.concatenate((slopes[:, -n:], by_zeros))[:, np.newaxis]
+        *by_numbers, by_shift = slopes[:, -n:]
+        by_zeros = (np.ones(n), -by_shift)[: len(nuisances)]
+        return torque[np.newaxis, -n:] + torque_zero, np.stack((*by_numbers, *by_zeros))[:, np.newaxis]
 
     def virgin(self) -> TorsionLoop:
         """The same measurement, taken to be the first loading."""
