@@ -133,7 +133,8 @@ def fit(
         the fitted model with its uncertainty
 
     Raises:
-        ValueError: an unknown path, too few samples, a recording without the columns needed
+        ValueError: an unknown path, too few samples, a recording without the columns needed, a model that is not valid over
+            the measurement from the start
 
     >>> import numpy as np, strainwave as sw
     >>> truth = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
@@ -263,7 +264,10 @@ class _Problem:
         low, high = np.array([(p.low, p.high) for p in self.places] + free_ends).reshape(-1, 2).T
 
         def residuals(x: Array) -> Array:
-            predicted, _ = self.predict(x)
+            try:
+                predicted, _ = self.predict(x)
+            except ValueError:  # out of the model's domain; of a step to where nothing is finite SciPy takes a quarter
+                predicted = np.full_like(self.experiment.measured, np.inf)
             return ((predicted - self.experiment.measured) * weights)[:, self.training].ravel()
 
         def jacobian(x: Array) -> Array:
@@ -271,6 +275,7 @@ class _Problem:
             return (slopes * weights)[:, :, self.training].reshape(len(x), -1).T
 
         inside = np.clip(start, low, high)
+        self.predict(inside)  # whatever is wrong with the start is told
         solution = least_squares(
             residuals,
             inside,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import strainwave as sw
@@ -83,6 +85,42 @@ def test_a_drive_log_gives_friction_and_stiffness_back_whatever_the_zeros_of_its
     assert values["output_angle_zero"] == pytest.approx(-1.0, abs=1e-9)
 
 
+DENSITIES = {
+    "power": (sw.hysteresis.PowerDensity(limit=1e-3, saturation=6.0, exponent=3.0), ["limit", "saturation", "exponent"]),
+    "grid": (sw.hysteresis.GridDensity(limit=1e-3, weight=[0.5, 1.0, 1.5]), ["weight"]),
+}
+
+
+def scattered(density: Any, free: list[str]) -> Any:
+    """The density with other numbers where it is free."""
+    return density.replace(**{name: (np.array(getattr(density, name)) * 1.2).tolist() for name in free})
+
+
+@pytest.mark.parametrize(("density", "free"), DENSITIES.values(), ids=DENSITIES)
+def test_a_density_within_preisachs_law_comes_back_from_a_loop(density: Any, free: list[str]) -> None:
+    twist = 7e-4 * np.sin(np.linspace(0.0, 2.0 * np.pi, 161)) + 1e-4
+    truth = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1e4, a3=1e9), hysteresis=sw.hysteresis.Preisach(density=density))
+    loop = TorsionLoop(twist + 2e-4, truth.trace(np.tile(twist, 2))[-len(twist) :] - 1.0)
+    start = truth.replace(hysteresis=sw.hysteresis.Preisach(density=scattered(density, free)))
+    found = sw.fit(start, loop, [f"hysteresis.density.{name}" for name in free])
+    for name in free:
+        assert getattr(found.gear.hysteresis.density, name) == pytest.approx(getattr(density, name), rel=1e-6)
+    assert [e.value for e in found.estimates[-2:]] == pytest.approx([-1.0, 2e-4], rel=1e-6)
+
+
+@pytest.mark.parametrize(("density", "free"), DENSITIES.values(), ids=DENSITIES)
+def test_a_density_within_preisachs_law_comes_back_from_a_log(density: Any, free: list[str]) -> None:
+    def with_density(changed: Any) -> sw.drives.PositionDrive:
+        return drive().replace(gear=drive().gear.replace(hysteresis=sw.hysteresis.Preisach(density=changed)))
+
+    samples = np.linspace(0.0, 0.3, 301)
+    command = sw.scenario.table(samples, 24.0 * np.sin(20.0 * np.pi * samples))
+    run = sw.simulate(with_density(density), command, sample=1e-3).select(["time", "command", "input_angle", "output_angle"])
+    found = sw.fit(with_density(scattered(density, free)), run, [f"gear.hysteresis.density.{name}" for name in free])
+    for name in free:
+        assert getattr(found.gear.hysteresis.density, name) == pytest.approx(getattr(density, name), rel=1e-5)
+
+
 def test_noise_in_two_channels_of_different_size_is_weighed_by_itself() -> None:
     found = sw.fit(drive(a1=1.2e4), drive_log(noise=1e-3), ["gear.stiffness.a1", "gear.friction_input.coulomb"])
     assert found.rms() == pytest.approx([1e-3, 1e-5], rel=0.1)
@@ -142,3 +180,41 @@ def test_columns_that_are_no_experiment_are_refused() -> None:
 def test_fewer_samples_than_unknowns_are_refused() -> None:
     with pytest.raises(ValueError, match="cannot determine"):
         fit(gear(), friction_table(), FREE, training=np.arange(len(SPEED)) < 2)
+
+
+COMPLIANCE = sw.stiffness.MultiCompliance(
+    flexspline_stiffness=8e3,
+    flexspline_hardening=0.02,
+    wave_generator_stiffness=2.0,
+    wave_generator_hardening=1.5,
+    reduction=100.0,
+)
+
+
+def near_the_bound() -> TorsionLoop:
+    """A loop of that spring up to 95 % of the twist it can have, 0.0132 rad."""
+    twist = 0.0125 * np.sin(np.linspace(0.3, 0.3 + 2.0 * np.pi, 121))
+    return TorsionLoop(twist, COMPLIANCE.torque(twist))
+
+
+def scaled(*factors: float) -> sw.Gear:
+    """A gear with that spring, its numbers multiplied."""
+    names = [field["name"] for field in COMPLIANCE.fields]
+    changed = {name: factor * getattr(COMPLIANCE, name) for name, factor in zip(names, factors, strict=False)}
+    return sw.Gear(stiffness=COMPLIANCE.replace(**changed))
+
+
+@pytest.mark.parametrize("factors", [(0.76, 1.15, 1.07, 0.75), (0.87, 0.86, 1.26, 0.85)])
+def test_a_step_to_where_the_model_is_not_valid_is_taken_back(factors: tuple[float, ...]) -> None:
+    """From here the first step asks a spring for more twist than it can have."""
+    free = [f"stiffness.{field['name']}" for field in COMPLIANCE.fields if field["name"] != "reduction"]
+    found = fit(scaled(*factors), near_the_bound(), free)
+    for name in free:
+        name = name.removeprefix("stiffness.")
+        assert getattr(found.gear.stiffness, name) == pytest.approx(getattr(COMPLIANCE, name), rel=1e-6)
+
+
+def test_a_model_that_is_not_valid_from_the_start_is_refused() -> None:
+    stiffer = scaled(1.2, 1.2, 1.2, 1.2)
+    with pytest.raises(ValueError, match=r"gear.stiffness: twist = 0\.0.* rad lies outside of"):
+        fit(stiffer, near_the_bound(), ["stiffness.flexspline_stiffness"])
