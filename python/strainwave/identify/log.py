@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import friction, kinematic_error
+from strainwave import _core, friction, kinematic_error
 from strainwave.drives import PositionDrive
 from strainwave.identify.experiment import DriveLog
 from strainwave.identify.fit import Fit, fit
@@ -55,11 +56,11 @@ def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
 def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool, torsion_known: bool) -> list[str]:
     """What a log can tell that no better measurement was given for.
 
-    Friction at the input from any log; the first stiffness and the kinematic error only where both shafts have encoders.
+    Friction at the input from any log, that of a law within `Cyclic` or `Thermal` too; the first stiffness and the kinematic
+    error only where both shafts have encoders.
     """
-    law = drive.gear.friction_input
-    parameters = {field["name"] for field in law.fields}
-    free = [] if friction_known else [f"gear.friction_input.{name}" for name in ("coulomb", "viscous") if name in parameters]
+    paths = [path for path, *_ in _core.parameters(drive) if path.startswith("gear.friction_input.")]
+    free = [] if friction_known else [path for path in paths if path.rpartition(".")[2] in ("coulomb", "viscous")]
     if {"input_angle", "output_angle"} <= set(log.channels):
         if not torsion_known:
             free.append(f"gear.stiffness.{drive.gear.stiffness.fields[0]['name']}")
@@ -69,13 +70,17 @@ def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool
 
 def prepared(log: DriveLog, drive: PositionDrive) -> PositionDrive:
     """The drive with a gear whose laws have the parameters that the log can tell, started near the measurement."""
-    gear = drive.gear
-    if isinstance(gear.friction_input, friction.Viscous):
-        viscous = gear.friction_input.viscous
-        gear = gear.replace(friction_input=friction.Coulomb(coulomb=1e-3, breakaway=1e-3, viscous=viscous))
+    gear = drive.gear.replace(friction_input=_with_coulomb(drive.gear.friction_input))
     if {"input_angle", "output_angle"} <= set(log.channels):
         gear = gear.replace(kinematic_error=_harmonics(log, gear.kinematics.ratio))
     return drive.replace(gear=gear)
+
+
+def _with_coulomb(law: Any) -> Any:
+    """A law of friction with Coulomb's in place of a purely viscous one, within others too."""
+    if isinstance(law, friction.Viscous):
+        return friction.Coulomb(coulomb=1e-3, breakaway=1e-3, viscous=law.viscous)
+    return law.replace(law=_with_coulomb(law.law)) if hasattr(law, "law") else law
 
 
 def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:

@@ -25,10 +25,10 @@ def drive(gear: sw.Gear) -> sw.drives.PositionDrive:
     )
 
 
-def recording(columns: list[str], noise: float = 0.0) -> sw.Recording:
+def recording(columns: list[str], noise: float = 0.0, gear: sw.Gear = TRUTH) -> sw.Recording:
     time = np.linspace(0.0, 2.0, 1001)
     command = sw.scenario.table(time, 5.0 * np.sin(2.0 * np.pi * time) * np.minimum(1.0, 5.0 * time))
-    run = sw.simulate(drive(TRUTH), command, sample=2e-3).select(["time", "command", *columns])
+    run = sw.simulate(drive(gear), command, sample=2e-3).select(["time", "command", *columns])
     random = np.random.default_rng(7)
     scale = {"input_angle": 1.0, "output_angle": 1e-2, "current": 10.0}
     return sw.Recording(
@@ -55,6 +55,25 @@ def test_two_encoders_tell_friction_stiffness_and_kinematic_error() -> None:
     assert gear.stiffness.k == pytest.approx(1.2e4, rel=0.02)
     assert gear.kinematic_error.amplitude == pytest.approx((5e-5, 3e-4, 4e-5), abs=3e-6)
     assert found.error == pytest.approx([1e-3, 1e-5], rel=0.15)  # nothing but the noise is left where it was not fitted
+
+
+def modulated(law: object) -> sw.Gear:
+    """The gear with a friction that varies over the turn, and with the temperature."""
+    cyclic = sw.friction.Cyclic(law=law, order=[2.0], amplitude=[0.3], phase=[0.4])
+    thermal = sw.friction.Thermal(law=cyclic, dry_fall=0.01, viscous_fall=0.03, reference_temperature=303.15)
+    return TRUTH.replace(friction_input=thermal)
+
+
+@pytest.mark.parametrize("start", [START.friction_input, sw.friction.Viscous(viscous=2e-4)])
+def test_friction_within_other_laws_comes_back(start: object) -> None:
+    recorded = recording(["input_angle"], gear=modulated(TRUTH.friction_input))
+    begun = drive(modulated(start))
+    log = DriveLog.of(recorded, begun)
+    begun = prepared(log, begun)
+    free = free_parameters(log, begun, friction_known=False, torsion_known=True)
+    assert free == ["gear.friction_input.law.law.coulomb", "gear.friction_input.law.law.viscous"]
+    law = fit_log(log, begun, free).fit.gear.friction_input.law.law
+    assert (law.coulomb, law.viscous) == pytest.approx((0.03, 4e-4), rel=1e-6)
 
 
 def test_one_encoder_tells_friction_alone() -> None:
