@@ -20,13 +20,13 @@ import json
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave import _core
 from strainwave.identify.experiment import FrictionTable, TorsionLoop
 from strainwave.identify.inverse_dynamics import regression
 from strainwave.identify.torsion import fit_loop, kept_back
@@ -76,14 +76,6 @@ def hysteresis_starts(half: float, span: float, secant: float) -> dict[str, list
     h = sw.hysteresis
     rates = np.array([1.0, 4.0, 15.0, 60.0]) / half
     slips = {n: half * np.geomspace(0.02, 0.8, n) for n in (4, 8)}
-    regimes = h.Regimes(
-        positive_unloading=4.0 * secant,
-        negative_unloading=4.0 * secant,
-        positive_loading=0.7 * secant,
-        negative_loading=0.7 * secant,
-        onset=0.1 * span,
-        lost_motion=0.3 * half,
-    )
     return {
         "none": [NONE],
         "FadingMemory, 1": [h.FadingMemory(stiffness=[secant], forgetting=[rate]) for rate in rates],
@@ -106,7 +98,15 @@ def hysteresis_starts(half: float, span: float, secant: float) -> dict[str, list
             for exponent in (2.0, 5.0)
         ],
         "Regimes, no other spring": [
-            regimes.replace(onset=onset * span, lost_motion=width * half) for onset in (0.02, 0.1) for width in (0.2, 0.8, 1.6)
+            h.Regimes(
+                positive_unloading=unloading * secant,
+                negative_unloading=unloading * secant,
+                positive_loading=loading * secant,
+                negative_loading=loading * secant,
+                onset=onset * span,
+                lost_motion=width * half,
+            )
+            for unloading, loading, onset, width in product((2.0, 4.0, 8.0), (0.3, 0.7), (0.02, 0.1), (0.2, 0.8, 1.6))
         ],
     }
 
@@ -119,7 +119,7 @@ def best_fit(name: str, spring: Any, starts: Sequence[Any], loop: TorsionLoop, t
         gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e-6) if whole else spring, hysteresis=start)
         free = [] if whole else [f"stiffness.{field['name']}" for field in spring.fields]
         free += paths("hysteresis", start)
-        fits.append(ranged_fit(gear, loop, free, training) if ranged(start) else exact_fit(gear, loop, free, training))
+        fits.append(fit(gear, loop, free, training))
     numbers, fitted, kept = min(fits, key=lambda found: found[1])
     return Score(name, numbers, fitted, kept)
 
@@ -147,50 +147,15 @@ def spring_scores(loop: TorsionLoop) -> list[Score]:
     scores = []
     for name, spring in springs.items():
         free = [path for path in paths("stiffness", spring) + paths("hysteresis", elements) if "reduction" not in path]
-        bounded = isinstance(spring, st.MultiCompliance)  # in its twist, which the steps of a fit need not know
-        solve = ranged_fit if bounded else exact_fit
-        numbers, fitted, kept = solve(sw.Gear(stiffness=spring, hysteresis=elements), loop, free, training)
+        numbers, fitted, kept = fit(sw.Gear(stiffness=spring, hysteresis=elements), loop, free, training)
         scores.append(Score(name, numbers, fitted / span, kept / span))
     return scores
 
 
-def ranged(hysteresis: Any) -> bool:
-    """Whether a law counts the twist from where it was virgin, so that the zero of the twist is one of its numbers."""
-    return "twist" in {field["name"] for field in hysteresis.State.fields}
-
-
-def exact_fit(gear: sw.Gear, loop: TorsionLoop, free: Sequence[str], training: NDArray[np.bool_]) -> tuple[int, float, float]:
+def fit(gear: sw.Gear, loop: TorsionLoop, free: Sequence[str], training: NDArray[np.bool_]) -> tuple[int, float, float]:
     """How many numbers, and both errors."""
     found = sw.fit(gear, loop, free, training=training)
     return len(found.estimates), *errors(found)
-
-
-def ranged_fit(gear: sw.Gear, loop: TorsionLoop, free: Sequence[str], training: NDArray[np.bool_]) -> tuple[int, float, float]:
-    """The same with differences in place of derivatives, for laws that know their range; outside it is as good as nothing."""
-    from scipy.optimize import least_squares as solve
-
-    parameters = _core.parameters(gear)
-    places = [i for i, (path, *_) in enumerate(parameters) if path in free or path.split("[")[0] in free]
-    numbers = np.array([value for _, value, *_ in parameters])
-    low = np.array([parameters[i][4] for i in places])
-    high = np.array([parameters[i][5] for i in places])
-    half, span = 0.5 * float(np.ptp(loop.twist)), float(np.ptp(loop.torque))
-    start = np.array([*numbers[places], loop.torque.mean(), loop.middle])
-    size = np.array([*np.maximum(np.abs(numbers[places]), 1e-9), span, half])
-
-    def residual(x: Array) -> Array:
-        numbers[places] = np.clip(x[:-2] * size[:-2], low, high)
-        model = _core.with_numbers(gear, numbers.tolist())
-        try:
-            torque = model.trace(loop.path(x[-1] * half))[-len(loop.twist) :]
-        except ValueError:
-            return loop.torque
-        return np.asarray(torque + x[-2] * span - loop.torque)
-
-    bounds = np.array([*low, -np.inf, -np.inf]) / size, np.array([*high, np.inf, np.inf]) / size
-    found = solve(lambda x: residual(x)[training], start / size, bounds=bounds, diff_step=1e-6)
-    left = residual(found.x)
-    return len(start), rms(left[training]), rms(left[~training])
 
 
 def paths(place: str, part: Any) -> list[str]:
@@ -226,24 +191,17 @@ def grid_score(loop: TorsionLoop, spring: Any, rows: int, training: NDArray[np.b
     return Score(f"Preisach of GridDensity, {rows} rows", len(cells) + len(springs) + 1, fitted, kept)
 
 
-class Loop(TorsionLoop):
-    """A loop whose history begins with a virgin gear at the zero of the twist, where laws that know their range begin."""
-
-    def path(self, twist_zero: float) -> Array:
-        return np.concatenate(([0.0], super().path(twist_zero)))
-
-
 def published_loop() -> TorsionLoop:
     """Document T's loop, at the input of its gear of 1:100."""
     recording = sw.Recording.from_csv(PUBLISHED / "torsional-stiffness-loop.csv")
-    return Loop(recording.values("input_angle", "rad").copy(), recording.values("input_torque", "N.m").copy())
+    return TorsionLoop(recording.values("input_angle", "rad").copy(), recording.values("input_torque", "N.m").copy())
 
 
 def measured_loops(folder: Path) -> Iterator[TorsionLoop]:
     columns = {"twist": "deflection_deg", "torque": "motor_torque_output_side_Nm"}
     for name in LOOPS:
         file = folder / f"torque-displacement_of_{name}.csv"
-        yield Loop.of(sw.Recording.from_csv(file, columns=columns, units={"twist": "deg", "torque": "N.m"}), sw.Gear())
+        yield TorsionLoop.of(sw.Recording.from_csv(file, columns=columns, units={"twist": "deg", "torque": "N.m"}), sw.Gear())
 
 
 # ---- Friction --------------------------------------------------------------------------------------------------------
