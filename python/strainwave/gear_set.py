@@ -154,6 +154,15 @@ class GearSet:
             raise ValueError(f"{self.name} has no [{'] and no ['.join(missing)}]; a drive needs a motor and a load")
         return _drive(vars(self))
 
+    @property
+    def left_out(self) -> frozenset[str]:
+        """Tables that a file of the set does without, by path: parts that do nothing, of whose numbers no source is given.
+
+        >>> sorted(GearSet.read("hfuc-25-100").left_out)
+        ['gear.friction_mesh', 'gear.kinematic_noise']
+        """
+        return frozenset(table.path for table, model in _filled(vars(self)) if _is_left_out(table, model, self.sources))
+
     @classmethod
     def of(cls, model: Gear | PositionDrive, *, name: str, source: str) -> GearSet:
         """The set of a model whose numbers all come from one source.
@@ -626,15 +635,20 @@ def _text(gear_set: GearSet) -> str:
     for key in _TEXTS:
         if text := getattr(gear_set, key):
             document.add(key, text)
+    left_out = gear_set.left_out
     for table, model in _filled(vars(gear_set)):
-        if _does_nothing(table, model) and all(gear_set.sources[place].source == NOT_GIVEN for place in _numbers(table, model)):
-            continue
-        document.add(table.name, _written(table, model, gear_set.sources))
+        if table.path not in left_out:
+            document.add(table.name, _written(table, model, gear_set.sources))
     if gear_set.ratings:
         ratings = document["ratings"] = tomlkit.table()
         for name, rating in gear_set.ratings.items():
             ratings.add(name, _inline(rating.value, rating.unit, rating))
     return tomlkit.dumps(document)
+
+
+def _is_left_out(table: _Table, model: Any, sources: Mapping[str, Entry]) -> bool:
+    """Whether a file says this without a table: the part does nothing, and no source is given for its numbers."""
+    return _does_nothing(table, model) and all(sources[place].source == NOT_GIVEN for place in _numbers(table, model))
 
 
 def _does_nothing(table: _Table, model: Any) -> bool:

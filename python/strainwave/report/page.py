@@ -29,7 +29,7 @@ def render(template: str, content: Mapping[str, Any]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {verb.__name__: verb for verb in (typeset.number, typeset.unit, typeset.symbols)}
+    environment.filters |= {verb.__name__: verb for verb in (typeset.number, typeset.unit, typeset.symbols, typeset.breakable)}
     return environment.get_template(template).render(content)
 
 

@@ -69,6 +69,11 @@ class Part(NamedTuple):
     source: str
     parameters: list[Parameter]
 
+    @property
+    def absent(self) -> bool:
+        """Whether the model does without it."""
+        return [parameter.state for parameter in self.parameters] == ["absent"]
+
 
 def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: Provenance | None = None) -> str:
     """The report of a twin, as one HTML file that needs nothing else.
@@ -203,14 +208,27 @@ def _parts(twin: Twin) -> Iterator[Part]:
     places: dict[str, list[str]] = {part: [] for part in _part_paths(gear_set)}
     for path in gear_set.sources:
         places[path.rpartition(".")[0]].append(path)
+    absent = _absent_parts(gear_set)
     for part, paths in places.items():
         model = attrgetter(part)(gear_set)
-        if model is not None:
+        if part in absent:
+            yield Part(_words(part), "", "", [_absent(gear_set, part)])
+        elif model is not None:
             law = (type(model).__doc__ or "").partition("\n")[0] if part != "gear" else ""
             parameters = [_parameter(gear_set, path, verdicts.get(path)) for path in paths]
-            if not parameters and not any(path.startswith(f"{part}.") for path in gear_set.sources):
-                parameters = [_absent(gear_set, part)]
             yield Part(_words(part), law, model.source, parameters)
+
+
+def _absent_parts(gear_set: GearSet) -> set[str]:
+    """Parts of the gear that it does without: nothing is said of them, or there is no number to say."""
+    numbered = {part for path in gear_set.sources for part in _around(path)}
+    return {part for part in _inside("gear", gear_set.gear) if part not in numbered or part in gear_set.left_out}
+
+
+def _around(path: str) -> Iterator[str]:
+    """The parts that a number is in, from the innermost outwards."""
+    while path := path.rpartition(".")[0]:
+        yield path
 
 
 def _part_paths(gear_set: GearSet) -> list[str]:
@@ -241,9 +259,9 @@ def _parameter(gear_set: GearSet, path: str, verdict: Verdict | None) -> Paramet
 
 
 def _absent(gear_set: GearSet, part: str) -> Parameter:
-    """What stands for the numbers of a part that has none."""
+    """What stands for the numbers of a part that the gear does without."""
     why = "not in the model; no measurement given speaks of it"
-    return Parameter(part, _name(gear_set, part), "", "", "", "absent", why)
+    return Parameter(part, _name(gear_set, part), "", "none", "", "absent", why)
 
 
 def _start(verdict: Verdict) -> str:
@@ -387,8 +405,10 @@ def _experiments(experiments: Sequence[Experiment]) -> Iterator[dict[str, Any]]:
 
 
 def _sources(gear_set: GearSet) -> dict[str, list[str]]:
-    """Every source with the numbers that rest on it."""
+    """Every source with the numbers that rest on it; what a gear does without needs none."""
     sources: dict[str, list[str]] = {}
+    absent = _absent_parts(gear_set)
     for path, entry in gear_set.sources.items():
-        sources.setdefault(entry.source, []).append(path)
+        if absent.isdisjoint(_around(path)):
+            sources.setdefault(entry.source, []).append(path)
     return sources

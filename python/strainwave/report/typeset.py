@@ -87,6 +87,17 @@ def symbols(text: str) -> Markup:
     return Markup(re.sub(r"\b([^\W\d_])_(\w)\b", r"<var>\1<sub>\2</sub></var>", greek))
 
 
+def breakable(path: str) -> Markup:
+    """The path of a parameter as HTML, to be broken between words where a line is too short.
+
+    >>> print(breakable("gear.input_inertia"))
+    gear.<wbr>input_<wbr>inertia
+    """
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub(r"([._])", r"\1<wbr>", str(escape(path))))
+
+
 def fixed(value: float, places: int) -> str:
     """A number rounded to so many decimal places, or to tens, hundreds … where there are fewer than none.
 

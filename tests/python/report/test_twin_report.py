@@ -165,7 +165,7 @@ def child_is_read(child: Node | str) -> bool:
 class Page(HTMLParser):
     """Builds the tree of a page and refuses one whose elements are not closed in order."""
 
-    VOID = frozenset({"meta", "col", "br", "link", "img", "hr", "input"})
+    VOID = frozenset({"meta", "col", "br", "link", "img", "hr", "input", "wbr"})
 
     def __init__(self, html: str) -> None:
         super().__init__()
@@ -212,14 +212,22 @@ def printed(text: str) -> float:
 # ---- What a report says ----------------------------------------------------------------------------------------------
 
 
+def in_a_part_left_out(found: sw.Twin, path: str) -> bool:
+    return path.rpartition(".")[0] in found.gear_set.left_out
+
+
+def rows_of_parameters(html: str) -> dict[str, list[str]]:
+    rows = [row for row in section(html, "parameters").find("tr") if row.find("code")]
+    return {row.find("code")[0].text: [cell.text for cell in row.find("td")] for row in rows}
+
+
 def test_every_parameter_of_the_twin_stands_in_the_table_with_its_value(each: sw.Twin, html: str) -> None:
-    rows = {
-        row.find("code")[0].text: [cell.text for cell in row.find("td")]
-        for row in section(html, "parameters").find("tr")
-        if row.find("code")
-    }
-    assert rows.keys() >= each.gear_set.sources.keys() | {verdict.path for verdict in each.verdicts}
+    rows = rows_of_parameters(html)
+    paths = each.gear_set.sources.keys() | {verdict.path for verdict in each.verdicts}
+    assert rows.keys() >= {path for path in paths if not in_a_part_left_out(each, path)}
     for verdict in each.verdicts:
+        if in_a_part_left_out(each, verdict.path):
+            continue
         start, value, _, _, why = rows[verdict.path]
         rounding = max(0.0501 * verdict.sigma if np.isfinite(verdict.sigma) else 0.0, 5e-6 * abs(verdict.value))
         assert printed(value) == pytest.approx(verdict.value, rel=0.0, abs=rounding)
@@ -227,18 +235,34 @@ def test_every_parameter_of_the_twin_stands_in_the_table_with_its_value(each: sw
         assert why
 
 
+def test_a_part_that_does_nothing_is_one_line(from_friction: sw.Twin) -> None:
+    html = twin_report(from_friction)
+    rows = rows_of_parameters(html)
+    for part in ("gear.kinematic_noise", "gear.friction_mesh"):
+        assert [path for path in rows if path.startswith(part)] == [part]
+        assert rows[part][1] == "none"
+    assert "not given" not in section(html, "parameters").text + section(html, "unknown").text + section(html, "sources").text
+    assert "random" not in section(html, "sources").text.lower()
+
+
+def test_a_part_that_does_nothing_but_was_fitted_is_shown_with_its_numbers(start: GearSet) -> None:
+    sources = {**start.sources, "gear.friction_mesh.viscous": Entry("fitted to a drive log: none")}
+    found = sw.twin(replace(start, sources=sources), friction=friction_table())
+    assert rows_of_parameters(twin_report(found))["gear.friction_mesh.viscous"][1] == "0"
+
+
 def test_the_state_of_every_parameter_is_the_verdict(each: sw.Twin, html: str) -> None:
-    rows = [row for row in section(html, "parameters").find("tr") if row.find("code")]
-    shown = {row.find("code")[0].text: row.find("td")[3].text for row in rows}
+    shown = {path: cells[3] for path, cells in rows_of_parameters(html).items()}
     for verdict in each.verdicts:
         moved = verdict.state == "kept" and verdict.value != verdict.start
-        assert shown[verdict.path] == ("follows" if moved else verdict.state)
+        if not in_a_part_left_out(each, verdict.path):
+            assert shown[verdict.path] == ("follows" if moved else verdict.state)
 
 
 def test_whatever_is_not_identified_is_listed_with_its_reason(each: sw.Twin, html: str) -> None:
     page = section(html, "unknown").text
     for verdict in each.verdicts:
-        if verdict.state != "identified":
+        if verdict.state != "identified" and not in_a_part_left_out(each, verdict.path):
             assert re.sub(r"\b(\w)_(\w)\b", r"\1\2", verdict.why) in page  # symbols are set with a subscript
 
 
