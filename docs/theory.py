@@ -22,6 +22,8 @@ Model = type[Any]
 Draw = Callable[[Axes], None]
 
 ERRATA = Path(__file__).with_name("errata.md")
+WORKS = Path(__file__).with_name("references.md")
+KEY = r"[A-Z][A-Za-z]+(?:1[6-9]|20)\d\d"  # of a work: its authors and its year
 LINE = 66  # characters of a formula that fit on a line
 SPACE = 5  # characters between its parts
 
@@ -116,18 +118,27 @@ def escaped(text: str) -> str:
 
 
 def linked(text: str) -> str:
-    """The same, with errata as links."""
-    return re.sub(r"\bE-[RPAT]\d+\b", lambda found: f"[{found[0]}](../errata.md#{ANCHORS[found[0]]})", escaped(text))
+    """The same, with errata, documents and works as links; one that leads nowhere is a KeyError."""
+    return re.sub(
+        rf"\b(?:E-[RPAT]\d+|document [RPAT]|{KEY})\b", lambda found: f"[{found[0]}](../{TARGETS[found[0]]})", escaped(text)
+    )
 
 
 def anchors() -> dict[str, str]:
-    """Where each erratum stands on its page, as MyST names headings."""
+    """Where each erratum stands, as MyST names headings."""
     headings = re.findall(r"^### ((E-\w+) .*)$", ERRATA.read_text(encoding="utf-8"), re.MULTILINE)
     plain = {number: re.sub(r"\$[^$]*\$|[*]", "", title) for title, number in headings}
-    return {number: re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for number, title in plain.items()}
+    slugs = {number: re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for number, title in plain.items()}
+    return {number: f"errata.md#{slug}" for number, slug in slugs.items()}
 
 
-ANCHORS = anchors()
+def references() -> dict[str, str]:
+    """Where each key of a source stands."""
+    keys = re.findall(r"^### (\w+)$", WORKS.read_text(encoding="utf-8"), re.MULTILINE)
+    return {key: f"references.md#{key.lower()}" for key in keys}
+
+
+TARGETS = anchors() | references() | {f"document {letter}": "errata.md" for letter in "RPAT"}
 
 # ---- Parameters ------------------------------------------------------------------------------------------------------
 
