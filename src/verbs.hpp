@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "bind.hpp"
 
 /// What a model can be asked from Python, found out from what it can do.
@@ -21,6 +23,17 @@ inline Argument path_of(nb::handle values, const char* name) {
     const auto path = numbers(values, name);
     if (path.ndim() != 1 || path.size() == 0)
         throw nb::value_error((std::string(name) + " must be a one-dimensional sequence of at least one number").c_str());
+    return path;
+}
+
+/// A path no wider than numbers reach, with room for some times as much in sums along it.
+inline Argument steps_of(nb::handle values, const char* name, const char* unit) {
+    const auto path = path_of(values, name);
+    const auto [low, high] = std::minmax_element(path.data(), path.data() + path.size());
+    if (!std::isfinite(16.0 * (*high - *low)))
+        throw nb::value_error(
+            (std::string(name) + " from " + shortest(*low) + " to " + with_unit(*high, unit) + " is wider than numbers reach")
+                .c_str());
     return path;
 }
 
@@ -60,10 +73,11 @@ void function(nb::class_<M>& c, const char* name, const char* argument, const ch
         doc);
 }
 
-/// An angle in turns and rest. One too large to tell which turn it is in counts as in the first.
+/// An angle in turns and rest. One too large to tell which turn it is in stands where it would if turns were of 2 pi as rounded;
+/// beyond 1e300 turns none is told from another.
 inline Angle<double> turned(double angle) {
     const double turns = std::rint(angle / (2.0 * pi));
-    if (std::abs(turns) > 9007199254740992.0) return {std::remainder(angle, 2.0 * pi), 0.0};
+    if (std::abs(turns) > 9007199254740992.0) return {std::remainder(angle, 2.0 * pi), clip(turns, -1e300, 1e300)};
     return {angle - 2.0 * pi * turns, turns};
 }
 
@@ -236,7 +250,7 @@ void inverse_verbs(nb::class_<M>& c) {
         c.def(
             "trace",
             [](const M& m, nb::handle torque, const typename M::State& state) {
-                const auto path = path_of(torque, "torque");
+                const auto path = steps_of(torque, "torque", "N.m");
                 auto [out, twist] = like(path);
                 follow(m, state, path,
                        [&, y = twist](const auto& x, double increment, std::size_t i) { y[i] = m.twist(x, increment); });
@@ -248,7 +262,7 @@ void inverse_verbs(nb::class_<M>& c) {
         c.def(
             "advance",
             [](const M& m, nb::handle torque, const typename M::State& state) {
-                return follow(m, state, path_of(torque, "torque"), [](const auto&, double, std::size_t) {});
+                return follow(m, state, steps_of(torque, "torque", "N.m"), [](const auto&, double, std::size_t) {});
             },
             nb::arg("torque"), nb::arg("state") = typename M::State{},
             nb::sig("def advance(self, torque: " SW_NUMBERS ", state: State = ...) -> State"),
@@ -264,7 +278,7 @@ void hysteresis_verbs(nb::class_<M>& c) {
         c.def(
             "trace",
             [](const M& m, nb::handle twist, const State& state) {
-                const auto path = path_of(twist, "twist");
+                const auto path = steps_of(twist, "twist", "rad");
                 auto [out, torque] = like(path);
                 follow(m, state, path,
                        [&, y = torque](const State& x, double increment, std::size_t i) { y[i] = m.torque(x, increment); });
@@ -277,11 +291,16 @@ void hysteresis_verbs(nb::class_<M>& c) {
         c.def(
             "work",
             [](const M& m, nb::handle twist, const State& state) {
-                const auto path = path_of(twist, "twist");
+                const auto path = steps_of(twist, "twist", "rad");
                 auto [out, work] = like(path);
                 double sum = 0.0;
-                follow(m, state, path,
-                       [&, y = work](const State& x, double increment, std::size_t i) { y[i] = sum += m.work(x, increment); });
+                follow(m, state, path, [&, y = work](const State& x, double increment, std::size_t i) {
+                    y[i] = sum += m.work(x, increment);
+                    if (!std::isfinite(sum))
+                        throw nb::value_error(("twist[" + std::to_string(i) + "] = " + with_unit(path.data()[i], "rad") +
+                                               " takes more work than numbers reach")
+                                                  .c_str());
+                });
                 return out;
             },
             nb::arg("twist"), nb::arg("state") = State{},
@@ -290,7 +309,7 @@ void hysteresis_verbs(nb::class_<M>& c) {
         c.def(
             "advance",
             [](const M& m, nb::handle twist, const State& state) {
-                return follow(m, state, path_of(twist, "twist"), [](const State&, double, std::size_t) {});
+                return follow(m, state, steps_of(twist, "twist", "rad"), [](const State&, double, std::size_t) {});
             },
             nb::arg("twist"), nb::arg("state") = State{},
             nb::sig("def advance(self, twist: " SW_NUMBERS ", state: State = ...) -> State"),
@@ -299,7 +318,7 @@ void hysteresis_verbs(nb::class_<M>& c) {
             c.def(
                 "stored",
                 [](const M& m, nb::handle twist, const State& state) {
-                    const auto path = path_of(twist, "twist");
+                    const auto path = steps_of(twist, "twist", "rad");
                     auto [out, energy] = like(path);
                     follow(m, state, path, [&, y = energy](const State& x, double increment, std::size_t i) {
                         y[i] = m.stored(m.advance(x, increment));
@@ -376,7 +395,7 @@ void over_contacts(nb::class_<M>& c, const char* name, const char* argument, con
 template <class M>
 Values friction_trace(const M& m, nb::handle time, nb::handle speed, double angle, nb::handle load, nb::handle temperature,
                       typename M::State state) {
-    const auto t = path_of(time, "time"), v = path_of(speed, "speed");
+    const auto t = steps_of(time, "time", "s"), v = path_of(speed, "speed");
     if (t.size() != v.size()) throw nb::value_error("time and speed must have the same length");
     const Series loads(load, "load", t.size()), temperatures(temperature, "temperature", t.size());
     const auto law = compiled(m);
@@ -388,13 +407,17 @@ Values friction_trace(const M& m, nb::handle time, nb::handle speed, double angl
     auto [out, torque] = like(t);
     for (std::size_t i = 0; i < t.size(); ++i) {
         if (i > 0) {
-            const double dt = t.data()[i] - t.data()[i - 1], mean = 0.5 * (v.data()[i - 1] + v.data()[i]);
+            const double dt = t.data()[i] - t.data()[i - 1], mean = 0.5 * v.data()[i - 1] + 0.5 * v.data()[i];
             if (!(dt > 0.0))
                 throw nb::value_error(
                     ("time[" + std::to_string(i) + "] = " + with_unit(t.data()[i], "s") + " must lie after the time before it")
                         .c_str());
             state = friction::advance(law, state, contact(i, mean), dt);
             angle += mean * dt;
+            if (!std::isfinite(angle))
+                throw nb::value_error(("speed[" + std::to_string(i) + "] = " + with_unit(v.data()[i], "rad/s") +
+                                       " leads to a larger angle than numbers reach")
+                                          .c_str());
         }
         torque[i] = friction::torque(law, state, contact(i, v.data()[i]));
     }

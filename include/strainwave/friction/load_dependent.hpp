@@ -43,17 +43,18 @@ struct LoadDependent {
     using State = Stateless<S>;
 
     /// Torque that opposes sliding, in N.m.
-    constexpr S torque(const State&, const Contact<S>& contact) const { return contact.sliding * level(contact); }
+    constexpr S torque(const State&, const Contact<S>& contact) const { return level(contact, contact.sliding); }
 
     /// The largest torque it balances at rest, in N.m.
-    constexpr S hold(const Contact<S>& contact) const { return level(contact); }
+    constexpr S hold(const Contact<S>& contact) const { return level(contact, S(1.0)); }
 
 private:
-    constexpr S level(const Contact<S>& contact) const {
+    /// Towards `sense`; the load comes last, so that no product overflows before the whole does.
+    constexpr S level(const Contact<S>& contact, const S& sense) const {
         const auto positive = contact.load > S(0.0);
         const S forward = select(positive, driving_forward, backdriving_forward);
         const S reverse = select(positive, backdriving_reverse, driving_reverse);
-        return contact.dry * select(contact.sliding < S(0.0), reverse, forward) * abs(contact.load);
+        return sense * contact.dry * select(contact.sliding < S(0.0), reverse, forward) * abs(contact.load);
     }
 };
 

@@ -103,14 +103,14 @@ private:
     }
 
     /// How far steady sliding bends the bristle [rad]. Without any dry friction it still bends a little, so that it forgets
-    /// within 2^-100 s: slower than never, and finite in every scalar.
+    /// within 2^-100 s: slower than never, and finite in every scalar; as is its bend over that of any other speed.
     constexpr S reach(const Contact<S>& contact) const {
         const S torque = contact.dry * stribeck_curve(coulomb, breakaway, stribeck_speed, contact.speed);
         return max(torque / bristle_stiffness, least_reach(contact.speed));
     }
     static constexpr S least_reach(const S& speed) {
         constexpr double fastest = 1267650600228229401496703205376.0;  // 1/s; a power of two, for exact division
-        return max(abs(speed) / S(fastest), S(smallest));
+        return clip(abs(speed) / S(fastest), S(smallest), S(1.0));
     }
 
     /// The largest y^r (F_s / (F_c + D y) - 1) over y = exp(-(v/v_s)^2) in [0, 1], with D = F_s - F_c, r = (v_s/v_d)^2. It lies at

@@ -79,12 +79,12 @@ struct PositionDependent {
 
     /// Torque that opposes sliding, in N.m.
     constexpr S torque(const State&, const Contact<S>& contact) const {
-        return contact.sliding * level(contact, rise(contact.speed)) + contact.viscous * viscous * contact.speed;
+        return contact.sliding * level(contact, abs(contact.speed) - reference_speed) + contact.viscous * viscous * contact.speed;
     }
 
     /// The largest torque it balances at rest, in N.m: never less than what sliding sets in with.
     constexpr S hold(const Contact<S>& contact) const {
-        return max(static_ratio * level(contact, S(1.0)), level(contact, rise(S(0.0))));
+        return max(static_ratio * level(contact, S(0.0)), level(contact, -reference_speed));
     }
 
     /// Where it is valid.
@@ -97,12 +97,10 @@ struct PositionDependent {
 private:
     static constexpr S angle(const Contact<S>& contact) { return contact.angle.within + S(2.0 * pi) * contact.angle.turns; }
 
-    /// What the speed makes of the average friction.
-    constexpr S rise(const S& speed) const { return S(1.0) + (abs(speed) - reference_speed) * speed_factor; }
-
-    constexpr S level(const Contact<S>& contact, const S& risen) const {
-        const S q = inside(angle(contact)), average = (quadratic * q + linear) * q + constant;
-        return contact.dry * max(average * risen + ripple(contact.angle.within), S(0.0));
+    /// At a speed `faster` than the reference; it comes last, so that no product overflows before the whole does.
+    constexpr S level(const Contact<S>& contact, const S& faster) const {
+        const S q = inside(angle(contact)), average = contact.dry * ((quadratic * q + linear) * q + constant);
+        return max(average + average * speed_factor * faster + contact.dry * ripple(contact.angle.within), S(0.0));
     }
 
     /// The angle of the domain that stands for this one.

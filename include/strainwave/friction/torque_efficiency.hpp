@@ -60,8 +60,8 @@ struct TorqueEfficiency {
 
     /// Torque that opposes the motion, in N.m, for the engagement as it stands.
     constexpr S torque(const State& x, const Contact<S>& contact) const {
-        const S z = x.engagement, loss = average_loss * abs(contact.load) * z + difference_loss * contact.load * z * z;
-        return contact.dry * loss + contact.viscous * viscous * contact.speed;
+        const S z = x.engagement, loss = contact.dry * z * (along(contact.load, average_loss) + difference_loss * z);
+        return loss * contact.load + contact.viscous * viscous * contact.speed;
     }
 
     /// Rate of the engagement [1/s].

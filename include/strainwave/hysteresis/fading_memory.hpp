@@ -110,10 +110,11 @@ struct FadingMemory {
 
     /// Work [J] put in while the twist moves by `increment` [rad], monotonically.
     constexpr S work(const State& x, const S& increment) const {
-        const S path = abs(increment);
         S sum{0.0};
-        for (int j = 0; j < stiffness.count; ++j)
-            sum = sum + x.held[j] * increment + rise(x, j, increment) * Decayed<S>::along_path(forgetting[j], path).twice;
+        for (int j = 0; j < stiffness.count; ++j) {
+            const auto decayed = Decayed<S>::along_path(forgetting[j], abs(increment));
+            sum = sum + along(increment, x.held[j]) * decayed.once + stiffness[j] * decayed.twice;
+        }
         return sum;
     }
 

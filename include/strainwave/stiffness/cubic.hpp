@@ -32,11 +32,15 @@ struct Cubic {
 
     constexpr S torque(const S& twist) const { return (a1 + a3 * twist * twist) * twist; }
 
-    /// The one real root of the depressed cubic, by Newton's method from above, where the convex branch converges from any start.
+    /// The one real root of the depressed cubic, by Newton's method from above: neither part alone would give way less. In a form
+    /// without differences, which neither cancels nor overflows.
     constexpr S twist(const S& torque) const {
-        const S level = abs(torque);
-        S x = level / a1;
-        for (int i = 0; i < newton_steps; ++i) x = x - (this->torque(x) - level) / tangent(x);
+        const S level = abs(torque), alone = exp((log(level) - log(select(a3 > S(0.0), a3, S(1.0)))) / S(3.0));
+        S x = detached(min(level / a1, alone));
+        for (int i = 0; i < newton_steps; ++i) {
+            const S hardening = a3 * x * x, slope = a1 + S(3.0) * hardening;
+            x = min(level / slope + S(2.0) * hardening / slope * x, S(unbounded));
+        }
         return along(torque, x);
     }
 
@@ -44,8 +48,8 @@ struct Cubic {
     constexpr S energy(const S& twist) const { return (S(0.5) * a1 * twist + S(0.25) * (a3 * twist) * twist * twist) * twist; }
 
 private:
-    // Far from the root each step shrinks x by 2/3, near it digits double: enough for a start 1e10 times too far.
-    static constexpr int newton_steps = 64;
+    // The start is at most 1.5 times too far, and each step doubles the digits.
+    static constexpr int newton_steps = 8;
 };
 
 }  // namespace strainwave::stiffness

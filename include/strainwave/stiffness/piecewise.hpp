@@ -44,7 +44,7 @@ struct Piecewise {
     constexpr S tangent(const S& twist) const { return select(abs(twist) > knee, k1 + k2, k1); }
     constexpr S energy(const S& twist) const {
         const S past = past_knee(abs(twist));
-        return S(0.5) * (k1 * twist * twist + k2 * past * past);
+        return S(0.5) * k1 * twist * twist + S(0.5) * k2 * past * past;
     }
 
 private:

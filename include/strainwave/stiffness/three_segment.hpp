@@ -58,7 +58,7 @@ struct ThreeSegment {
     constexpr S energy(const S& twist) const {
         const S x = abs(twist), a = min(x, first_knee()), b = clip(x - first_knee(), S(0.0), second_knee() - first_knee()),
                 c = max(x - second_knee(), S(0.0));
-        return S(0.5) * (k1 * a * a + k2 * b * b + k3 * c * c) + t1 * b + top() * c;
+        return S(0.5) * k1 * a * a + (t1 + S(0.5) * k2 * b) * b + (top() + S(0.5) * k3 * c) * c;
     }
 
 private:
