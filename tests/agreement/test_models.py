@@ -1,8 +1,11 @@
-"""Each model of each list, in each place it may take: one trajectory in double, in packs and in dual numbers."""
+"""Each model of each list, in each place it may take: one trajectory in double, in packs and in dual numbers, to the last bit.
+
+Where stick and slip alternate, a last digit that differs soon changes many. None does differ: every lane of a pack does what it
+would do alone, and dual numbers add derivatives and change no value.
+"""
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -15,67 +18,92 @@ from strainwave import _core
 from strainwave.drives import PositionDrive
 from strainwave.simulation import derivatives
 
+from tests.laws.test_gear import DRIVE, EVERY_PART, cannot_create_energy, laws, reduced_gears
 from tests.side_by_side import side_by_side
 from tests.strategies import built
 
 Array = NDArray[np.float64]
 
-GEAR = sw.Gear(
-    kinematic_error=sw.kinematic_error.Fourier(order=[2.0, 4.0], amplitude=[2e-4, 5e-5], phase=[0.3, -1.0]),
-    stiffness=sw.stiffness.Cubic(a1=1.2e4, a3=1e9),
-    hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[3e3, 2e3], breakaway=[0.5, 1.0]),
-    damping=10.0,
-    friction_input=sw.friction.Viscous(viscous=1e-3),
-    friction_output=sw.friction.Viscous(viscous=0.5),
-    input_inertia=1e-5,
-)
-DRIVE = PositionDrive(
-    gear=GEAR,
-    motor=sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4),
-    control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05),
-    load=sw.loads.Pendulum(inertia=0.5, gravity_torque=5.0),
-)
-SWING = sw.scenario.sine(0.05, 8.0, 0.06)
-WARMING = sw.scenario.ramp(100.0, 0.06) + sw.scenario.constant(290.0, 0.06)
+DURATION, SAMPLE = 0.05, 1e-3
 COLUMNS = [name for name, _, _ in _core.outputs]
-PARTS = [
-    pytest.param(field["name"], kind, id=f"{field['name']}-{kind.name}")
-    for field in GEAR.fields
-    if field["kind"] == "part" and field["name"] != "kinematics"
-    for kind in field["options"].values()
+COMMAND = sw.scenario.sine(12.0, 30.0, DURATION)  # V
+COURSE = {
+    "load_torque": sw.scenario.sine(5.0, 17.0, DURATION),  # N.m
+    "temperature": sw.scenario.ramp(100.0, DURATION) + sw.scenario.constant(290.0, DURATION),  # K
+}
+CONTROLLED = DRIVE.replace(control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05, limit=24.0))
+OTHER_PARTS = [
+    pytest.param(part, model, id=f"{part}={model.name}")
+    for part, family in (("motor", "motor"), ("control", "control"), ("load", "loads"))
+    for model in _core.families[family].values()
 ]
+seeds = st.integers(0, 2**32 - 1)
 
 
 def columns(run: sw.Recording) -> Array:
     return np.stack([run[name] for name in COLUMNS])
 
 
-def varied(drive: PositionDrive, count: int, seed: int) -> list[PositionDrive]:
-    """Drives that differ in every number but the orders of errors, by a little."""
-    base = np.array([number for _, number, *_ in _core.parameters(drive)])
-    factors = np.random.default_rng(seed).uniform(0.999, 1.001, (count, base.size))
-    factors[:, [".order[" in path or ".seed" in path for path, *_ in _core.parameters(drive)]] = 1.0
-    return [_core.with_numbers(drive, base * factor) for factor in factors]
+def neighbours(drive: PositionDrive, seed: int) -> list[PositionDrive]:
+    """Eight with other numbers, but for whole ones: orders of errors are summed up otherwise if all of a pack are whole."""
+    _, numbers, _, _, low, high = (np.array(column) for column in zip(*_core.parameters(drive), strict=True))
+    factors = 1.0 + np.random.default_rng(seed).uniform(-0.1, 0.1, (8, numbers.size))
+    others = np.where(numbers == np.rint(numbers), numbers, np.clip(numbers * factors, low, high))
+    return [_core.with_numbers(drive, other) for other in others]
 
 
-@pytest.mark.parametrize(("part", "kind"), PARTS)
-@settings(max_examples=5)
-@given(data=st.data(), seed=st.integers(0, 2**32 - 1))
-def test_every_model_runs_one_trajectory_in_every_scalar(part: str, kind: Any, data: st.DataObject, seed: int) -> None:
-    drive = DRIVE.replace(gear=GEAR.replace(**{part: data.draw(built(kind))}))
-    drives = varied(drive, 9, seed)  # one full pack, and one that repeats its last member
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", RuntimeWarning)
-            singles = [sw.simulate(each, SWING, 1e-4, sample=1e-3, temperature=WARMING) for each in drives]
-    except (FloatingPointError, ValueError):  # too coarse a step, or out of bounds: said, and not this test's matter
-        assume(False)
-    packed = side_by_side(drives, SWING, 1e-4, sample=1e-3, temperature=WARMING)
-    others = [i for i, (path, *_) in enumerate(_core.parameters(drive)) if ".order[" not in path]  # whole orders stay whole
-    chosen = np.random.default_rng(seed).choice(others, 3, replace=False)
-    dual, _ = derivatives(drives[0], SWING, chosen, 1e-4, 1e-3, temperature=WARMING)
-    for single, other in zip([*singles, singles[0]], [*map(packed.member, range(9)), dual], strict=True):
-        scale = np.abs(columns(single)).max(axis=1, keepdims=True)
-        difference = np.abs(columns(other) - columns(single))
-        apart = (difference > 1e-11 * scale).any(axis=1)
-        assert not apart.any(), [name for name, differs in zip(COLUMNS, apart, strict=True) if differs]
+def differentiable(drive: PositionDrive) -> list[int]:
+    """The parameters by which derivatives leave values as they are: a power or an order is no longer whole then."""
+    paths = [path for path, *_ in _core.parameters(drive)]
+    return [i for i, path in enumerate(paths) if ".order[" not in path and not path.endswith(".exponent")]
+
+
+def check(drive: PositionDrive, seed: int, dt: float) -> None:
+    """Nine drives are one full pack, and one that repeats its last member."""
+    singles = [sw.simulate(each, COMMAND, dt, sample=SAMPLE, **COURSE) for each in (drive, *neighbours(drive, seed))]
+    packed = side_by_side([drive, *neighbours(drive, seed)], COMMAND, dt, sample=SAMPLE, **COURSE)
+    for number, single in enumerate(singles):
+        assert [name for name in COLUMNS if not np.array_equal(packed[name][number], single[name])] == []
+    chosen = np.random.default_rng(seed).choice(differentiable(drive), 3, replace=False)
+    dual, _ = derivatives(drive, COMMAND, chosen, dt, SAMPLE, **COURSE)
+    assert [name for name in COLUMNS if not np.array_equal(dual[name], singles[0][name])] == []
+
+
+def agree(drive: PositionDrive, seed: int) -> None:
+    """At a step that resolves the drives, if a small one does, where all parts are valid and none runs away: packs count turns
+    up to 2^51."""
+    assume(cannot_create_energy(drive.gear))
+    for dt in (1e-4, 1.25e-5):
+        try:
+            check(drive, seed, dt)
+            return
+        except FloatingPointError:
+            continue
+        except ValueError as error:
+            assume("lies outside of" not in str(error))
+            raise
+    assume(False)
+
+
+@pytest.mark.parametrize(("part", "model"), EVERY_PART)
+@settings(max_examples=8)
+@given(st.data(), seeds)
+def test_a_gear_with_any_law_runs_one_trajectory_in_every_scalar(part: str, model: Any, data: st.DataObject, seed: int) -> None:
+    agree(DRIVE.replace(gear=DRIVE.gear.replace(**{part: data.draw(laws(part, model))})), seed)
+
+
+@pytest.mark.parametrize(("part", "model"), OTHER_PARTS)
+@settings(max_examples=8)
+@given(st.data(), seeds)
+def test_a_drive_with_any_other_part_runs_one_trajectory_in_every_scalar(
+    part: str, model: Any, data: st.DataObject, seed: int
+) -> None:
+    law = data.draw(built(model))
+    assume(part != "load" or law.inertia > 1e-3)
+    agree((CONTROLLED if part == "control" else DRIVE).replace(**{part: law}), seed)
+
+
+@settings(max_examples=50)
+@given(reduced_gears, seeds)
+def test_a_gear_with_laws_drawn_at_every_place_runs_one_trajectory_in_every_scalar(gear: sw.Gear, seed: int) -> None:
+    agree(DRIVE.replace(gear=gear), seed)

@@ -157,7 +157,7 @@ private:
             v = select(wanted, clip(v + step, low, high), v);
             wanted = wanted & (flow.n * step * step > S(settled));
         }
-        if constexpr (differentiates<S>) v = v + newton(v, target);
+        if constexpr (differentiates<S>) v = v + slope_of(newton(v, target));
         return v;
     }
     /// The loss at the knee is 1/e, which rounding of a torque close to 1 may hide.
@@ -174,7 +174,7 @@ private:
             y = select(wanted, y + step, y);
             wanted = wanted & (step * step > S(settled));
         }
-        if constexpr (differentiates<S>) y = y + log_step(terms, y, start, fall);
+        if constexpr (differentiates<S>) y = y + slope_of(log_step(terms, y, start, fall));
         return from * exp(start * (S(1.0) - exp(y)) / n);
     }
     /// Newton's step of y = ln(L / start), where y + sum(L) - sum(start) = -fall.
@@ -184,6 +184,8 @@ private:
         for (int k = 1; k < terms.size(); ++k) slopes[k] = S(k) * terms[k];
         return (polynomial(terms, start) - polynomial(terms, depth) - y - fall) / (S(1.0) + polynomial(slopes, depth));
     }
+    /// What a last step of Newton's adds: derivatives, and to the value nothing, as in scalars without.
+    static constexpr S slope_of(const S& step) { return step - detached(step); }
     static constexpr Depths detached_all(Depths terms) {
         if constexpr (differentiates<S>)
             for (S& term : terms.item) term = detached(term);

@@ -9,14 +9,16 @@ namespace strainwave::integrate {
 template <class S, class Margin>
 constexpr S crossing(const Margin& margin, const S& from, const S& at_start, const S& at_end) {
     const auto crosses = at_end < S(0.0);
+    auto sought = crosses;  // a lane that has found its moment keeps it, whatever the others still do
     S a = from, b{1.0}, fa = detached(max(at_start, S(0.0))), fb = detached(at_end), x{1.0};
     for (int i = 0; i < 80; ++i) {
-        S guess = b - fb * (b - a) / select(crosses, fb - fa, S(-1.0));
+        S guess = b - fb * (b - a) / select(sought, fb - fa, S(-1.0));
         guess = select((guess > a) & (guess < b), guess, S(0.5) * (a + b));
-        const S f = detached(margin(select(crosses, guess, S(1.0))));
-        const auto moved = crosses & (abs(guess - x) > S(1e-15)) & (b - a > S(1e-15));
-        x = select(crosses, guess, S(1.0));
-        if (!any(moved)) break;
+        const auto moved = sought & (abs(guess - x) > S(1e-15)) & (b - a > S(1e-15));
+        x = select(sought, guess, x);
+        sought = moved;
+        if (!any(sought)) break;
+        const S f = detached(margin(x));
         const auto before = f > S(0.0);
         fa = select(before, f, S(0.5) * fa);
         fb = select(before, S(0.5) * fb, f);
@@ -44,7 +46,8 @@ constexpr typename Drive::State event_driven_step(const Drive& drive, const type
     S done{0.0};
     for (int events = 0;; ++events) {
         const auto reach = [&](const S& fraction) { return smooth(drive, x, u.part(done, fraction, dt), (fraction - done) * dt); };
-        const auto end = reach(S(1.0));
+        auto end = reach(S(1.0));
+        if (events > 0) end = chosen<S>(done < S(1.0), end, x);  // a lane that has arrived takes no further step, not even of 0 s
         const S margin = drive.margin(end, u.end);
         const auto crosses = margin < S(0.0);
         if (!any(crosses)) return end;
@@ -52,7 +55,7 @@ constexpr typename Drive::State event_driven_step(const Drive& drive, const type
             return chosen<S>(crosses, moreau_jean_step(drive, x, u.part(done, S(1.0), dt), (S(1.0) - done) * dt), end);
         const auto at = [&](const S& fraction) { return drive.margin(reach(fraction), u.part(S(0.0), fraction, dt).end); };
         const S moment = crossing(at, done, drive.margin(x, u.part(S(0.0), done, dt).end), margin);
-        x = drive.settled(reach(moment), u.part(S(0.0), moment, dt).end, crosses);
+        x = chosen<S>(crosses, drive.settled(reach(moment), u.part(S(0.0), moment, dt).end, crosses), end);
         done = moment;
     }
 }

@@ -17,12 +17,13 @@ struct Exponential {
         const S up1 = (S(1.0) - full) / c, up2 = (S(1.0) - up1) / c, up3 = (S(0.5) - up2) / c;
         const S phi3 = select(large, up3, series(-min(x, S(series_below))));
         const S phi2 = select(large, up2, S(0.5) - x * phi3), phi1 = select(large, up1, S(1.0) - x * phi2);
+        const S thrice = S(3.0) * phi3;  // in this order of terms Runge and Kutta's for x = 0, to the last digit
         return {half,
                 full,
                 phi1 / (half + S(1.0)),
-                phi1 - S(3.0) * phi2 + S(4.0) * phi3,
-                S(2.0) * phi2 - S(4.0) * phi3,
-                S(4.0) * phi3 - phi2};
+                phi3 + (phi1 - S(3.0) * phi2 + thrice),
+                S(2.0) * phi3 + S(2.0) * (phi2 - thrice),
+                phi3 + (thrice - phi2)};
     }
 
 private:

@@ -111,9 +111,13 @@ struct InSeries {
         return select((end < S(unbounded)) & (d > S(0.5) * end), left + (missed - detached(missed)), missed);
     }
     constexpr S torque(const S& d) const {
-        const S top = largest(), level = detached(constant().search(detached(d)));
-        const Given<S> given = at(level);
-        return select(level < top, min(level + missing(d, given) / detached(given.compliance), top), top);
+        const S level = constant().solved(detached(d));
+        if constexpr (differentiates<S>) {  // implicit function theorem
+            const Given<S> given = at(level);
+            const S top = largest(), step = missing(d, given) / detached(given.compliance);
+            return select(level < top, level + (step - detached(step)), top);
+        }
+        return level;
     }
 
 private:
@@ -143,10 +147,18 @@ private:
         return S(2.0) * far / (S(2.0) - min(wave_generator.hardening * far, S(1.0)));
     }
 
-    /// Halley's method, held between what has proved too low and too high. One step of Newton's does the rest.
+    /// The torque itself: what the search leaves, one step of Newton's does.
+    constexpr S solved(const S& d) const {
+        const S top = largest(), level = search(d);
+        const Given<S> given = at(level);
+        return select(level < top, min(level + missing(d, given) / given.compliance, top), top);
+    }
+
+    /// Halley's method, held between what has proved too low and too high.
     constexpr S search(const S& d) const {
         const S top = largest(), scale = S(1.0) / max(wave_generator.hardening, S(1e-30));
         S level = min(start(d), top), low = S(0.5) * min(linear(d), top), high = top + top;
+        auto sought = top > S(0.0);  // everywhere
         for (int i = 0; i < most_steps; ++i) {
             const Given<S> given = at(level);
             const S off = missing(d, given), step = off / given.compliance;
@@ -156,14 +168,14 @@ private:
             const S bent = level + step / max(bend, S(0.5));
             const S next = select((bent >= low) & (high >= bent), bent, sqrt(low * high));
             const S moved = abs(min(next, top) - min(level, top));
-            level = next;
-            if (!any(moved > S(close) * min(level, scale))) break;
+            level = select(sought, next, level);
+            sought = sought & (moved > S(close) * min(level, scale));
+            if (!any(sought)) break;
         }
         return min(level, top);
     }
     static constexpr int most_steps = 64;
-    // What a step e leaves is e^3, and e^6 after Newton's; derivatives are taken before that.
-    static constexpr double close = differentiates<S> ? 3e-6 : 2e-3;
+    static constexpr double close = 2e-3;  // what a step e leaves is e^3, and e^6 after Newton's
 };
 
 }  // namespace detail
