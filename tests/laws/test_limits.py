@@ -92,6 +92,13 @@ def test_a_cubic_spring_departs_from_its_line_in_proportion(a1: float, twist: fl
     assert spring.twist(torque) == pytest.approx(twist * (1.0 - share), rel=3.0 * share**2 + 1e-15)
 
 
+@given(stiffnesses, twists)
+def test_a_cubic_spring_without_hardening_is_its_line_to_the_last_digit(a1: float, twist: float) -> None:
+    spring, line = Cubic(a1=a1, a3=0.0), Linear(k=a1)
+    for verb in ("torque", "twist", "tangent", "energy"):
+        assert getattr(spring, verb)(twist) == getattr(line, verb)(twist)
+
+
 @given(stiffnesses, torques, st.floats(1.0, 10.0), twists)
 def test_three_equal_segments_are_one(k: float, t1: float, ratio: float, twist: float) -> None:
     spring, line = ThreeSegment(k1=k, k2=k, k3=k, t1=t1, t2=ratio * t1), Linear(k=k)
@@ -137,6 +144,22 @@ def test_what_forgets_slowly_is_a_spring(stiffness: float, path: list[float], fo
     lost = stiffness * twist[1] - torque[1]
     half = 0.5 * forgetting * abs(twist[1])
     assert lost == pytest.approx(stiffness * twist[1] * half, rel=half, abs=1e-14 * stiffness)
+
+
+@given(stiffnesses, torques, shares)
+def test_one_element_of_maxwell_slip_is_elastoplastic(stiffness: float, breakaway: float, path: list[float]) -> None:
+    """A spring k (x - p) whose plastic twist p gives way only where the spring would carry more than F."""
+    yields = breakaway / stiffness
+    twist = 5.0 * yields * np.append(0.0, path)
+    plastic, lost = np.zeros(len(twist)), np.zeros(len(twist))
+    for i in range(1, len(twist)):
+        plastic[i] = min(max(plastic[i - 1], twist[i] - yields), twist[i] + yields)
+        lost[i] = lost[i - 1] + breakaway * abs(plastic[i] - plastic[i - 1])
+    elastic = twist - plastic
+    law = MaxwellSlip(stiffness=stiffness, breakaway=breakaway)
+    np.testing.assert_allclose(law.trace(twist), stiffness * elastic, rtol=0.0, atol=1e-14 * breakaway)
+    energy = breakaway * yields
+    np.testing.assert_allclose(law.work(twist), 0.5 * stiffness * elastic**2 + lost, rtol=0.0, atol=1e-13 * energy)
 
 
 @given(built(MaxwellSlip), shares)
@@ -286,6 +309,30 @@ def flat(level: float, ratio: float, viscous: float) -> PositionDependent:
 def test_without_a_fall_stribeck_friction_is_coulomb_friction(coulomb: float, viscous: float, speed: float) -> None:
     law = Stribeck(coulomb=coulomb, breakaway=coulomb, viscous=viscous)
     assert law.steady(speed) == Coulomb(coulomb=coulomb, viscous=viscous).steady(speed)
+
+
+@given(torques, torques, speeds, log_uniform(1e-4, 1e-2))
+def test_friction_that_falls_slowly_is_its_breakaway_and_one_that_falls_at_once_is_coulomb_friction(
+    coulomb: float, excess: float, speed: float, share: float
+) -> None:
+    """With the square of the speed's share of Stribeck's: exp(-s^2) = 1 - s^2 + s^4 / 2 ..."""
+    slow = Stribeck(coulomb=coulomb, breakaway=coulomb + excess, stribeck_speed=abs(speed) / share, viscous=0.0)
+    fallen = coulomb + excess - abs(slow.steady(speed))
+    assert fallen == pytest.approx(excess * share**2, rel=share**2, abs=4e-16 * (coulomb + excess))
+    quick = slow.replace(stribeck_speed=share * abs(speed))
+    assert quick.steady(speed) == Coulomb(coulomb=coulomb).steady(speed)
+
+
+@given(built(PositionDependent), st.floats(0.0, 1.0), speeds)
+def test_within_its_domain_a_law_is_the_same_whatever_it_is_outside(law: PositionDependent, place: float, speed: float) -> None:
+    angle = min(law.domain_start + place * (law.domain_end - law.domain_start), law.domain_end)
+    inside = law.replace(outside="refuse")
+    clamped, repeated = law.replace(outside="clamp"), law.replace(outside="periodic")
+    assert clamped.steady(speed, angle=angle) == inside.steady(speed, angle=angle)
+    assert clamped.hold(angle=angle) == inside.hold(angle=angle)
+    if angle < law.domain_end:  # where the next period begins
+        assert repeated.steady(speed, angle=angle) == inside.steady(speed, angle=angle)
+        assert repeated.hold(angle=angle) == inside.hold(angle=angle)
 
 
 @pytest.mark.parametrize("place", ["friction_input", "friction_mesh", "friction_output"])
