@@ -40,17 +40,35 @@ Pause pausing(const nb::object& progress) {
 }
 
 nb::tuple run_one(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs, const Flags& keep,
-                  const nb::object& progress) {
+                  int method, const nb::object& progress) {
     const Request request(instants, inputs, keep);
+    if (method < 0 || method > int(Method::rosenbrock)) throw nb::value_error("no such method");
     Values out = array({std::size_t(channels), request.kept});
     const Pause pause = pausing(progress);
     Drive::State end;
     const auto simulate = kernels().simulate;
     {
         nb::gil_scoped_release free;
-        end = simulate(drive, start, request.course, out.data(), request.kept, pause);
+        end = simulate(drive, start, request.course, Method(method), out.data(), request.kept, pause);
     }
     return nb::make_tuple(out, end);
+}
+
+nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
+                         double relative, double absolute, const Numbers& samples, const nb::object& progress) {
+    const std::vector<std::uint8_t> none(instants.size() - 1);
+    const Course course{instants.data(), inputs.data(), none.data(), none.size()};
+    if (inputs.size() != 12 * course.steps) throw nb::value_error("a course of n steps has inputs of shape (n, 3, 4)");
+    Values out = array({std::size_t(channels), samples.size()});
+    const Pause pause = pausing(progress);
+    Drive::State end;
+    Steps steps;
+    const auto simulate = kernels().simulate_adaptively;
+    {
+        nb::gil_scoped_release free;
+        end = simulate(drive, start, course, {relative, absolute}, samples.data(), samples.size(), out.data(), steps, pause);
+    }
+    return nb::make_tuple(out, end, steps.accepted, steps.rejected);
 }
 
 /// What went wrong, in words.
@@ -98,6 +116,8 @@ nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Num
 }
 
 double vibration(const Drive& drive, double twist) { return drive.vibration(std::abs(twist)); }
+
+double bristle_vibration(const Drive& drive) { return drive.bristle_vibration(); }
 
 Input<double> input_of(const Numbers& u) {
     if (u.size() != 4) throw nb::value_error("inputs at an instant are command, its rate, load torque and temperature");
@@ -274,10 +294,16 @@ void bind_drives(nb::module_& core) {
 #define SW_COURSE "instants: " SW_ARRAY ", inputs: " SW_ARRAY ", keep: numpy.typing.NDArray[numpy.uint8]"
 #define SW_PROGRESS ", progress: collections.abc.Callable[[int], None] | None = None"
     core.def("simulate", &run_one, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
-             nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE SW_PROGRESS
+             nb::arg("method"), nb::arg("progress").none() = nb::none(),
+             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE ", method: int" SW_PROGRESS
                      ") -> tuple[" SW_ARRAY ", State]"),
-             "Outputs, shape (channels, kept), and the state at the end.");
+             "Outputs, shape (channels, kept), and the state at the end. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.");
+    core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"),
+             nb::arg("relative"), nb::arg("absolute"), nb::arg("samples"), nb::arg("progress").none() = nb::none(),
+             nb::sig("def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: " SW_ARRAY
+                     ", inputs: " SW_ARRAY ", relative: float, absolute: float, samples: " SW_ARRAY SW_PROGRESS
+                     ") -> tuple[" SW_ARRAY ", State, int, int]"),
+             "Outputs at `samples` [s], shape (channels, samples), the state at the end, steps taken and steps given up.");
     core.def(
         "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("instants"), nb::arg("inputs"),
         nb::arg("keep"), nb::arg("recorded"), nb::arg("threads"), nb::arg("progress").none() = nb::none(),
@@ -291,6 +317,9 @@ void bind_drives(nb::module_& core) {
     core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
              nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
              "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
+    core.def("bristle_vibration", &bristle_vibration, nb::arg("drive"),
+             nb::sig("def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float"),
+             "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
     core.def("instruction_set", &instruction_set, "The instruction set that the loops over time are compiled for.");
     core.def("differentiate", &run_derivatives, nb::arg("drive"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("parameters"), nb::arg("progress").none() = nb::none(),

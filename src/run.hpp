@@ -39,6 +39,9 @@ Interval<S> interval(const double* inputs) {
     return {at(inputs), at(inputs + 4), at(inputs + 8)};
 }
 
+/// Called now and then with the number of steps done; may throw.
+using Pause = std::function<void(std::size_t)>;
+
 /// A drive has left the range that one of its parts is valid in.
 struct OutOfBounds {
     const char* part;
@@ -58,7 +61,7 @@ void check_bounds(const Drive& drive, const typename Drive::State& x, const Inpu
     });
 }
 
-/// How many steps pass between two calls of `pause`, which may throw.
+/// How many steps pass between two calls of `pause`.
 inline constexpr std::size_t steps_between_pauses = 1 << 14;
 
 /// A step without events, every call on the way inlined: worth its size where few models are left to choose from.
@@ -73,54 +76,57 @@ template <class S, class Drive>
     return integrate::exponential_step(drive, x, u, dt);
 }
 
-/// Runs a compiled drive from `x` and calls record(output) at the end of each step to be kept. Returns the state at the end.
-template <class S, class Drive, class Record, class Smooth>
+/// Runs a compiled drive from `x` and calls record(output) at the end of each step to be kept. `advance` takes a step. Returns the
+/// state at the end.
+template <class S, class Drive, class Record, class Advance>
 typename Drive::State run_compiled(const Drive& drive, typename Drive::State x, const Course& course, Record& record,
-                                   const std::function<void(std::size_t)>& pause, const Smooth& smooth) {
+                                   const Pause& pause, const Advance& advance) {
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
     if (has_bounds && course.steps > 0) check_bounds(drive, x, interval<S>(course.inputs).start, course.instants[0]);
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % steps_between_pauses == 0) pause(i);
         const Interval<S> u = interval<S>(course.inputs + 12 * i);
-        x = step(drive, x, u, S(course.instants[i + 1] - course.instants[i]), smooth);
+        x = advance(drive, x, u, S(course.instants[i + 1] - course.instants[i]));
         if (has_bounds) check_bounds(drive, x, u.end, course.instants[i + 1]);
         if (course.keep[i]) record(drive.output(x, u.end));
     }
     return x;
 }
 
-/// Runs `drive` in the code of the first of some lists of models that hold it; in that of all models if none does.
-template <class S, class Record, class First, class... Rest>
+/// The state at the end of a run, which `runner` does in the code of the first of some lists of models that hold the drive; in that
+/// of all models if none does. runner.operator()<whether few models are left>(compiled drive, its state).
+template <class S, class Runner, class First, class... Rest>
 typename AnyPositionDrive<S>::State run_among(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
-                                              const Course& course, Record& record, const std::function<void(std::size_t)>& pause,
-                                              First*, Rest*... rest) {
+                                              const Runner& runner, First*, Rest*... rest) {
     NarrowDrive<S, First> narrow{};
     if (narrowed<S>(narrow, drive)) {
-        const auto compiled = narrow.compile();
         const auto from = refilled<S, typename decltype(narrow.compile())::State>(start);
-        const auto end = [&] {
-            using Compiled = decltype(narrow.compile());
-            if constexpr (few_models<First>)
-                return run_compiled<S>(compiled, from, course, record, pause, inlined_step<S, Compiled>);
-            else
-                return run_compiled<S>(compiled, from, course, record, pause, called_step<S, Compiled>);
-        }();
-        return refilled<S, typename AnyPositionDrive<S>::State>(end);
+        return refilled<S, typename AnyPositionDrive<S>::State>(
+            runner.template operator()<few_models<First>>(narrow.compile(), from));
     }
     if constexpr (sizeof...(Rest) > 0)
-        return run_among<S>(drive, start, course, record, pause, rest...);
+        return run_among<S>(drive, start, runner, rest...);
     else
-        return run_compiled<S>(drive.compile(), start, course, record, pause, called_step<S, decltype(drive.compile())>);
+        return runner.template operator()<false>(drive.compile(), start);
 }
 
+/// Runs `drive` in steps of fourth order, with events.
 template <class S, class Record>
 typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
-                                        const Course& course, Record&& record, const std::function<void(std::size_t)>& pause) {
-    const auto among = [&]<class... List>(List*... lists) { return run_among<S>(drive, start, course, record, pause, lists...); };
-    return among(static_cast<Usual<friction::LuGre>*>(nullptr),
-                 static_cast<Usual<friction::Viscous, friction::Coulomb, friction::Stribeck>*>(nullptr),
-                 static_cast<Small*>(nullptr));
+                                        const Course& course, Record&& record, const Pause& pause) {
+    const auto runner = [&]<bool few, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
+        const auto advance = [](const Compiled& moved, const typename Compiled::State& x, const Interval<S>& u, const S& dt) {
+            if constexpr (few)
+                return step(moved, x, u, dt, inlined_step<S, Compiled>);
+            else
+                return step(moved, x, u, dt, called_step<S, Compiled>);
+        };
+        return run_compiled<S>(compiled, from, course, record, pause, advance);
+    };
+    return run_among<S>(drive, start, runner, static_cast<Usual<friction::LuGre>*>(nullptr),
+                        static_cast<Usual<friction::Viscous, friction::Coulomb, friction::Stribeck>*>(nullptr),
+                        static_cast<Small*>(nullptr));
 }
 
 }  // namespace strainwave::host

@@ -8,7 +8,6 @@
 namespace strainwave::host {
 
 using Drive = AnyPositionDrive<double>;
-using Pause = std::function<void(std::size_t)>;
 
 inline constexpr int channels = [] {
     Output<double> output{};
@@ -31,9 +30,23 @@ struct Verdict {
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
 };
 
-/// One trajectory. Writes channel c of kept sample k to out[c * kept + k].
-Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, double* out, std::size_t kept,
-                      const Pause& pause);
+/// How steps are taken.
+enum class Method { exponential, moreau_jean, rosenbrock };
+
+/// One trajectory in the steps of its course. Writes channel c of kept sample k to out[c * kept + k].
+Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
+                      std::size_t kept, const Pause& pause);
+
+/// How many steps were taken, and how many given up for shorter ones.
+struct Steps {
+    long accepted = 0, rejected = 0;
+};
+
+/// One trajectory in steps as long as a tolerance allows, none longer than those of its course. Writes channel c at samples[k] [s]
+/// to out[c * count + k]. Throws OutOfBounds.
+Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
+                                 const integrate::Tolerance& tolerance, const double* samples, std::size_t count, double* out,
+                                 Steps& steps, const Pause& pause);
 
 /// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
@@ -66,6 +79,7 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
 /// All of them, as one module holds them.
 struct Kernels {
     decltype(&host::simulate) simulate;
+    decltype(&host::simulate_adaptively) simulate_adaptively;
     decltype(&host::simulate_many) simulate_many;
     decltype(&host::observe) observe;
     decltype(&host::differentiate) differentiate;

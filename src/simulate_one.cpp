@@ -2,20 +2,98 @@
 
 namespace strainwave::host {
 
-Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, double* out, std::size_t kept,
-                      const Pause& pause) {
+namespace {
+
+/// Writes outputs one after the other to their place among `count`.
+struct Writer {
+    double* out;
+    std::size_t count;
     std::size_t k = 0;
-    const auto record = [&](const Output<double>& output) {
+
+    void operator()(const Output<double>& output) {
         const auto values = flattened<double>(output);
-        for (int c = 0; c < channels; ++c) out[c * kept + k] = values[c];
+        for (int c = 0; c < channels; ++c) out[c * count + k] = values[c];
         ++k;
+    }
+};
+
+/// Runs a drive with an own way to take a step: advance(drive, state, inputs, dt).
+template <class Advance>
+Drive::State run_by(const Drive& drive, const Drive::State& start, const Course& course, Writer& record, const Pause& pause,
+                    const Advance& advance) {
+    const auto runner = [&]<bool, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
+        return run_compiled<double>(compiled, from, course, record, pause, advance);
     };
+    return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
+}
+
+}  // namespace
+
+Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
+                      std::size_t kept, const Pause& pause) {
+    Writer record{out, kept};
+    if (method == Method::moreau_jean)
+        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& x, const auto& u, double dt) {
+            return integrate::moreau_jean_step(moved, x, u, dt);
+        });
+    if (method == Method::rosenbrock)
+        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& x, const auto& u, double dt) {
+            return step(moved, x, u, dt, [](const auto& m, const auto& from, const auto& over, double h) {
+                return integrate::rosenbrock_step(m, from, over, h);
+            });
+        });
     return run<double>(drive, start, course, record, pause);
 }
 
-void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
-    const auto values = flattened<double>(drive.output(x, u));
-    for (int c = 0; c < channels; ++c) out[c] = values[c];
+namespace {
+
+/// A run whose samples lie anywhere within its steps.
+template <class Compiled>
+typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled::State x, const Course& course,
+                                        const integrate::Tolerance& tolerance, const double* samples, Writer& record, Steps& steps,
+                                        const Pause& pause) {
+    using State = typename Compiled::State;
+    const bool has_bounds = drive.has_bounds();
+    const auto advance = [](const Compiled& moved, const State& from, const Interval<double>& u, double dt) {
+        return step(moved, from, u, dt, called_step<double, Compiled>);
+    };
+    x = drive.consistent(x);
+    integrate::Adaptive<double, Compiled, decltype(advance)> adaptive(drive, advance, tolerance,
+                                                                      1e-2 * (course.instants[1] - course.instants[0]));
+    for (std::size_t i = 0; i < course.steps; ++i) {
+        pause(i);
+        const Interval<double> u = interval<double>(course.inputs + 12 * i);
+        const double begin = course.instants[i], dt = course.instants[i + 1] - begin;
+        if (has_bounds) check_bounds(drive, x, u.start, begin);
+        const auto within = [&](const State& from, const State& half, const State& end, double done, double middle, double to) {
+            if (has_bounds) check_bounds(drive, end, u.at(to, dt), begin + to * dt);
+            const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
+            for (; record.k < record.count && samples[record.k] <= until;) {
+                const double at = clip((samples[record.k] - begin) / dt, done, to);
+                const State there = at == to      ? end
+                                    : at < middle ? advance(drive, from, u.part(done, at, dt), (at - done) * dt)
+                                                  : advance(drive, half, u.part(middle, at, dt), (at - middle) * dt);
+                record(drive.output(there, u.at(at, dt)));
+            }
+        };
+        x = adaptive.through(x, u, dt, within);
+    }
+    steps = {adaptive.accepted, adaptive.rejected};
+    return x;
 }
+
+}  // namespace
+
+Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
+                                 const integrate::Tolerance& tolerance, const double* samples, std::size_t count, double* out,
+                                 Steps& steps, const Pause& pause) {
+    Writer record{out, count};
+    const auto runner = [&]<bool, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
+        return run_adaptively(compiled, from, course, tolerance, samples, record, steps, pause);
+    };
+    return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
+}
+
+void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) { Writer{out, 1}(drive.output(x, u)); }
 
 }  // namespace strainwave::host

@@ -267,6 +267,13 @@ struct PositionDrive {
         return sqrt(gear.steepest(twist) * (S(1.0) / inertia_of(load) + inverse * inverse / input_inertia()));
     }
 
+    /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
+    constexpr S bristle_vibration() const {
+        const S inverse = gear.kinematics.inverse_ratio();
+        const S input = presliding_stiffness(gear.friction_input) + presliding_stiffness(gear.friction_mesh) * inverse * inverse;
+        return sqrt(max(input / input_inertia(), presliding_stiffness(gear.friction_output) / inertia_of(load)));
+    }
+
     /// Whether a side can stick.
     constexpr bool set_valued() const { return input_sticks() || output_sticks(); }
 
@@ -466,6 +473,15 @@ private:
     template <class Mask>
     static constexpr S sense(const S& balance, const S& hold, const Mask& stops) {
         return select(stops & !(abs(balance) > hold), S(0.0), sign(balance));
+    }
+
+    /// Torque per angle [N.m/rad] of a friction that is about to slip.
+    template <class Law>
+    static constexpr S presliding_stiffness(const Law& law) {
+        const S little(1e-9), soon(1e-9);  // rad/s, s: less than any bristle's reach
+        const Contact still = Contact{}.pushed(S(0.0));
+        const auto bent = friction::advance(law, typename Law::State{}, still.moving(little), soon);
+        return (friction::torque(law, bent, still) - friction::torque(law, typename Law::State{}, still)) / (little * soon);
     }
 
     /// A side that sticks does not accelerate.

@@ -1,5 +1,7 @@
 #pragma once
+#include <strainwave/integrate/adaptive.hpp>
 #include <strainwave/integrate/event_driven.hpp>
+#include <strainwave/integrate/rosenbrock.hpp>
 
 /// Steps in time, over any described state.
 namespace strainwave {

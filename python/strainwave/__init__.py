@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from strainwave.identify.fit import Fit, fit
     from strainwave.identify.twin import Twin, twin
     from strainwave.recording import Recording
-    from strainwave.simulation import simulate
+    from strainwave.simulation import Run, simulate, simulate_adaptively
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
@@ -41,6 +41,7 @@ _LAZY = {
     "Fit": "identify.fit",
     "GearSet": "gear_set",
     "Recording": "recording",
+    "Run": "simulation",
     "Twin": "identify.twin",
     "catalogue": "gear_set",
     "fit": "identify.fit",
@@ -48,6 +49,7 @@ _LAZY = {
     "save": "gear_set",
     "scenario": "scenario",
     "simulate": "simulation",
+    "simulate_adaptively": "simulation",
     "simulate_many": "ensemble",
     "simulate_to": "ensemble",
     "twin": "identify.twin",
@@ -61,6 +63,7 @@ __all__ = [
     "GearSet",
     "PassivityWarning",
     "Recording",
+    "Run",
     "Twin",
     "catalogue",
     "control",
@@ -76,6 +79,7 @@ __all__ = [
     "save",
     "scenario",
     "simulate",
+    "simulate_adaptively",
     "simulate_many",
     "simulate_to",
     "stiffness",

@@ -291,8 +291,15 @@ class State:
 
 outputs: tuple[tuple[str, str, str], ...]
 
-def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State]:
-    """Outputs, shape (channels, kept), and the state at the end."""
+def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State]:
+    """
+    Outputs, shape (channels, kept), and the state at the end. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.
+    """
+
+def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, samples: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State, int, int]:
+    """
+    Outputs at `samples` [s], shape (channels, samples), the state at the end, steps taken and steps given up.
+    """
 
 def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], threads: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
     """
@@ -302,6 +309,11 @@ def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int]
 def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float:
     """
     The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].
+    """
+
+def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float:
+    """
+    The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
     """
 
 def instruction_set() -> str:

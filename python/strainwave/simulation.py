@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of the gear's vibration
 ROOM_TEMPERATURE = 293.15  # K
 _TWIST = [name for name, _, _ in _core.outputs].index("twist")
+LONGEST, SHORTEST = 5e-3, 1e-6  # s, of the stretches over which inputs are known at start, middle and end
 CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
 
 
@@ -85,6 +87,32 @@ class Excitation:
         breaks = np.concatenate([signal.breaks for signal in signals if isinstance(signal, Scenario)])
         return Course.through(self.command.duration, dt, dt if samples is None else samples, breaks)
 
+    def instants(self, rtol: float) -> Array:
+        """Ends of stretches over which what a step knows of the inputs between start, middle and end is within `rtol`."""
+        signals = [signal for signal in (self.command, self.load_torque, self.temperature) if isinstance(signal, Scenario)]
+        breaks = np.unique(np.concatenate([[0.0, self.command.duration], *(signal.breaks for signal in signals)]))
+        ends = np.unique(np.concatenate((breaks, _grid(LONGEST, self.command.duration, 1e-9 * LONGEST))))
+        ends = ends[np.append(True, np.diff(ends) > 1e-12 * self.command.duration)]
+        while len(coarse := self._coarse(ends, rtol)):
+            ends = np.sort(np.append(ends, 0.5 * (ends[coarse] + ends[coarse + 1])))
+        return ends
+
+    def _coarse(self, ends: Array, rtol: float) -> NDArray[np.intp]:
+        """The stretches whose quarters miss an input by more than `rtol` of the largest it is."""
+        start, end = ends[:-1], ends[1:]
+        missed = np.zeros(len(start), dtype=bool)
+        for signal in (self.command, self.load_torque, self.temperature):
+            if not isinstance(signal, Scenario):
+                continue
+            values = np.array([signal.value(start + share * (end - start)) for share in (0.0, 0.25, 0.5, 0.75)])
+            last = signal.value_before(end)
+            values = np.vstack((values, last))
+            bow = 2.0 * (values[0] - 2.0 * values[2] + values[4])
+            parabola = [values[0] + x * ((values[4] - values[0] - bow) + x * bow) for x in (0.25, 0.75)]
+            off = np.maximum(np.abs(parabola[0] - values[1]), np.abs(parabola[1] - values[3]))
+            missed |= off > max(rtol, 1e-13) * np.abs(values).max()
+        return np.flatnonzero(missed & (end - start > SHORTEST))
+
     def first(self) -> Array:
         """Command, its rate, load torque and temperature at t = 0."""
         others = (float(s.value(0.0)) if isinstance(s, Scenario) else s for s in (self.load_torque, self.temperature))
@@ -104,6 +132,28 @@ class Excitation:
         return inputs
 
 
+METHODS = ("exponential", "moreau_jean", "rosenbrock")
+Method = Literal["exponential", "moreau_jean", "rosenbrock"]
+STIFFEST = 2.0  # step times angular frequency of a shaft on its bristles, beyond which the exponential method is in doubt
+
+
+class Run(Recording):
+    """The recording of a simulation, and how it came about.
+
+    Attributes:
+        end: the state at the end, from which another simulation can start
+        method: how steps were taken, in words
+    """
+
+    end: _core.State
+    method: str
+
+    def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str], end: _core.State, method: str) -> None:
+        super().__init__(columns, units, title=f"simulation: {method}")
+        object.__setattr__(self, "end", end)
+        object.__setattr__(self, "method", method)
+
+
 def simulate(
     drive: PositionDrive,
     command: Scenario,
@@ -113,12 +163,13 @@ def simulate(
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
     start: _core.State | None = None,
+    method: Method | None = None,
     progress: bool = False,
-) -> Recording:
+) -> Run:
     """Runs a drive through a command and records what happens.
 
-    A step is a fourth-order exponential Runge-Kutta step; steps end at every jump of the inputs, and set-valued friction is
-    stepped to its events, so that sticking is exact.
+    Steps end at every jump of the inputs. With set-valued friction they are cut at its events, located to rounding, so that
+    sticking is exact.
 
     Args:
         drive: what is commanded
@@ -127,18 +178,23 @@ def simulate(
         sample: distance of samples in the recording [s]; `dt` if not given
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K], for friction that depends on it
-        start: where the drive starts; at rest, untwisted, if not given
+        start: where the drive starts, as `end` of another run; at rest, untwisted, if not given
+
+            third order for bristles so stiff that a shaft vibrates on them within a step; "moreau_jean", time-stepping of
+            second order that looks for no events, however many there are. If not given the bristles decide between the
+            first two. To keep a tolerance, see `simulate_adaptively`.
         progress: show a progress bar
 
     Returns:
         Recording with columns time [s], command, input_angle [rad], input_speed [rad/s], output_angle [rad], output_speed
         [rad/s], twist [rad], kinematic_error [rad], transmission_error [rad], torque [N.m], current [A], voltage [V],
         friction_input [N.m], friction_mesh [N.m], friction_output [N.m], load_torque [N.m], temperature [K], each of shape
-        (n,); the first sample is at t = 0.
+        (n,); the first sample is at t = 0. Its `end` is the state at the end, its `method` says how steps were taken.
 
     Raises:
         ValueError: `dt`, `sample` or `temperature` is not positive, `load_torque` or `temperature` lasts another time than
-            `command`, or the drive leaves the range in which one of its parts is valid; says which, where and when
+            `command`, `method` is not known, or the drive leaves the range in which one of its parts is valid; says which,
+            where and when
         FloatingPointError: the trajectory left the finite numbers, or `dt` cannot follow the gear's vibration; says when,
             and what would do
 
@@ -147,17 +203,98 @@ def simulate(
     >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
     >>> run.unit("output_angle"), len(run)
     ('rad', 501)
+    >>> run.method
+    'exponential Runge-Kutta, steps of 0.0002 s'
     """
+    if method not in (None, *METHODS):
+        raise ValueError(f'method = "{method}" is not known; there are {", ".join(METHODS)}')
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, sample)
+    taken = method or ("rosenbrock" if dt * _core.bristle_vibration(drive) > STIFFEST else "exponential")
     state = drive.rest() if start is None else start
     pieces = [_core.now(drive, state, excitation.first())]
     with progressing(progress, len(course.instants) - 1) as shown:
         for number, chunk in enumerate(course.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
-            outputs, state = _core.simulate(drive, state, chunk.instants, excitation.over(chunk), chunk.samples[1:], report)
+            inputs, keep = excitation.over(chunk), chunk.samples[1:]
+            outputs, state = _core.simulate(drive, state, chunk.instants, inputs, keep, METHODS.index(taken), report)
             pieces.append(outputs)
-    return _recording(drive, course, np.concatenate(pieces, axis=1), dt)
+    whole = np.concatenate(pieces, axis=1)
+    time = course.instants[course.samples.astype(bool)]
+    _check_finite(time, whole, remedy(dt))
+    if taken != "rosenbrock":
+        _check_resolution(drive, dt, whole)
+    return Run(_columns(time, whole), output_units(drive), state, f"{_NAMED[taken]}, steps of {dt:g} s")
+
+
+_NAMED = {
+    "exponential": "exponential Runge-Kutta",
+    "moreau_jean": "Moreau-Jean time-stepping",
+    "rosenbrock": "Rosenbrock W-method",
+}
+
+
+def simulate_adaptively(
+    drive: PositionDrive,
+    command: Scenario,
+    rtol: float = 1e-6,
+    atol: float = 1e-12,
+    *,
+    sample: float = 1e-3,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
+    start: _core.State | None = None,
+    progress: bool = False,
+) -> Run:
+    """Runs a drive through a command in steps as long as a tolerance allows.
+
+    The steps are those of `simulate`'s exponential method, events included; two of half the length tell the error of one.
+    Samples lie anywhere within steps: there a step of part of the length gives the state, as exactly as at the ends.
+
+    Args:
+        drive, command, load_torque, temperature, start, progress: as for `simulate`
+        rtol: error tolerated in each member of the motion (angles, speeds, current, bristles), relative to the largest it has
+            been so far
+        atol: error tolerated besides, in the unit of each
+        sample: distance of samples in the recording [s]
+
+    Returns:
+        as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
+
+    Raises:
+        ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, and as `simulate`
+        FloatingPointError: the trajectory left the finite numbers; says when
+
+    >>> import strainwave as sw
+    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> run = sw.simulate_adaptively(drive, sw.scenario.step(amplitude=5.0, duration=0.1), rtol=1e-8)
+    >>> run.method.partition(":")[0]
+    'exponential Runge-Kutta, adaptive, rtol 1e-08, atol 1e-12'
+    """
+    if not 1e-11 <= rtol <= 1e-2:
+        raise ValueError(f"rtol = {rtol} must lie in [1e-11, 1e-2]")
+    if not 0.0 < atol < np.inf:
+        raise ValueError(f"atol = {atol} must lie in (0, inf)")
+    excitation = Excitation(command, load_torque, temperature)
+    _positive("sample", sample)
+    samples = _grid(sample, command.duration, 1e-9 * sample)
+    instants = excitation.instants(rtol)
+    state = drive.rest() if start is None else start
+    pieces, accepted, rejected = [_core.now(drive, state, excitation.first())], 0, 0
+    with progressing(progress, len(instants) - 1) as shown:
+        for first in range(0, len(instants) - 1, CHUNK):
+            chunk = Course(instants[first : first + CHUNK + 1], np.empty(0, np.uint8))
+            report = None if shown is None else lambda done, begun=first, show=shown: show(begun + done)
+            within = samples[(samples > chunk.instants[0]) & (samples <= chunk.instants[-1])]
+            outputs, state, taken, given_up = _core.simulate_adaptively(
+                drive, state, chunk.instants, excitation.over(chunk), rtol, atol, within, report
+            )
+            pieces.append(outputs)
+            accepted, rejected = accepted + taken, rejected + given_up
+    whole = np.concatenate(pieces, axis=1)
+    _check_finite(samples, whole, "check the parameters")
+    said = f"exponential Runge-Kutta, adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
+    return Run(_columns(samples, whole), output_units(drive), state, said)
 
 
 def derivatives(
@@ -182,7 +319,10 @@ def derivatives(
     course = excitation.course(dt, samples)
     outputs, slopes = _core.differentiate(drive, course.instants, excitation.over(course), course.samples[1:], list(numbers))
     first, first_slopes = _core.now_derivatives(drive, excitation.first(), list(numbers))
-    run = _recording(drive, course, np.concatenate((first, outputs), axis=1), dt)
+    whole, time = np.concatenate((first, outputs), axis=1), course.instants[course.samples.astype(bool)]
+    _check_finite(time, whole, remedy(dt))
+    _check_resolution(drive, dt, whole)
+    run = Recording(_columns(time, whole), output_units(drive), title="simulation")
     return run, np.concatenate((first_slopes, slopes), axis=2)
 
 
@@ -219,21 +359,25 @@ def _grid(step: float, duration: float, tolerance: float) -> Array:
     return np.append(grid[grid < duration - tolerance], duration)
 
 
-def _recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -> Recording:
-    time = course.instants[course.samples.astype(bool)]
+def _columns(time: Array, outputs: Array) -> dict[str, Array]:
+    return {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
+
+
+def _check_finite(time: Array, outputs: Array, what_to_do: str) -> None:
     finite = np.isfinite(outputs).all(axis=0)
     if not finite.all():
         where = int(np.argmin(finite))
         names = [name for (name, _, _), ok in zip(_core.outputs, np.isfinite(outputs[:, where]), strict=True) if not ok]
         raise FloatingPointError(
-            f"the simulation left the finite numbers at t = {time[where]:.6g} s ({', '.join(names)}); {remedy(dt)}"
+            f"the simulation left the finite numbers at t = {time[where]:.6g} s ({', '.join(names)}); {what_to_do}"
         )
+
+
+def _check_resolution(drive: PositionDrive, dt: float, outputs: Array) -> None:
     twist = float(np.abs(outputs[_TWIST]).max())
     vibration = _core.vibration(drive, twist)
     if dt * vibration > COARSEST:
         raise FloatingPointError(too_coarse(dt, twist, vibration))
-    columns = {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
-    return Recording(columns, output_units(drive), title="simulation")
 
 
 def output_units(drive: PositionDrive) -> dict[str, str]:

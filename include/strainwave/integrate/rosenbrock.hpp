@@ -1,0 +1,126 @@
+#pragma once
+#include <strainwave/integrate/interval.hpp>
+
+namespace strainwave::integrate {
+
+/// A square matrix in its factors, to solve equations with.
+template <class S, int n>
+class Factored {
+    Array<Array<S, n>, n> rows;
+    Array<int, n> order;
+
+public:
+    /// Gauss's elimination; in each column the largest pivot left.
+    constexpr explicit Factored(const Array<Array<S, n>, n>& matrix) : rows(matrix), order{} {
+        for (int i = 0; i < n; ++i) order[i] = i;
+        for (int k = 0; k < n; ++k) {
+            int pivot = k;
+            for (int i = k + 1; i < n; ++i)
+                if (abs(rows[order[i]][k]) > abs(rows[order[pivot]][k])) pivot = i;
+            const int first = order[pivot];
+            order[pivot] = order[k];
+            order[k] = first;
+            for (int i = k + 1; i < n; ++i) {
+                Array<S, n>& row = rows[order[i]];
+                if (row[k] == S(0.0)) continue;
+                row[k] = row[k] / rows[first][k];
+                for (int j = k + 1; j < n; ++j) row[j] = row[j] - row[k] * rows[first][j];
+            }
+        }
+    }
+    constexpr Array<S, n> solve(const Array<S, n>& right) const {
+        Array<S, n> x{};
+        for (int i = 0; i < n; ++i) {
+            x[i] = right[order[i]];
+            for (int j = 0; j < i; ++j) x[i] = x[i] - rows[order[i]][j] * x[j];
+        }
+        for (int i = n - 1; i >= 0; --i) {
+            for (int j = i + 1; j < n; ++j) x[i] = x[i] - rows[order[i]][j] * x[j];
+            x[i] = x[i] / rows[order[i]][i];
+        }
+        return x;
+    }
+};
+
+namespace detail {
+
+/// ROS34PW2 of Rang and Angermann (2005), table 4.1: four stages, third order whatever stands for the Jacobian, L-stable.
+struct Ros34pw2 {
+    static constexpr int stages = 4;
+    static constexpr double gamma = 0.43586652150845900;
+    static constexpr double argument[stages][stages] = {
+        {}, {0.87173304301691801}, {0.84457060015369423, -0.11299064236484185}, {0.0, 0.0, 1.0}};
+    static constexpr double coupling[stages][stages] = {{},
+                                                        {-0.87173304301691801},
+                                                        {-0.90338057013044082, 0.054180672388095326},
+                                                        {0.24212380706095346, -1.2232505839045147, 0.54526025533510214}};
+    static constexpr double weight[stages] = {0.24212380706095346, -1.2232505839045147, 1.5452602553351020, 0.43586652150845900};
+
+    /// Where in the step a stage stands.
+    static constexpr double abscissa(int stage) {
+        double sum = 0.0;
+        for (int j = 0; j < stage; ++j) sum += argument[stage][j];
+        return sum;
+    }
+};
+
+/// What `rate` answers to each member of `y` by itself: the Jacobian, by differences.
+template <class S, int n, class Rate>
+constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Array<S, n>& y, const Array<S, n>& now, const S& dt) {
+    Array<Array<S, n>, n> matrix{};
+    for (int j = 0; j < n; ++j) {
+        const S moved = S(1e-7) * (abs(y[j]) + dt * abs(now[j])) + S(1e-10);
+        Array<S, n> beside = y;
+        beside[j] = y[j] + moved;
+        const Array<S, n> then = rate(beside);
+        for (int i = 0; i < n; ++i) matrix[i][j] = (then[i] - now[i]) / (beside[j] - y[j]);
+    }
+    return matrix;
+}
+
+}  // namespace detail
+
+/// One step without events of a Rosenbrock W-method, of third order: stable whatever the stiffness of the bristles. For scalars
+/// that are plain numbers.
+template <class S, class Drive>
+constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
+                                                const S& dt) {
+    using Motion = typename Drive::Motion;
+    using Table = detail::Ros34pw2;
+    constexpr int n = size_of<S, Motion>;
+    using Vector = Array<S, n>;
+    const auto now = drive.flow(before, before.motion, u.start);
+    auto x = drive.remembered(before, now.mesh.twist);
+    const auto confined = [&](const Vector& y) { return drive.confined(shaped<Motion>(y), now.contacts, now.mesh.per_input); };
+    const Vector y = flattened<S>(before.motion);
+    const auto matrix = detail::jacobian<S, n>(
+        [&](const Vector& beside) { return flattened<S>(drive.flow(x, shaped<Motion>(beside), u.start).rate); }, y,
+        flattened<S>(now.rate), dt);
+    Array<Vector, n> left{};
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) left[i][j] = S(i == j ? 1.0 : 0.0) - dt * S(Table::gamma) * matrix[i][j];
+    const Factored<S, n> factored(left);
+
+    Array<Vector, Table::stages> k{};
+    Vector end = y;
+    for (int stage = 0; stage < Table::stages; ++stage) {
+        Vector at = y, coupled{};
+        for (int j = 0; j < stage; ++j)
+            for (int i = 0; i < n; ++i) {
+                at[i] = at[i] + S(Table::argument[stage][j]) * k[j][i];
+                coupled[i] = coupled[i] + S(Table::coupling[stage][j]) * k[j][i];
+            }
+        const Vector rate = flattened<S>(drive.flow(x, confined(at), u.at(S(Table::abscissa(stage)), dt)).rate);
+        Vector right{};
+        for (int i = 0; i < n; ++i) {
+            right[i] = dt * rate[i];
+            for (int j = 0; j < n; ++j) right[i] = right[i] + dt * matrix[i][j] * coupled[j];
+        }
+        k[stage] = factored.solve(right);
+        for (int i = 0; i < n; ++i) end[i] = end[i] + S(Table::weight[stage]) * k[stage][i];
+    }
+    x.motion = drive.renewed(confined(end), now.contacts, now.mesh.per_input);
+    return drive.wrapped(x);
+}
+
+}  // namespace strainwave::integrate
