@@ -265,6 +265,11 @@ void bind_drives(nb::module_& core) {
             std::rethrow_exception(thrown);
         } catch (const OutOfBounds& error) {
             PyErr_SetString(PyExc_ValueError, text_of(error).c_str());
+        } catch (const ToleranceMissed& error) {
+            PyErr_SetString(PyExc_FloatingPointError,
+                            ("no step is short enough to keep the tolerance between t = " + shortest(error.from) + " s and " +
+                             with_unit(error.to, "s") + "; loosen rtol, or check the parameters")
+                                .c_str());
         }
     });
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");

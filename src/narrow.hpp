@@ -131,6 +131,8 @@ template <class S, class To, class From>
 To refilled(const From& from) {
     To to{};
     to.held_twist = from.held_twist;
+    to.held_rate = from.held_rate;
+    to.elapsed = from.elapsed;
     to.turns = from.turns;
     to.sliding_input = from.sliding_input;
     to.sliding_output = from.sliding_output;

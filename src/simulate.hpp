@@ -37,13 +37,18 @@ enum class Method { exponential, moreau_jean, rosenbrock };
 Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
                       std::size_t kept, const Pause& pause);
 
+/// No step was short enough to keep the tolerance, between two instants [s].
+struct ToleranceMissed {
+    double from, to;
+};
+
 /// How many steps were taken, and how many given up for shorter ones.
 struct Steps {
     long accepted = 0, rejected = 0;
 };
 
 /// One trajectory in steps as long as a tolerance allows, none longer than those of its course. Writes channel c at samples[k] [s]
-/// to out[c * count + k]. Throws OutOfBounds.
+/// to out[c * count + k]. Throws OutOfBounds, ToleranceMissed.
 Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
                                  const integrate::Tolerance& tolerance, const double* samples, std::size_t count, double* out,
                                  Steps& steps, const Pause& pause);

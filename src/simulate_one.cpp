@@ -77,6 +77,7 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
             }
         };
         x = adaptive.through(x, u, dt, within);
+        if (adaptive.gave_up()) throw ToleranceMissed{begin, course.instants[i + 1]};
     }
     steps = {adaptive.accepted, adaptive.rejected};
     return x;

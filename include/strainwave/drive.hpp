@@ -57,6 +57,8 @@ struct State {
     Motion motion{};
     HysteresisState hysteresis{};
     S held_twist{0.0};
+    S held_rate{0.0};
+    S elapsed{0.0};
     S turns{0.0};
     S sliding_input{1.0};
     S sliding_output{1.0};
@@ -66,6 +68,8 @@ struct State {
         visit(SW_PART(m, motion, "What flows continuously"));
         visit(SW_PART(m, hysteresis, "Memory of the hysteresis"));
         visit(SW_FIELD(m, held_twist, "rad", "Twist at which the hysteresis was last brought up to date"));
+        visit(SW_FIELD(m, held_rate, "rad/s", "Rate of the twist there"));
+        visit(SW_FIELD(m, elapsed, "s", "Time since"));
         visit(SW_FIELD(m, turns, "1", "Whole revolutions of the input"));
         visit(SW_FIELD(m, sliding_input, "1", "Sense of sliding at the input, 0 while it sticks"));
         visit(SW_FIELD(m, sliding_output, "1", "Sense of sliding at the output, 0 while it sticks"));
@@ -182,18 +186,30 @@ struct PositionDrive {
         State x{};
         // Once is enough without noise; with noise, whose amplitude follows the torque, a few rounds bring the twist to zero.
         for (int i = 0; i < 8; ++i)
-            x.motion.transmission_error = gear.mesh({}, S(0.0), x.motion.transmission_error, S(0.0), {}, S(0.0)).error;
+            x.motion.transmission_error = gear.geometry({}, S(0.0), x.motion.transmission_error, S(0.0)).error;
         x.sliding_input = S(input_sticks() ? 0.0 : 1.0);
         x.sliding_output = S(output_sticks() ? 0.0 : 1.0);
         return x;
     }
 
-    constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u) const {
+    constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u) const { return flow(x, y, u, mesh(x, y)); }
+
+    /// What a step begins with: the state brought up to date, and its flow.
+    struct Start {
+        State x;
+        Flow now;
+    };
+    constexpr Start start(const State& before, const Input<S>& u) const {
+        const auto geometry = this->geometry(before, before.motion);
+        const State x = remembered(before, geometry);
+        return {x, flow(x, x.motion, u, gear.loaded(geometry, x.hysteresis, x.held_twist))};
+    }
+
+    constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u, const typename Gear::Mesh& mesh) const {
         const auto reference = this->reference(x, y, u);
         const S voltage = control.voltage(y.control, reference);
         const S motor_torque = motor.torque(motor.current(y.motor, voltage, y.input_speed));
 
-        const auto mesh = this->mesh(x, y);
         Flow flow{{}, mesh, contacts(x, y, mesh, u), S(0.0), S(0.0)};
         const Contacts& at = flow.contacts;
         Motion& rate = flow.rate;
@@ -239,15 +255,26 @@ struct PositionDrive {
         return y;
     }
 
-    /// The hysteresis brought up to date at `twist`.
-    constexpr State remembered(State x, const S& twist) const {
-        x.hysteresis = gear.hysteresis.advance(x.hysteresis, twist - x.held_twist);
-        x.held_twist = twist;
+    /// The hysteresis brought up to date where the shafts now stand. Where the twist has turned round on the way it is led to the
+    /// turning point first: missing it would be an error of memory, that stays.
+    constexpr State remembered(State x, const typename Gear::Mesh& now) const {
+        S from = x.held_twist;
+        const auto turned = x.held_rate * now.twist_rate < S(0.0);
+        if (any(turned)) {
+            const S there = select(turned, turning_point(x, now), from);
+            x.hysteresis = gear.hysteresis.advance(x.hysteresis, there - from);
+            from = there;
+        }
+        x.hysteresis = gear.hysteresis.advance(x.hysteresis, now.twist - from);
+        x.held_twist = now.twist;
+        x.held_rate = now.twist_rate;
+        x.elapsed = S(0.0);
         return x;
     }
 
-    /// The input angle within its turn, whole turns counted.
-    constexpr State wrapped(State x) const {
+    /// The state `dt` [s] after it was remembered, its input angle within its turn, whole turns counted.
+    constexpr State wrapped(State x, const S& dt) const {
+        x.elapsed = dt;
         const S turns = rint(x.motion.input_angle * S(0.5 / pi));
         x.motion.input_angle = x.motion.input_angle - turns * S(2.0 * pi);
         x.turns = x.turns + turns;
@@ -279,13 +306,13 @@ struct PositionDrive {
 
     /// How far both sides are from changing between sticking and sliding; below zero, one has.
     constexpr S margin(const State& x, const Input<S>& u) const {
-        const Flow now = flow(x, x.motion, u);
+        const Flow now = start(x, u).now;
         return min(margin_input(x, now), margin_output(x, now));
     }
 
     /// Sides that stick and are driven beyond what their friction holds set off.
     constexpr State released(State x, const Input<S>& u) const {
-        const Flow now = flow(x, x.motion, u);
+        const Flow now = start(x, u).now;
         const auto set_off = [](const S& sliding, const S& hold, const S& balance) {
             return select((sliding == S(0.0)) & (hold < abs(balance)), sign(balance), sliding);
         };
@@ -330,13 +357,13 @@ struct PositionDrive {
     /// At an event: the side whose margin is used up stops, or breaks away, or turns round.
     template <class Mask>
     constexpr State settled(State x, const Input<S>& u, const Mask& lanes) const {
-        const Flow before = flow(x, x.motion, u);
+        const Flow before = start(x, u).now;
         const auto at_input = lanes & !(margin_output(x, before) < margin_input(x, before));
         const auto at_output = lanes & (margin_output(x, before) < margin_input(x, before));
         const auto input_stops = at_input & !(x.sliding_input == S(0.0)), output_stops = at_output & !(x.sliding_output == S(0.0));
         x.motion.input_speed = select(input_stops, S(0.0), x.motion.input_speed);
         x.motion.output_speed = select(output_stops, S(0.0), x.motion.output_speed);
-        const Flow now = flow(x, x.motion, u);
+        const Flow now = start(x, u).now;
         x.sliding_input = select(at_input, sense(now.input_balance, hold_input(now), input_stops), x.sliding_input);
         x.sliding_output = select(at_output, sense(now.output_balance, hold_output(now), output_stops), x.sliding_output);
         return x;
@@ -345,7 +372,7 @@ struct PositionDrive {
     /// Whether every part is valid where the drive stands; visit(part, Domain) of those that may not be.
     template <class Visit>
     constexpr void bounds(const State& x, const Input<S>& u, Visit&& visit) const {
-        const Flow now = flow(x, x.motion, u);
+        const Flow now = start(x, u).now;
         if (bounded<S>(gear.stiffness)) visit("gear.stiffness", domain<S>(gear.stiffness, now.mesh.twist));
         if (bounded<Contact>(gear.friction_input)) visit("gear.friction_input", domain<S>(gear.friction_input, now.contacts.input));
         if (bounded<Contact>(gear.friction_mesh)) visit("gear.friction_mesh", domain<S>(gear.friction_mesh, now.contacts.mesh));
@@ -357,13 +384,16 @@ struct PositionDrive {
                bounded<Contact>(gear.friction_output);
     }
 
-    constexpr auto mesh(const State& x, const Motion& y) const {
-        return gear.mesh({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed, x.hysteresis, x.held_twist);
+    constexpr typename Gear::Mesh geometry(const State& x, const Motion& y) const {
+        return gear.geometry({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
+    }
+    constexpr typename Gear::Mesh mesh(const State& x, const Motion& y) const {
+        return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist);
     }
 
-    constexpr Output output(const State& x, const Input<S>& u) const {
+    constexpr Output output(const State& at, const Input<S>& u) const {
+        const auto [x, now] = start(at, u);
         const Motion& y = x.motion;
-        const auto now = flow(x, y, u);
         const S voltage = control.voltage(y.control, reference(x, y, u));
         const S output_angle = this->output_angle(x, y);
         const S load_torque = load.torque(output_angle) + u.load_torque;
@@ -482,6 +512,16 @@ private:
         const Contact still = Contact{}.pushed(S(0.0));
         const auto bent = friction::advance(law, typename Law::State{}, still.moving(little), soon);
         return (friction::torque(law, bent, still) - friction::torque(law, typename Law::State{}, still)) / (little * soon);
+    }
+
+    /// The twist at which it turned round since it was held: where Hermite's cubic through both ends is steepest to neither side.
+    static constexpr S turning_point(const State& x, const typename Gear::Mesh& now) {
+        const S begin = x.held_rate * x.elapsed, end = now.twist_rate * x.elapsed, moved = now.twist - x.held_twist;
+        const S sense = sign(begin), bend = S(3.0) * (begin + end - S(2.0) * moved);
+        const S slope = S(2.0) * (S(3.0) * moved - S(2.0) * begin - end);
+        const S root = sqrt(max(slope * slope - S(4.0) * bend * begin, S(0.0)));
+        const S at = S(2.0) * abs(begin) / max(root - sense * slope, S(smallest));
+        return x.held_twist + at * (begin + at * (S(0.5) * slope + at * bend * S(1.0 / 3.0)));
     }
 
     /// A side that sticks does not accelerate.

@@ -74,21 +74,24 @@ struct Gear {
 
     /// How the two shafts stand to each other.
     struct Mesh {
-        S error;      ///< Kinematic error e, rad
-        S per_input;  ///< Twist per input angle: 1/i - e', rad/rad
-        S twist;      ///< rad
-        S torque;     ///< Transmitted torque T at the output, N.m
+        S error;       ///< Kinematic error e, rad
+        S per_input;   ///< Twist per input angle: 1/i - e', rad/rad
+        S twist;       ///< rad
+        S twist_rate;  ///< rad/s
+        S torque;      ///< Transmitted torque T at the output, N.m
     };
 
-    /// `transmission_error` is theta_in / i - theta_out; the hysteresis was last brought up to date at `held_twist`.
-    constexpr Mesh mesh(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error, const S& output_speed,
-                        const typename Hysteresis::State& held, const S& held_twist) const {
+    /// All of it but the torque. `transmission_error` is theta_in / i - theta_out.
+    constexpr Mesh geometry(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
+                            const S& output_speed) const {
         const kinematic_error::Error<S> error = this->error(input_angle, input_speed, transmission_error);
         const S per_input = kinematics.inverse_ratio() - error.slope;
-        const S twist = transmission_error - error.value;
-        const S twist_rate = per_input * input_speed - output_speed;
-        const S torque = stiffness.torque(twist) + hysteresis.torque(held, twist - held_twist) + damping * twist_rate;
-        return {error.value, per_input, twist, torque};
+        return {error.value, per_input, transmission_error - error.value, per_input * input_speed - output_speed, S(0.0)};
+    }
+    /// The torque of a gear that stands so, its hysteresis last brought up to date at `held_twist`.
+    constexpr Mesh loaded(Mesh mesh, const typename Hysteresis::State& held, const S& held_twist) const {
+        mesh.torque = stiffness.torque(mesh.twist) + hysteresis.torque(held, mesh.twist - held_twist) + damping * mesh.twist_rate;
+        return mesh;
     }
 
     /// The largest stiffness [N.m/rad] that spring and hysteresis show together at twists up to `twist` [rad], of either sign.

@@ -222,7 +222,7 @@ def simulate(
     whole = np.concatenate(pieces, axis=1)
     time = course.instants[course.samples.astype(bool)]
     _check_finite(time, whole, remedy(dt))
-    if taken != "rosenbrock":
+    if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
         _check_resolution(drive, dt, whole)
     return Run(_columns(time, whole), output_units(drive), state, f"{_NAMED[taken]}, steps of {dt:g} s")
 
@@ -263,7 +263,7 @@ def simulate_adaptively(
 
     Raises:
         ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, and as `simulate`
-        FloatingPointError: the trajectory left the finite numbers; says when
+        FloatingPointError: the trajectory left the finite numbers, or no step keeps the tolerance; says when
 
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))

@@ -27,6 +27,9 @@ class Adaptive {
 public:
     long accepted = 0, rejected = 0;
 
+    /// Whether one of the shortest steps after the other missed the tolerance, where `through` ended.
+    constexpr bool gave_up() const { return missed > most_missed; }
+
     constexpr Adaptive(const Drive& drive_, const Step& step_, const Tolerance& tolerance_, const S& first)
         : drive(drive_), step(step_), tolerance(tolerance_), next(first) {}
 
@@ -43,14 +46,17 @@ public:
             const State whole = step(drive, x, u.part(done, to, dt), (to - done) * dt);
             const State half = step(drive, x, u.part(done, middle, dt), (middle - done) * dt);
             const State end = step(drive, half, u.part(middle, to, dt), (to - middle) * dt);
-            const S error = this->error(whole, end) * S(forgetting) / length;
+            const S error = this->error(whole, end) * S(forgetting) / (length + S(brief));
             // An error of what is not a number is larger than any; a step must not become nothing.
             const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), S(4.0)) : S(0.2);
             next = max(length * factor, S(shortest));
-            if (!(error <= S(1.0)) && length > S(shortest)) {
+            const bool kept = error <= S(1.0);
+            if (!kept && length > S(shortest)) {
                 ++rejected;
                 continue;
             }
+            missed = kept ? 0 : missed + 1;
+            if (missed > most_missed) return x;
             ++accepted;
             within(x, half, end, done, middle, to);
             note(end);
@@ -62,6 +68,10 @@ public:
 
 private:
     static constexpr double shortest = 1e-9;  ///< s
+    static constexpr int most_missed = 100;
+    int missed = 0;  ///< of the shortest steps, one after the other
+    /// s. Where a jump of the forces makes a step this short, its error no longer falls faster than its length.
+    static constexpr double brief = 1e-6;
     /// s. A drive forgets an error within about this time, so that errors of steps may add up to the tolerance over it.
     static constexpr double forgetting = 0.1;
 

@@ -98,8 +98,9 @@ template <class S, class Drive>
 constexpr typename Drive::State exponential_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
                                                  const S& dt) {
     const auto y1 = before.motion;
-    const auto now = drive.flow(before, y1, u.start);
-    auto x = drive.remembered(before, now.mesh.twist);
+    const auto start = drive.start(before, u.start);
+    const auto& now = start.now;
+    auto x = start.x;
     const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
     const auto confined = [&](const auto& y) { return drive.confined(y, now.contacts, now.mesh.per_input); };
     const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y1, now.contacts), dt);
@@ -111,7 +112,7 @@ constexpr typename Drive::State exponential_step(const Drive& drive, const typen
     const auto y4 = confined(scheme.onward(y2, n3, n1));
     const auto n4 = scheme.forcing(rate(y4, u.end), y4);
     x.motion = drive.renewed(confined(scheme.complete(y1, n1, n2, n3, n4)), now.contacts, now.mesh.per_input);
-    return drive.wrapped(x);
+    return drive.wrapped(x, dt);
 }
 
 }  // namespace strainwave::integrate

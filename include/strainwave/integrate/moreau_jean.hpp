@@ -10,8 +10,9 @@ template <class S, class Drive>
 constexpr typename Drive::State moreau_jean_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
                                                  const S& dt) {
     const auto y = before.motion;
-    const auto now = drive.flow(before, y, u.start);
-    auto x = drive.remembered(before, now.mesh.twist);
+    const auto start = drive.start(before, u.start);
+    const auto& now = start.now;
+    auto x = start.x;
     const auto confined = [&](const auto& motion) { return drive.confined(motion, now.contacts, now.mesh.per_input); };
     const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y, now.contacts), dt);
     const S half = S(0.5) * dt;
@@ -19,7 +20,7 @@ constexpr typename Drive::State moreau_jean_step(const Drive& drive, const typen
     const auto then = drive.flow(x, middle, u.middle);
     x = drive.arriving(x, scheme.across(y, scheme.forcing(then.rate, middle)), then, dt);
     x.motion = drive.renewed(confined(x.motion), now.contacts, now.mesh.per_input);
-    return drive.wrapped(x);
+    return drive.wrapped(x, dt);
 }
 
 }  // namespace strainwave::integrate

@@ -1,0 +1,216 @@
+"""How steps are taken: orders, tolerances kept, and which method is chosen."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from strainwave import _core
+from strainwave.simulation import METHODS
+
+from tests.laws.test_gear import DRIVE as EVERYTHING
+from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
+from tests.reference_drive import DRIVE, command
+
+MOVING = ("input_angle", "input_speed", "output_angle", "transmission_error", "output_speed", "torque")
+NO_HYSTERESIS = sw.hysteresis.MaxwellSlip(stiffness=[], breakaway=[])
+SMOOTH = DRIVE.replace(gear=DRIVE.gear.replace(hysteresis=NO_HYSTERESIS, friction_input=sw.friction.Viscous(viscous=1e-4)))
+STICKING = SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=sw.friction.Coulomb(coulomb=0.03, breakaway=0.045)))
+
+
+def difference(run: sw.Recording, exact: sw.Recording) -> float:
+    """The largest in any column, relative to the largest value in it."""
+    return max(float(np.abs(run[name] - exact[name]).max() / max(np.abs(exact[name]).max(), 1e-300)) for name in MOVING)
+
+
+# Orders
+
+
+@pytest.mark.parametrize(
+    ("drive", "method", "order"),
+    [
+        (SMOOTH, "exponential", 4.0),
+        (STICKING, "exponential", 4.0),
+        (SMOOTH, "rosenbrock", 3.0),
+        (SMOOTH, "moreau_jean", 2.0),
+        (STICKING, "moreau_jean", 2.0),
+    ],
+    ids=["exponential", "exponential, sticking", "rosenbrock", "moreau_jean", "moreau_jean, sticking"],
+)
+def test_each_method_converges_with_its_order(drive: sw.drives.PositionDrive, method: Any, order: float) -> None:
+    """Halving the step twice, from where the asymptotic range has been reached."""
+    exact = sw.simulate(drive, command(0.2), 2e-6, sample=1e-3)
+    coarse = {"exponential": 1e-4, "rosenbrock": 5e-5, "moreau_jean": 2.5e-5}[method]
+    errors = [difference(sw.simulate(drive, command(0.2), coarse / n, sample=1e-3, method=method), exact) for n in (1, 2, 4)]
+    assert np.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(order, abs=0.35)
+
+
+def test_a_turn_of_the_twist_within_a_step_is_remembered() -> None:
+    """A spring and Maxwell elements swung past their turning points: errors fall with more than the second power."""
+    drive = SMOOTH.replace(gear=SMOOTH.gear.replace(hysteresis=DRIVE.gear.hysteresis))
+    exact = sw.simulate(drive, command(0.2), 2e-6, sample=1e-3)
+    errors = [difference(sw.simulate(drive, command(0.2), dt, sample=1e-3), exact) for dt in (2e-4, 2.5e-5)]
+    assert errors[0] < 2e-6  # 6e-6 where turning points are looked for at the ends of steps only
+    assert np.log2(errors[0] / errors[1]) / 3.0 > 1.5
+
+
+def order_conditions() -> dict[str, tuple[Fraction, Fraction]]:
+    """Left and right sides of those for a W-method of third order (Hairer and Wanner 1996, IV.7), in exact arithmetic.
+
+    With sums over j < i in beta = argument + coupling, gamma on the diagonal of beta.
+    """
+    gamma = Fraction("0.43586652150845900")
+    argument = [
+        [0, 0, 0, 0],
+        [Fraction("0.87173304301691801"), 0, 0, 0],
+        [Fraction("0.84457060015369423"), Fraction("-0.11299064236484185"), 0, 0],
+        [0, 0, 1, 0],
+    ]
+    coupling = [
+        [gamma, 0, 0, 0],
+        [Fraction("-0.87173304301691801"), gamma, 0, 0],
+        [Fraction("-0.90338057013044082"), Fraction("0.054180672388095326"), gamma, 0],
+        [Fraction("0.24212380706095346"), Fraction("-1.2232505839045147"), Fraction("0.54526025533510214"), gamma],
+    ]
+    b = [Fraction("0.24212380706095346"), Fraction("-1.2232505839045147"), Fraction("1.5452602553351020"), gamma]
+    stages = range(4)
+
+    def along(matrix: list[Any], vector: list[Any]) -> list[Fraction]:
+        return [sum((Fraction(matrix[i][j]) * vector[j] for j in stages), Fraction(0)) for i in stages]
+
+    def weighed(vector: list[Any]) -> Fraction:
+        return sum((b[i] * vector[i] for i in stages), Fraction(0))
+
+    one = [Fraction(1)] * 4
+    a, c = along(argument, one), along(coupling, one)
+    return {
+        "order 1": (weighed(one), Fraction(1)),
+        "order 2": (weighed(a), Fraction(1, 2)),
+        "order 2, any matrix": (weighed(c), Fraction(0)),
+        "order 3, squares": (weighed([x * x for x in a]), Fraction(1, 3)),
+        "order 3": (weighed(along(argument, a)), Fraction(1, 6)),
+        "order 3, matrix inside": (weighed(along(argument, c)), Fraction(0)),
+        "order 3, matrix outside": (weighed(along(coupling, a)), Fraction(0)),
+        "order 3, matrix twice": (weighed(along(coupling, c)), Fraction(0)),
+    }
+
+
+@pytest.mark.parametrize("name", order_conditions())
+def test_the_rosenbrock_method_is_of_third_order_with_any_matrix(name: str) -> None:
+    left, right = order_conditions()[name]
+    assert abs(left - right) < Fraction(1, 10**14)
+
+
+# Stiff bristles
+
+
+@pytest.mark.parametrize("stiffer", [10.0, 100.0, 1000.0])
+def test_bristles_of_any_stiffness_are_followed_by_the_method_chosen(stiffer: float) -> None:
+    """Against the same bristles at a step that follows them; the exponential method by itself fails from 100 times on."""
+    law = DRIVE.gear.friction_input
+    drive = DRIVE.replace(
+        gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=stiffer * law.bristle_stiffness))
+    )
+    exact = sw.simulate_adaptively(drive, command(0.2), rtol=1e-9)
+    assert difference(sw.simulate(drive, command(0.2), 2e-4, sample=1e-3), exact) < 3e-3
+
+
+def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
+    law = DRIVE.gear.friction_input
+    stiff = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=1e5)))
+    assert _core.bristle_vibration(stiff) == pytest.approx(np.sqrt(1e5 / 1e-4), rel=1e-4)
+    assert _core.bristle_vibration(STICKING) == 0.0
+    run = sw.simulate(stiff, command(0.01))
+    assert run.method == "Rosenbrock W-method, steps of 0.0002 s"
+    assert run.title == f"simulation: {run.method}"
+    assert sw.simulate(DRIVE, command(0.01)).method == "exponential Runge-Kutta, steps of 0.0002 s"
+    with pytest.raises(ValueError, match=r'^method = "euler" is not known; there are exponential, moreau_jean, rosenbrock$'):
+        sw.simulate(DRIVE, command(0.01), method="euler")  # type: ignore[arg-type]
+
+
+# Tolerances
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("drive", [SMOOTH, STICKING, DRIVE], ids=["smooth", "sticking", "reference"])
+def test_the_adaptive_method_keeps_its_tolerance_and_wastes_little(drive: sw.drives.PositionDrive, rtol: float) -> None:
+    exact = sw.simulate_adaptively(drive, command(0.3), rtol=1e-11)
+    error = difference(sw.simulate_adaptively(drive, command(0.3), rtol=rtol), exact)
+    assert 1e-4 * rtol < error < 10.0 * rtol
+
+
+def resolvable(drive: sw.drives.PositionDrive, rtol: float, voltage: float = 12.0) -> sw.Run:
+    try:
+        return sw.simulate_adaptively(drive, sw.scenario.sine(voltage, 50.0, 0.02), rtol=rtol, load_torque=2.0)
+    except (ValueError, FloatingPointError) as error:  # said, and not this test's matter
+        assume("lies outside of" not in str(error) and "no step is short enough" not in str(error))
+        raise
+
+
+def check_tolerance(drive: sw.drives.PositionDrive, factor: float) -> None:
+    """The error is so many times the tolerance at most, or what a change of the voltage by as much makes: a drive that is about to
+    lock or to break away magnifies both.
+    """
+    assume(cannot_create_energy(drive.gear))
+    assume(max(_core.vibration(drive, 1e-3), _core.bristle_vibration(drive)) < 1e4)
+    exact = resolvable(drive, 1e-8)
+    magnified = max(difference(resolvable(drive, 1e-8, 12.0 * (1.0 + change)), exact) for change in (-1e-5, 1e-5))
+    assert difference(resolvable(drive, 1e-5), exact) < factor * max(1e-5, magnified)
+
+
+@pytest.mark.parametrize(("part", "model"), EVERY_PART)
+@settings(max_examples=3)
+@given(data=st.data())
+def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, data: st.DataObject) -> None:
+    law = data.draw(laws(part, model))
+    # What slips and what sticks is decided at the ends of steps: of first order there, which two half steps do not show in full.
+    factor = 30.0 if isinstance(innermost(law), sw.friction.MaxwellSlipFriction) else 10.0
+    check_tolerance(EVERYTHING.replace(gear=EVERYTHING.gear.replace(**{part: law})), factor)
+
+
+@pytest.mark.parametrize("sample", [1e-3, 7e-5, 0.03])
+def test_samples_lie_anywhere_within_steps(sample: float) -> None:
+    """Between the ends of steps a sample is as exact as at them."""
+    exact = sw.simulate(SMOOTH, command(0.15), 5e-6, sample=sample)
+    run = sw.simulate_adaptively(SMOOTH, command(0.15), rtol=1e-8, sample=sample)
+    assert np.array_equal(run["time"], exact["time"])
+    assert difference(run, exact) < 1e-7
+
+
+def test_an_input_that_varies_within_a_step_is_followed() -> None:
+    """A load of 200 Hz, and one that jumps."""
+    load = sw.scenario.sine(20.0, 200.0, 0.1) + sw.scenario.step(5.0, 0.1, start=0.0333)
+    exact = sw.simulate(SMOOTH, command(0.1), 2e-6, sample=1e-3, load_torque=load)
+    assert difference(sw.simulate_adaptively(SMOOTH, command(0.1), rtol=1e-7, load_torque=load), exact) < 1e-6
+
+
+def test_what_cannot_be_a_tolerance_is_refused() -> None:
+    for rtol in (0.0, 1e-12, 0.1, float("nan")):
+        with pytest.raises(ValueError, match=r"^rtol = .* must lie in \[1e-11, 1e-2\]$"):
+            sw.simulate_adaptively(DRIVE, command(0.1), rtol=rtol)
+    with pytest.raises(ValueError, match=r"^atol = 0\.0 must lie in \(0, inf\)$"):
+        sw.simulate_adaptively(DRIVE, command(0.1), atol=0.0)
+
+
+# Sticking
+
+
+@pytest.mark.parametrize("method", [*METHODS, "adaptive"])
+def test_below_breakaway_every_state_is_constant_to_the_last_bit(method: Any) -> None:
+    """Both shafts held, a load applied: nothing moves at all."""
+    held = {"friction_input": STICKING.gear.friction_input, "friction_output": sw.friction.Coulomb(coulomb=2.0, breakaway=3.0)}
+    drive = STICKING.replace(gear=STICKING.gear.replace(**held), load=sw.loads.Inertia(inertia=0.5))
+    arguments: dict[str, Any] = {"load_torque": 2.9, "sample": 1e-2}
+    still = sw.scenario.constant(0.0, 0.2)
+    if method == "adaptive":
+        run = sw.simulate_adaptively(drive, still, **arguments)
+    else:
+        run = sw.simulate(drive, still, method=method, **arguments)
+    for name in (*MOVING, "twist"):
+        assert len(set(run[name].tolist())) == 1, name
+    assert run["friction_output"][-1] == pytest.approx(-2.9, rel=1e-12)
