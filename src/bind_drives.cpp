@@ -136,6 +136,64 @@ nb::tuple now_derivatives(const Drive& drive, const Numbers& u, const std::vecto
     return nb::make_tuple(out, slopes);
 }
 
+nb::tuple flow_derivatives(const Drive& drive, const Drive::State& x, const Numbers& u) {
+    Values out = array({std::size_t(motions + channels)}),
+           slopes = array({std::size_t(motions + driving), std::size_t(motions + channels)});
+    kernels().differentiate_flow(drive, x, input_of(u), out.data(), slopes.data());
+    return nb::make_tuple(out, slopes);
+}
+
+/// Appends number, name and unit of each number of a state, or of the state of the model chosen.
+struct Naming {
+    nb::list& list;
+    std::string prefix;
+    int number;
+
+    template <class T>
+    void operator()(const T& member, const Field& field) {
+        if constexpr (is_array<T>)
+            for (int i = 0; i < member.size(); ++i) append(std::string(field.name) + "[" + std::to_string(i) + "]", field);
+        else
+            append(field.name, field);
+    }
+    template <class Law>
+    void chosen(const Law& law) {
+        if constexpr (is_choice<Law>) {
+            law.visit([&](const auto& model) { chosen(model); });
+        } else if constexpr (friction::Modulation<Law>) {
+            chosen(law.law);
+        } else if constexpr (requires { typename Law::State; }) {
+            const typename Law::State state{};
+            Law::State::fields(state, *this);
+        }
+    }
+
+private:
+    void append(const std::string& name, const Field& field) { list.append(nb::make_tuple(number++, prefix + name, field.unit)); }
+};
+
+/// What flows in a drive with the models chosen.
+nb::list motion_of(const Drive& drive) {
+    nb::list list;
+    int number = 0;
+    const Drive::Motion motion{};
+    Drive::Motion::fields(motion, [&]<class T>(const T& member, const Field& field) {
+        if constexpr (is_slots<T>) {
+            Naming naming{list, std::string(field.name) + ".", number};
+            const std::string part = field.name;
+            if (part == "motor") naming.chosen(drive.motor);
+            if (part == "control") naming.chosen(drive.control);
+            if (part == "friction_input") naming.chosen(drive.gear.friction_input);
+            if (part == "friction_mesh") naming.chosen(drive.gear.friction_mesh);
+            if (part == "friction_output") naming.chosen(drive.gear.friction_output);
+            number += member.slot.size();
+        } else {
+            Naming{list, "", number++}(member, field);
+        }
+    });
+    return list;
+}
+
 nb::tuple loop_derivatives(const AnyGear<double>& gear, const Numbers& twist, const std::vector<int>& parameters) {
     const std::size_t n = twist.size();
     for (std::size_t i = 0; i < n; ++i) check_domain("gear.stiffness", domain<double>(gear.stiffness, twist.data()[i]));
@@ -338,6 +396,38 @@ void bind_drives(nb::module_& core) {
              nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Outputs at rest and their derivatives, as `differentiate` gives them for one sample.");
+    core.def(
+        "differentiate_flow", &flow_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
+        nb::sig("def differentiate_flow(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY
+                ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+        "Rates of the n numbers of the motion, then outputs, shape (n + channels,), in `state`, and derivatives by the motion and "
+        "the inputs, shape (n + 4, n + channels).");
+    core.def("motion", &motion_of, nb::arg("drive"),
+             nb::sig("def motion(drive: strainwave.drives.PositionDrive) -> list[tuple[int, str, str]]"),
+             "Place, name and unit of the numbers of the motion that the models of a drive have.");
+    core.def(
+        "aged",
+        [](const Drive& drive, const Drive::State& state, const Numbers& u, double dt) {
+            return drive.aged(state, input_of(u), dt);
+        },
+        nb::arg("drive"), nb::arg("state"), nb::arg("inputs"), nb::arg("dt"),
+        nb::sig("def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ", dt: float) -> State"),
+        "`state` with what friction remembers after `dt` [s] at constant speeds.");
+    core.def(
+        "remembered", [](const Drive& drive, const Drive::State& state, double twist) { return drive.remembered(state, twist); },
+        nb::arg("drive"), nb::arg("state"), nb::arg("twist"),
+        nb::sig("def remembered(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State"),
+        "`state` with its hysteresis brought up to date at `twist` [rad].");
+    core.def(
+        "consistent", [](const Drive& drive, const Drive::State& state) { return drive.consistent(state); }, nb::arg("drive"),
+        nb::arg("state"), nb::sig("def consistent(drive: strainwave.drives.PositionDrive, state: State) -> State"),
+        "`state` with each side's sense of sliding as its speed and its law have it.");
+    core.def(
+        "released",
+        [](const Drive& drive, const Drive::State& state, const Numbers& u) { return drive.released(state, input_of(u)); },
+        nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
+        nb::sig("def released(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> State"),
+        "`state` with the sides set off that stick and are driven beyond what their friction holds.");
     core.def("differentiate_loop", &loop_derivatives, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
              nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),

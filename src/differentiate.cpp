@@ -21,6 +21,19 @@ M seeded(const Parts& parts, const std::vector<int>& parameters, std::size_t fir
     });
 }
 
+/// A described struct of these numbers, of which the first `count` are, from number `from` on, those that derivatives may be taken
+/// by: here by number `first` and following.
+template <class X, int n>
+X sought(const Array<double, n>& numbers, int from, int count, int first) {
+    Array<Slope, n> scalars{};
+    for (int i = 0; i < n; ++i) {
+        scalars[i] = Slope(numbers[i]);
+        const int lane = from + i - first;
+        if (i < count && lane >= 0 && lane < width) scalars[i].slope[lane] = 1.0;
+    }
+    return shaped<X>(scalars);
+}
+
 /// Writes sample k of `kept`: values, and derivatives by the parameters number `first` and following.
 void write(const Output<Slope>& output, std::size_t first, std::size_t count, std::size_t k, std::size_t kept, double* out,
            double* slopes) {
@@ -53,6 +66,24 @@ void observe_derivatives(const Drive& drive, const Input<double>& u, const std::
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
         write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque), Slope(u.temperature)}),
               first, parameters.size(), 0, 1, out, slopes);
+    }
+}
+
+void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {
+    constexpr int rows = motions + channels;
+    const auto dual = seeded<AnyPositionDrive<Slope>>(parts_of(drive), {}, 0);
+    for (int first = 0; first < motions + driving; first += width) {
+        const auto state = sought<AnyPositionDrive<Slope>::State>(flattened<double>(x), 0, motions, first);
+        const auto input = sought<Input<Slope>>(flattened<double>(u), motions, driving, first);
+        const auto write = [&](const auto& values, int row) {
+            for (int i = 0; i < values.size(); ++i) {
+                out[row + i] = values[i].value;
+                for (int p = first; p < first + width && p < motions + driving; ++p)
+                    slopes[p * rows + row + i] = values[i].slope[p - first];
+            }
+        };
+        write(flattened<Slope>(dual.flow(state, state.motion, input).rate), 0);
+        write(flattened<Slope>(dual.output(state, input)), motions);
     }
 }
 

@@ -16,6 +16,9 @@ inline constexpr int channels = [] {
     return counter.count;
 }();
 
+/// How many numbers flow continuously, and how many drive a drive from outside.
+inline constexpr int motions = size_of<double, Drive::Motion>, driving = size_of<double, Input<double>>;
+
 /// Drives that differ from one in some of its numbers: number `numbers[p]` of member m is values[p * members + m].
 struct Variation {
     std::vector<int> numbers;
@@ -72,6 +75,10 @@ void differentiate(const Drive& drive, const Course& course, const std::vector<i
 void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
                          double* slopes);
 
+/// The rates of the motion and then the outputs of a drive in state `x`, its history fixed: value i in out[i], its derivative with
+/// respect to number p of the motion, and then of the inputs, in slopes[p * (motions + channels) + i].
+void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes);
+
 /// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i], the last
 /// by a shift of all points but the first.
 void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
@@ -89,6 +96,7 @@ struct Kernels {
     decltype(&host::observe) observe;
     decltype(&host::differentiate) differentiate;
     decltype(&host::observe_derivatives) observe_derivatives;
+    decltype(&host::differentiate_flow) differentiate_flow;
     decltype(&host::differentiate_loop) differentiate_loop;
     decltype(&host::differentiate_steady) differentiate_steady;
 };

@@ -255,6 +255,15 @@ struct PositionDrive {
         return y;
     }
 
+    /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
+    constexpr State aged(State x, const Input<S>& u, const S& dt) const {
+        const Contacts at = contacts(x, x.motion, mesh(x, x.motion), u);
+        x.motion.friction_input = friction::advance(gear.friction_input, x.motion.friction_input, at.input, dt);
+        x.motion.friction_mesh = friction::advance(gear.friction_mesh, x.motion.friction_mesh, at.mesh, dt);
+        x.motion.friction_output = friction::advance(gear.friction_output, x.motion.friction_output, at.output, dt);
+        return x;
+    }
+
     /// The hysteresis brought up to date where the shafts now stand. Where the twist has turned round on the way it is led to the
     /// turning point first: missing it would be an error of memory, that stays.
     constexpr State remembered(State x, const typename Gear::Mesh& now) const {

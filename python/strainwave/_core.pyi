@@ -332,6 +332,34 @@ def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: numpy.typing
     Outputs at rest and their derivatives, as `differentiate` gives them for one sample.
     """
 
+def differentiate_flow(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Rates of the n numbers of the motion, then outputs, shape (n + channels,), in `state`, and derivatives by the motion and the inputs, shape (n + 4, n + channels).
+    """
+
+def motion(drive: strainwave.drives.PositionDrive) -> list[tuple[int, str, str]]:
+    """
+    Place, name and unit of the numbers of the motion that the models of a drive have.
+    """
+
+def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64], dt: float) -> State:
+    """
+    `state` with what friction remembers after `dt` [s] at constant speeds.
+    """
+
+def remembered(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State:
+    """`state` with its hysteresis brought up to date at `twist` [rad]."""
+
+def consistent(drive: strainwave.drives.PositionDrive, state: State) -> State:
+    """
+    `state` with each side's sense of sliding as its speed and its law have it.
+    """
+
+def released(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> State:
+    """
+    `state` with the sides set off that stick and are driven beyond what their friction holds.
+    """
+
 def differentiate_loop(gear: Gear, twist: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape (parameters + 1, n), the last by a shift of all points but the first.
