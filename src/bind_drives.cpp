@@ -414,9 +414,9 @@ void bind_drives(nb::module_& core) {
         nb::sig("def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ", dt: float) -> State"),
         "`state` with what friction remembers after `dt` [s] at constant speeds.");
     core.def(
-        "remembered", [](const Drive& drive, const Drive::State& state, double twist) { return drive.remembered(state, twist); },
+        "led", [](const Drive& drive, const Drive::State& state, double twist) { return drive.led(state, twist); },
         nb::arg("drive"), nb::arg("state"), nb::arg("twist"),
-        nb::sig("def remembered(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State"),
+        nb::sig("def led(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State"),
         "`state` with its hysteresis brought up to date at `twist` [rad].");
     core.def(
         "consistent", [](const Drive& drive, const Drive::State& state) { return drive.consistent(state); }, nb::arg("drive"),

@@ -264,18 +264,19 @@ struct PositionDrive {
         return x;
     }
 
+    /// The hysteresis led straight to a twist.
+    constexpr State led(State x, const S& twist) const {
+        x.hysteresis = gear.hysteresis.advance(x.hysteresis, twist - x.held_twist);
+        x.held_twist = twist;
+        return x;
+    }
+
     /// The hysteresis brought up to date where the shafts now stand. Where the twist has turned round on the way it is led to the
     /// turning point first: missing it would be an error of memory, that stays.
     constexpr State remembered(State x, const typename Gear::Mesh& now) const {
-        S from = x.held_twist;
         const auto turned = x.held_rate * now.twist_rate < S(0.0);
-        if (any(turned)) {
-            const S there = select(turned, turning_point(x, now), from);
-            x.hysteresis = gear.hysteresis.advance(x.hysteresis, there - from);
-            from = there;
-        }
-        x.hysteresis = gear.hysteresis.advance(x.hysteresis, now.twist - from);
-        x.held_twist = now.twist;
+        if (any(turned)) x = led(x, select(turned, turning_point(x, now), x.held_twist));
+        x = led(x, now.twist);
         x.held_rate = now.twist_rate;
         x.elapsed = S(0.0);
         return x;

@@ -31,20 +31,28 @@ if TYPE_CHECKING:
     from strainwave.gear_set import GearSet, catalogue, load, save
     from strainwave.identify.fit import Fit, fit
     from strainwave.identify.twin import Twin, twin
+    from strainwave.linear import Linear, linearise
     from strainwave.recording import Recording
+    from strainwave.response import FrequencyResponse, frequency_response
     from strainwave.simulation import Run, simulate, simulate_adaptively
+    from strainwave.steady import equilibrium
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
     "Ensemble": "ensemble",
     "EnsembleWarning": "ensemble",
     "Fit": "identify.fit",
+    "FrequencyResponse": "response",
     "GearSet": "gear_set",
+    "Linear": "linear",
     "Recording": "recording",
     "Run": "simulation",
     "Twin": "identify.twin",
     "catalogue": "gear_set",
+    "equilibrium": "steady",
     "fit": "identify.fit",
+    "frequency_response": "response",
+    "linearise": "linear",
     "load": "gear_set",
     "save": "gear_set",
     "scenario": "scenario",
@@ -59,8 +67,10 @@ __all__ = [
     "Ensemble",
     "EnsembleWarning",
     "Fit",
+    "FrequencyResponse",
     "Gear",
     "GearSet",
+    "Linear",
     "PassivityWarning",
     "Recording",
     "Run",
@@ -68,11 +78,14 @@ __all__ = [
     "catalogue",
     "control",
     "drives",
+    "equilibrium",
     "fit",
+    "frequency_response",
     "friction",
     "hysteresis",
     "kinematic_error",
     "kinematics",
+    "linearise",
     "load",
     "loads",
     "motor",

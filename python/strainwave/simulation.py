@@ -36,10 +36,10 @@ class Course:
 
         Where neither asks for more, steps are exactly `dt`; the last may be shorter.
         """
-        _positive("dt", dt)
+        check_positive("dt", dt)
         if np.ndim(samples) == 0:
             interval = float(samples)
-            _positive("sample", interval)
+            check_positive("sample", interval)
             samples = _grid(interval, duration, 1e-9 * min(dt, interval))
         samples = np.asarray(samples, dtype=np.float64)
         tolerance = 1e-9 * min(dt, float(np.min(np.diff(samples))))
@@ -79,7 +79,7 @@ class Excitation:
             if not isinstance(signal, Scenario) and not np.isfinite(signal):
                 raise ValueError(f"{name} = {signal} must be finite")
         if not isinstance(self.temperature, Scenario):
-            _check_temperature(self.temperature)
+            check_temperature(self.temperature)
 
     def course(self, dt: float, samples: float | Array | None) -> Course:
         """The steps that follow it."""
@@ -127,7 +127,7 @@ class Excitation:
                 _lay_out(inputs[:, :, column], start, end, signal.breaks, signal.value, signal.value_before)
             else:
                 inputs[:, :, column] = signal
-        _check_temperature(float(inputs[:, :, 3].min()))
+        check_temperature(float(inputs[:, :, 3].min()))
         _lay_out(inputs[:, :, 1], start, end, self.command.breaks, self.command.rate, self.command.rate_before)
         return inputs
 
@@ -276,7 +276,7 @@ def simulate_adaptively(
     if not 0.0 < atol < np.inf:
         raise ValueError(f"atol = {atol} must lie in (0, inf)")
     excitation = Excitation(command, load_torque, temperature)
-    _positive("sample", sample)
+    check_positive("sample", sample)
     samples = _grid(sample, command.duration, 1e-9 * sample)
     instants = excitation.instants(rtol)
     state = drive.rest() if start is None else start
@@ -319,10 +319,7 @@ def derivatives(
     course = excitation.course(dt, samples)
     outputs, slopes = _core.differentiate(drive, course.instants, excitation.over(course), course.samples[1:], list(numbers))
     first, first_slopes = _core.now_derivatives(drive, excitation.first(), list(numbers))
-    whole, time = np.concatenate((first, outputs), axis=1), course.instants[course.samples.astype(bool)]
-    _check_finite(time, whole, remedy(dt))
-    _check_resolution(drive, dt, whole)
-    run = Recording(_columns(time, whole), output_units(drive), title="simulation")
+    run = recording(drive, course, np.concatenate((first, outputs), axis=1), dt)
     return run, np.concatenate((first_slopes, slopes), axis=2)
 
 
@@ -343,12 +340,12 @@ def _lay_out(
     columns[ends, 2] = before(end[ends])
 
 
-def _positive(name: str, value: float) -> None:
+def check_positive(name: str, value: float) -> None:
     if not 0.0 < value < np.inf:
         raise ValueError(f"{name} = {value} s must lie in (0, inf)")
 
 
-def _check_temperature(lowest: float) -> None:
+def check_temperature(lowest: float) -> None:
     if lowest <= 0.0:
         raise ValueError(f"temperature = {lowest:g} K must lie in (0, inf); 20 degC are 293.15 K")
 
@@ -357,6 +354,14 @@ def _grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
     grid = step * np.arange(int(duration / step) + 2)
     return np.append(grid[grid < duration - tolerance], duration)
+
+
+def recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -> Recording:
+    """What a run recorded, shape (channels, samples), if its numbers mean anything."""
+    time = course.instants[course.samples.astype(bool)]
+    _check_finite(time, outputs, remedy(dt))
+    _check_resolution(drive, dt, outputs)
+    return Recording(_columns(time, outputs), output_units(drive), title="simulation")
 
 
 def _columns(time: Array, outputs: Array) -> dict[str, Array]:

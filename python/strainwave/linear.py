@@ -1,0 +1,233 @@
+r"""The linear view of a drive: how it answers signals so small that it does not change.
+
+.. math:: \dot x = A x + B u, \qquad y = C x + D u
+
+with x, u and y the deviations of the motion, the inputs and the outputs. The derivatives are exact to rounding (dual numbers).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import tau
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import _core
+from strainwave.drives import PositionDrive
+from strainwave.simulation import ROOM_TEMPERATURE, output_units
+from strainwave.steady import N_MOTION, PLACE, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+INPUTS = ("command", "command_rate", "load_torque", "temperature")
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A drive seen from close by: A, B, C, D of its small deviations from a state, for n states, 4 inputs and m outputs.
+
+    Unpacks to the four matrices, as ``control.StateSpace(*linear)`` of python-control wants them. `command_rate` is the rate
+    of `command`: whoever feeds a command from elsewhere feeds both; `response` does.
+
+    Args:
+        A: of the states [unit of the row / s / unit of the column], shape (n, n)
+        B: of the inputs, shape (n, 4)
+        C: of the outputs by the states, shape (m, n)
+        D: of the outputs by the inputs, shape (m, 4)
+        states: names; a part's own states begin with its place, as in "motor.current"
+        inputs: names
+        outputs: names, those of a recording's columns
+        units: unit of each name
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    units: dict[str, str]
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter((self.A, self.B, self.C, self.D))
+
+    @cached_property
+    def _eigen(self) -> tuple[Complex, Complex]:
+        poles, modes = np.linalg.eig(self.A)
+        order = np.lexsort((poles.imag, np.abs(poles)))
+        return poles[order].astype(np.complex128), modes[:, order].astype(np.complex128)
+
+    @property
+    def poles(self) -> Complex:
+        """Eigenvalues of A [rad/s], slowest first, shape (n,). One with a positive real part: the state is not stable."""
+        return self._eigen[0]
+
+    @property
+    def modes(self) -> Complex:
+        """How the states move in each mode: column k belongs to pole k, of length 1, shape (n, n)."""
+        return self._eigen[1]
+
+    @property
+    def eigenfrequencies(self) -> Array:
+        """Of each pole, undamped: its distance from 0 [rad/s], shape (n,)."""
+        size: Array = np.abs(self.poles)
+        return size
+
+    @property
+    def damping_ratios(self) -> Array:
+        """Of each pole: 1 decays without swinging, 0 swings without end, below 0 it grows; shape (n,). A pole at 0 has none."""
+        size = self.eigenfrequencies
+        ratios: Array = np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0)
+        return ratios
+
+    def response(self, frequency: ArrayLike, output: str = "output_angle", input: str = "command") -> Complex:
+        """Amplitude and phase of an output over those of an input that is a sine.
+
+        Args:
+            frequency: of the sine [Hz], shape (k,) or a number
+            output: name of the output
+            input: name of the input; "command" moves its rate along
+
+        Returns:
+            Transfer function at 2 pi i `frequency` [unit of the output / unit of the input], of the shape of `frequency`.
+
+        Raises:
+            ValueError: there is no such input or output, or a frequency is that of an undamped pole
+        """
+        at = tau * 1j * np.asarray(frequency, dtype=np.float64)[..., None]
+        row, column = _place(output, self.outputs, "output"), _place(input, self.inputs, "input")
+        b, d = self.B[:, column] + 0.0 * at, self.D[row, column] + 0.0 * at
+        if input == "command":
+            rate = self.inputs.index("command_rate")
+            b, d = b + at * self.B[:, rate], d + at * self.D[row, rate]
+        try:
+            states = np.linalg.solve(at[..., None] * np.eye(len(self.A)) - self.A, b[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            raise ValueError("frequency is that of a pole without damping: the response has no bound there") from None
+        answer: Complex = states @ self.C[row] + d[..., 0]
+        return answer
+
+
+def linearise(
+    drive: PositionDrive,
+    state: _core.State | None = None,
+    *,
+    command: float = 0.0,
+    command_rate: float = 0.0,
+    load_torque: float = 0.0,
+    temperature: float = ROOM_TEMPERATURE,
+) -> Linear:
+    """The drive as small deviations from a state see it.
+
+    Small means: so small that nothing else changes. A side that sticks does not move, and its states drop out; so does what
+    nothing depends on. Friction and hysteresis with memory answer each reversal with their initial stiffness, and what they
+    lose by sliding is of second order: this view knows none of it; `frequency_response` at amplitude does. Where a slope
+    differs between the senses of motion, it is the mean of both, after a small movement to and fro: the first harmonic that a
+    vanishing vibration sees. A drive that runs is seen without its kinematic error, as `equilibrium` sees it.
+
+    Args:
+        drive: the drive
+        state: where; `equilibrium` under the same inputs if not given
+        command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
+        command_rate: rate of the command [1/s], for a state of a drive that follows one
+        load_torque: torque that holds the output back [N.m], besides the load's own
+        temperature: of the gear [K]
+
+    Returns:
+        Matrices with the names of their rows and columns.
+
+    Raises:
+        ValueError: an input is not finite, `temperature` is not positive, or no state is given and there is no equilibrium
+
+    >>> import strainwave as sw
+    >>> drive = sw.drives.PositionDrive(control=sw.control.PID(proportional=2.0, derivative=0.05))
+    >>> linear = sw.linearise(drive)
+    >>> linear.states
+    ('input_angle', 'input_speed', 'transmission_error', 'output_speed')
+    >>> [matrix.shape for matrix in linear]
+    [(4, 4), (4, 4), (16, 4), (16, 4)]
+    >>> round(float(abs(linear.response(0.0))), 12)  # it goes where it is told
+    1.0
+    """
+    inputs = constant_inputs(command, load_torque, temperature, command_rate)
+    if state is None:
+        state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
+    state = _core.consistent(drive, state)
+    if state.motion.input_speed != 0.0:
+        drive = averaged(drive)
+    slopes = [_core.differentiate_flow(drive, _vibrating(drive, state, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
+    by_motion, by_inputs = np.split(0.5 * (slopes[0] + slopes[1]).T, [N_MOTION], axis=1)
+    names = {place: name for place, name, _ in _core.motion(drive)}
+    kept = _moving(state, names)
+    by_motion = by_motion @ _tied(drive, state)
+    while dead := [place for place in kept if not _matters(place, by_motion, kept)]:
+        kept = [place for place in kept if place not in dead]
+    (a, c), (b, d) = np.split(by_motion[:, kept], [N_MOTION]), np.split(by_inputs, [N_MOTION])
+    units = {name: unit for _, name, unit in _core.motion(drive)} | output_units(drive) | _input_units(drive)
+    outputs = tuple(name for name, _, _ in _core.outputs)
+    states = tuple(names[place] for place in kept)
+    chosen = {name: units[name] for name in (*states, *INPUTS, *outputs)}
+    return Linear(a[kept], b[kept], c, d, states, INPUTS, outputs, chosen)
+
+
+def _vibrating(drive: PositionDrive, state: _core.State, inputs: Array, sense: float) -> _core.State:
+    """`state` as a vibration finds it that is too small to change it and just passes in one `sense`, not for the first time."""
+    twist = _core.now(drive, state, inputs)[TWIST].item()
+    little, ratio = 1e-12 * max(abs(twist), 1e-3), abs(drive.gear.kinematics.ratio)
+    at_rest = state.motion.input_speed == state.motion.output_speed == 0.0
+
+    def passing(way: float) -> _core.Motion:
+        """The motion with the speeds of what rests but does not stick, `way` times a little within `SLOWLY`."""
+        speed = way * little / SLOWLY
+        return found.motion.replace(
+            input_speed=state.motion.input_speed or (ratio * speed if state.sliding_input else 0.0),
+            output_speed=state.motion.output_speed or (speed if state.sliding_output else 0.0),
+        )
+
+    found = state
+    for way in (1.0, -2.0, 1.0):
+        twist += way * little
+        found = _core.led(drive, found, twist)
+        if at_rest:
+            found = _core.aged(drive, found.replace(motion=passing(way)), inputs, SLOWLY)
+    return _core.led(drive, found, twist - 0.5 * sense * little).replace(motion=passing(sense))
+
+
+def _moving(state: _core.State, names: dict[int, str]) -> list[int]:
+    """The places of what moves: all but the states of a side that sticks."""
+    stuck = set[str]()
+    if state.sliding_input == 0.0:
+        stuck |= {"input_angle", "input_speed", "friction_input", "friction_mesh"}
+    if state.sliding_output == 0.0:
+        stuck |= {"output_speed", "friction_output", "transmission_error"}
+    return [place for place, name in names.items() if name.partition(".")[0] not in stuck]
+
+
+def _tied(drive: PositionDrive, state: _core.State) -> Array:
+    """The motion by its members, columns: while the output sticks, the transmission error goes with the input."""
+    moved = np.eye(N_MOTION)
+    if state.sliding_output == 0.0:
+        moved[PLACE["transmission_error"], PLACE["input_angle"]] = 1.0 / drive.gear.kinematics.ratio
+    return moved
+
+
+def _matters(place: int, by_motion: Array, kept: list[int]) -> bool:
+    """Whether another state or an output depends on a state."""
+    others = [row for row in kept if row != place]
+    return bool(by_motion[others, place].any() or by_motion[N_MOTION:, place].any())
+
+
+def _input_units(drive: PositionDrive) -> dict[str, str]:
+    unit = drive.control.command_unit
+    return {"command_rate": f"{unit}/s", "load_torque": "N.m", "temperature": "K"}
+
+
+def _place(name: str, names: tuple[str, ...], kind: str) -> int:
+    if name not in names:
+        raise ValueError(f"{kind} = {name!r} must be one of {', '.join(names)}")
+    return names.index(name)

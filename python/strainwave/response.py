@@ -1,0 +1,191 @@
+"""The response of a drive to sines of finite size, where friction, hysteresis and play show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from math import ceil
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import _core
+from strainwave.drives import PositionDrive
+from strainwave.scenario import Scenario, constant, sine
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, check_positive, recording
+from strainwave.steady import averaged, equilibrium
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+_FEWEST = 64  # steps in a period: its harmonics up to the 31st
+_SINES = ("command", "load_torque")
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse:
+    """How a drive answers a sine of some amplitude, once it has become periodic.
+
+    ``answer["output_angle"]`` is the response of that output: amplitude and phase of its first harmonic over those of the
+    input [unit of the output / unit of the input], shape (k,).
+
+    Args:
+        frequency: of the sine [Hz], shape (k,)
+        amplitude: of the sine
+        responses: of each output, shape (k,)
+        distortions: of each output, the root sum of squares of its higher harmonics over its first, shape (k,)
+        drifts: of each output, what a period adds to it [unit of the output], shape (k,); angles of a drive that runs, and
+            what friction or hysteresis lets creep under a vibration
+        periods: how many passed until the motion was periodic, shape (k,)
+    """
+
+    frequency: Array
+    amplitude: float
+    responses: dict[str, Complex]
+    distortions: dict[str, Array]
+    drifts: dict[str, Array]
+    periods: NDArray[np.intp]
+
+    def __getitem__(self, output: str) -> Complex:
+        if output not in self.responses:
+            raise KeyError(f"no output {output!r}; there are {', '.join(self.responses)}")
+        return self.responses[output]
+
+
+def frequency_response(
+    drive: PositionDrive,
+    frequency: ArrayLike,
+    amplitude: float,
+    *,
+    input: str = "command",
+    command: float = 0.0,
+    load_torque: float = 0.0,
+    temperature: float = ROOM_TEMPERATURE,
+    start: _core.State | None = None,
+    dt: float = 2e-4,
+    tolerance: float = 1e-6,
+    most_periods: int = 1000,
+) -> FrequencyResponse:
+    """Runs a drive under sines around an operating point until it moves periodically, and takes the first harmonics.
+
+    Each frequency begins at `start`. What drifts at a steady rate counts as periodic: the drift is taken off, and reported; the
+    answer of a drive that creeps under the vibration is that of the moment. Of an amplitude small enough, the response is that
+    of `linearise`.
+
+    Args:
+        drive: the drive
+        frequency: of the sines [Hz], shape (k,) or a number
+        amplitude: of the sine [unit of the input]
+        input: what the sine is added to: "command" or "load_torque"
+        command: output angle [rad] or voltage [V] that the sine swings about
+        load_torque: torque that holds the output back [N.m], besides the load's own
+        temperature: of the gear [K]
+        start: where to begin; the `equilibrium` of the constant inputs if not given
+        dt: largest step [s]; a period has 64 steps at least
+        tolerance: periodic is what differs from the period before by less than this share of its swing, every output
+        most_periods: after how many periods to give up
+
+    Returns:
+        Responses, distortions and the number of periods they took.
+
+    Raises:
+        ValueError: `amplitude`, `dt` or a frequency is not positive, `input` is another, or there is no equilibrium
+        FloatingPointError: as `simulate`
+        RuntimeError: a motion is not periodic after `most_periods`; says how far it is from that
+
+    >>> import strainwave as sw
+    >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
+    >>> drive = sw.drives.PositionDrive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
+    >>> answer = sw.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
+    >>> linear = sw.linearise(drive)
+    >>> abs(answer["output_angle"] / linear.response([1.0, 2.0])).round(3)
+    array([1., 1.])
+    """
+    frequencies = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+    _check(frequencies, amplitude, input)
+    check_positive("dt", dt)
+    if start is None:
+        start = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
+    if start.motion.input_speed != 0.0:
+        drive = averaged(drive)
+    sines = _Sines(drive, start, temperature, dt)
+    found = []
+    for f in frequencies.tolist():
+        levels = {"command": constant(command, 1.0 / f), "load_torque": constant(load_torque, 1.0 / f)}
+        levels[input] = levels[input] + sine(amplitude, f, 1.0 / f)
+        found.append(sines.periodic(levels, tolerance, most_periods))
+    periods = np.array([count for _, count in found])
+    responses, distortions, drifts = {}, {}, {}
+    for name in found[0][0]:
+        first, higher = np.array([_harmonics(period[name]) for period, _ in found]).T
+        responses[name] = first / amplitude
+        distortions[name] = higher.real / np.maximum(np.abs(first), np.finfo(float).tiny)
+        drifts[name] = np.array([period[name][-1] - period[name][0] for period, _ in found])
+    return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, periods)
+
+
+def _check(frequencies: Array, amplitude: float, signal: str) -> None:
+    if frequencies.ndim != 1 or frequencies.size == 0 or not (np.isfinite(frequencies) & (frequencies > 0.0)).all():
+        raise ValueError("frequency must hold positive numbers [Hz], one at least")
+    if not 0.0 < amplitude < np.inf:
+        raise ValueError(f"amplitude = {amplitude} must lie in (0, inf)")
+    if signal not in _SINES:
+        raise ValueError(f"input = {signal!r} must be one of {', '.join(_SINES)}")
+
+
+@dataclass(frozen=True)
+class _Sines:
+    """Runs from one start, period by period."""
+
+    drive: PositionDrive
+    start: _core.State
+    temperature: float
+    dt: float
+
+    def periodic(self, levels: dict[str, Scenario], tolerance: float, most_periods: int) -> tuple[dict[str, Array], int]:
+        """The outputs over the first period that repeats the one before, and its number; the levels last one period."""
+        before, change = None, np.inf
+        for count, period in enumerate(
+            islice(self._periods(Excitation(**levels, temperature=self.temperature)), most_periods), 1
+        ):
+            if before is not None:
+                change = max(_change(values, before[name]) for name, values in period.items())
+            if change <= tolerance:
+                return period, count
+            before = period
+        raise RuntimeError(
+            f"at {1.0 / levels['command'].duration:g} Hz the motion is not periodic after {most_periods} periods: the last two "
+            f"differ by {change:.2g} of the swing, more than tolerance = {tolerance:g}; "
+            "a motion that only creeps may need more periods"
+        )
+
+    def _periods(self, excitation: Excitation) -> Iterator[dict[str, Array]]:
+        """The outputs over each period, both ends included."""
+        period = excitation.command.duration
+        step = period / max(ceil(period / self.dt), _FEWEST)
+        course = excitation.course(step, None)
+        inputs, state = excitation.over(course), self.start
+        while True:
+            first = _core.now(self.drive, state, excitation.first())
+            outputs, state = _core.simulate(self.drive, state, course.instants, inputs, course.samples[1:])
+            run = recording(self.drive, course, np.concatenate((first, outputs), axis=1), step)
+            yield {name: run[name] for name in run.names if name != "time"}
+
+
+def _change(values: Array, before: Array) -> float:
+    """The largest difference as a share of the swing; of what hardly swings, of a millionth of its size."""
+    level = _levelled(values)
+    size = max(0.5 * float(np.ptp(level)), 1e-6 * float(np.abs(values).max()), np.finfo(float).tiny)
+    return float(np.abs(level - _levelled(before)).max()) / size
+
+
+def _levelled(values: Array) -> Array:
+    """The values of a period from a line through both ends."""
+    return values - np.linspace(values[0], values[-1], len(values))
+
+
+def _harmonics(values: Array) -> tuple[complex, float]:
+    """Amplitude and phase of the first harmonic over a period, relative to the sine, and the size of all higher ones."""
+    spectrum = 2j * np.fft.rfft(_levelled(values)[:-1]) / (len(values) - 1)
+    return complex(spectrum[1]), float(np.linalg.norm(spectrum[2:]))
