@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 OUTPUTS = [name for name, _, _ in _core.outputs]
 LANES = 8  # members that share a vector register
+SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 PART = 64 << 20  # bytes of output that a part of the files holds at most, where one pack does not need more
 
 
@@ -81,17 +82,17 @@ class Ensemble:
         """What `simulate_to` wrote to a folder, all of it, also where it was interrupted: the members that were done."""
         import pyarrow.parquet as parquet
 
-        parts = sorted(Path(folder, "samples").glob("part-*.parquet"))
+        parts = sorted(Path(folder, "members").glob("part-*.parquet"))  # written after their samples
         if not parts:
-            raise ValueError(f"{folder} holds no ensemble: there is no samples/part-*.parquet")
-        tables = [parquet.read_table(part) for part in parts]
+            raise ValueError(f"{folder} holds no ensemble: there is no members/part-*.parquet")
+        tables = [parquet.read_table(Path(folder, "samples", part.name)) for part in parts]
         schema = tables[0].schema
         names = [name for name in schema.names if name not in ("member", "time")]
         count = sum(int(table["member"][-1].as_py()) - int(table["member"][0].as_py()) + 1 for table in tables)
         columns = {name: np.concatenate([table[name].to_numpy() for table in tables]).reshape(count, -1) for name in names}
         time = tables[0]["time"].to_numpy()[: next(iter(columns.values())).shape[1]]
         units = {name: schema.field(name).metadata[b"unit"].decode() for name in names}
-        members = [parquet.read_table(Path(folder, "members", part.name)).to_pydict() for part in parts]
+        members = [parquet.read_table(part).to_pydict() for part in parts]
         paths = [name for name in members[0] if name not in ("member", "failure")]
         parameters = {path: np.array([x for table in members for x in table[path]]) for path in paths}
         numbered = [pair for table in members for pair in zip(table["member"], table["failure"], strict=True)]
@@ -303,7 +304,7 @@ def available_threads() -> int:
 
 def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
     """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
-    known = {path: (number, low, high) for number, (path, _, _, _, low, high) in enumerate(_core.parameters(drive))}
+    known = {path: (number, unit, low, high) for number, (path, _, unit, _, low, high) in enumerate(_core.parameters(drive))}
     if not parameters:
         raise ValueError("parameters must name at least one number that the members differ in")
     values: dict[str, Array] = {}
@@ -313,14 +314,21 @@ def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple
         values[path] = np.asarray(column, dtype=np.float64)
         if values[path].ndim != 1 or len(values[path]) == 0:
             raise ValueError(f"{path} must have one value a member, shape (members,), not {values[path].shape}")
-        _, low, high = known[path]
-        wrong = np.flatnonzero(~((values[path] >= low) & (values[path] <= high)))
+        _, unit, low, high = known[path]
+        wrong = np.flatnonzero(~(np.isfinite(values[path]) & (values[path] >= low) & (values[path] <= high)))
         if wrong.size:
-            raise ValueError(f"{path} = {values[path][wrong[0]]:g} of member {wrong[0]} must lie in [{low:g}, {high:g}]")
+            number = f"{values[path][wrong[0]]:g}" + (f" {unit}" if unit != "1" else "")
+            raise ValueError(f"{path} = {number} of member {wrong[0]} must lie in {_limits(low, high)}")
     if len({len(column) for column in values.values()}) > 1:
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
         raise ValueError(f"all parameters must have as many values as there are members: {counts}")
     return [known[path][0] for path in values], values
+
+
+def _limits(low: float, high: float) -> str:
+    """As the models tell theirs."""
+    lowest = "(-inf" if low == -np.inf else "(0" if low == SMALLEST else f"[{low:g}"
+    return lowest + (", inf)" if high == np.inf else f", {high:g}]")
 
 
 def _meant(path: str, known: list[str]) -> str:
