@@ -1,7 +1,7 @@
 """Fixed-step simulation of the reference drive with the return map of Maxwell-slip.
 
-The memory holds the displacement of each element and, last, the twist at which they hold. Within a step the elements
-follow the twist, clipped to their limits; they are updated once, at the start of each step.
+The memory holds the displacement of each element, the twist at which they hold and, last, the output's inertia. Within a
+step the elements follow the twist, clipped to their limits; they are updated once, at the start of each step.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from reference_drive import (
     ELEMENT_LIMIT,
     ELEMENT_STIFFNESS,
     ELEMENTS,
+    OUTPUT_INERTIA,
     Array,
     Maths,
     clip,
@@ -75,7 +76,7 @@ def stage(maths: Maths, hysteresis: Function) -> Function:
     @maths.compile
     def stage(time: Any, state: Any, memory: Any) -> Any:
         slope, torque = evaluate(state, memory)
-        return move(time, state, slope, torque)
+        return move(time, state, slope, torque, memory[ELEMENTS + 1])
 
     return stage
 
@@ -106,8 +107,8 @@ def runge_kutta(maths: Maths) -> Function:
     return runge_kutta
 
 
-def simulation(maths: Maths, method: Callable[[Maths], Function]) -> Callable[[float, int, int], Array]:
-    """(sample, steps, count) -> samples of a run from rest, shape (count, 5).
+def simulation(maths: Maths, method: Callable[[Maths], Function]) -> Callable[..., Array]:
+    """(sample, steps, count, output_inertia) -> samples of a run from rest, shape (count, 5).
 
     sample: time between samples [s]; steps: steps per sample; count: number of samples. Columns: input angle [rad],
     input speed [rad/s], output angle [rad], output speed [rad/s], transmitted torque [N.m].
@@ -116,8 +117,9 @@ def simulation(maths: Maths, method: Callable[[Maths], Function]) -> Callable[[f
     start = tuple(float(x) for x in initial_state()[:6])
 
     @maths.compile
-    def simulation(sample: float, steps: int, count: int) -> Any:
-        state, memory, samples = start, np.zeros(ELEMENTS + 1), np.empty((count, 5))
+    def simulation(sample: float, steps: int, count: int, output_inertia: float = OUTPUT_INERTIA) -> Any:
+        state, memory, samples = start, np.zeros(ELEMENTS + 2), np.empty((count, 5))
+        memory[ELEMENTS + 1] = output_inertia
         step = sample / steps
         for k in range(count):
             _, torque = evaluate(state, memory)

@@ -1,16 +1,18 @@
-"""Measuring a solver of the reference drive: alone, in a process of its own that can be ended at any time."""
+"""Measuring solvers of the reference drive, each in a process of its own that can be ended at any time; and runs in turn."""
 
 from __future__ import annotations
 
 import multiprocessing
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 
 import numpy as np
 from peers import Peer
 from reference_drive import Array
+from report import installed
+from rich.console import Console
 
 WANTED_OUTPUT_ANGLE = 3e-6  # rad
 WANTED_TORQUE = 5e-2  # N.m
@@ -41,6 +43,10 @@ class Result:
         """Reaches the wanted accuracy."""
         return self.output_angle_error <= WANTED_OUTPUT_ANGLE and self.torque_error <= WANTED_TORQUE
 
+    def no_less_accurate_than(self, other: Result) -> bool:
+        """In output angle and torque."""
+        return self.output_angle_error <= other.output_angle_error and self.torque_error <= other.torque_error
+
 
 @dataclass(frozen=True)
 class Failure:
@@ -53,6 +59,30 @@ class Failure:
 
 class TimeLimitError(Exception):
     """A solver exceeded its time limit."""
+
+
+def shortest(runs: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, float]:
+    """The shortest time of each run [s], all in turn, so that a busy minute of the machine spoils none of their ratios."""
+    times: dict[str, list[float]] = {name: [] for name in runs}
+    for _ in range(rounds):
+        for name, run in runs.items():
+            start = time.perf_counter()
+            run()
+            times[name].append(time.perf_counter() - start)
+    return {name: min(taken) for name, taken in times.items()}
+
+
+def measure_all(
+    console: Console, peers: Sequence[Peer], effort: Effort, reference: Array
+) -> Iterator[tuple[Peer, Result | Failure]]:
+    """Each installed solver at each of its settings; says of the others that they are not installed."""
+    for peer in peers:
+        if missing := [name for name in peer.distributions if not installed(name)]:
+            console.print(f"{peer.name}: not installed: pip install {' '.join(missing)}")
+            continue
+        with console.status(peer.name):
+            for outcome in measure(peer, effort, reference):
+                yield peer, outcome
 
 
 def measure(peer: Peer, effort: Effort, reference: Array) -> Iterator[Result | Failure]:

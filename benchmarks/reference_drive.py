@@ -175,11 +175,11 @@ def transmitted_torque(maths: Maths) -> Callable[..., Any]:
 
 
 def motion(maths: Maths) -> Callable[..., Any]:
-    """(time, state, slope, torque) -> rates of the first six states, as a tuple."""
+    """(time, state, slope, torque, output_inertia) -> rates of the first six states, as a tuple."""
     sin, decay, drive_voltage = maths.sin, bristle_decay(maths), voltage(maths)
 
     @maths.compile
-    def motion(time: Any, state: Any, slope: Any, torque: Any) -> Any:
+    def motion(time: Any, state: Any, slope: Any, torque: Any, output_inertia: Any) -> Any:
         current, input_angle, input_speed = state[0], state[1], state[2]
         output_angle, output_speed, bristle = state[3], state[4], state[5]
         bristle_rate = input_speed - decay(input_speed) * bristle
@@ -191,7 +191,7 @@ def motion(maths: Maths) -> Callable[..., Any]:
             input_speed,
             (MOTOR_CONSTANT * current - friction - slope * torque) / INPUT_INERTIA,
             output_speed,
-            (torque - load) / OUTPUT_INERTIA,
+            (torque - load) / output_inertia,
             bristle_rate,
         )
 
@@ -199,12 +199,12 @@ def motion(maths: Maths) -> Callable[..., Any]:
 
 
 def right_hand_side(maths: Maths) -> Callable[..., Any]:
-    """(time, state, rates) -> None: fills the rates of all 14 states, each Maxwell element being an ODE state."""
+    """(time, state, rates, output_inertia) -> None: fills the rates of all 14 states; Maxwell elements are ODE states."""
     absolute, where = maths.absolute, maths.where
     twist_and_slope, gear_torque, move = deflection(maths), transmitted_torque(maths), motion(maths)
 
     @maths.compile
-    def right_hand_side(time: Any, state: Any, rates: Any) -> None:
+    def right_hand_side(time: Any, state: Any, rates: Any, output_inertia: Any = OUTPUT_INERTIA) -> None:
         twist, slope = twist_and_slope(state[1], state[3])
         twist_rate = slope * state[2] - state[4]
         hysteresis = 0.0
@@ -213,7 +213,7 @@ def right_hand_side(maths: Maths) -> Callable[..., Any]:
             hysteresis = hysteresis + ELEMENT_STIFFNESS * element
             loading_rate = where(element * twist_rate > 0.0, 0.0, twist_rate)
             rates[6 + j] = where(absolute(element) >= ELEMENT_LIMIT[j], loading_rate, twist_rate)
-        moved = move(time, state, slope, gear_torque(twist, twist_rate, hysteresis))
+        moved = move(time, state, slope, gear_torque(twist, twist_rate, hysteresis), output_inertia)
         for i in range(6):
             rates[i] = moved[i]
 
@@ -230,6 +230,11 @@ def initial_state() -> Array:
 def sample_times() -> Array:
     """Times at which the solutions are compared [s], shape (5001,)."""
     return SAMPLE * np.arange(round(DURATION / SAMPLE) + 1, dtype=np.float64)
+
+
+def output_inertias(members: int) -> Array:
+    """Of the members of an ensemble [kg.m2], shape (members,): the drive's own, then from 0.8 to 1.2 times that."""
+    return OUTPUT_INERTIA * np.append(1.0, np.linspace(0.8, 1.2, members - 1))
 
 
 def state_scale() -> Array:

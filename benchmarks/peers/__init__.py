@@ -23,3 +23,15 @@ class Peer:
     setting: str
     ladder: tuple[float, ...]
     prepare: Callable[[float], Callable[[], Array]]
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """A solver of many reference drives that differ in their output's inertia, see `reference_drive.output_inertias`.
+
+    peer: its run solves them all, and returns what the first of them does; members: how many; threads: on how many.
+    """
+
+    peer: Peer
+    members: int
+    threads: int

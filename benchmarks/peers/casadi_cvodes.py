@@ -9,9 +9,18 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from reference_drive import Array, Maths, initial_state, output_and_torque, right_hand_side, sample_times
+from reference_drive import (
+    OUTPUT_INERTIA,
+    Array,
+    Maths,
+    initial_state,
+    output_and_torque,
+    output_inertias,
+    right_hand_side,
+    sample_times,
+)
 
-from peers import Peer
+from peers import Crowd, Peer
 
 COMPILED = {
     "jit": True,
@@ -22,8 +31,8 @@ COMPILED = {
 INTERPRETED: dict[str, Any] = {}
 
 
-def prepare(execution: dict[str, Any], tolerance: float) -> Callable[[], Array]:
-    """A run by CVODES to this relative tolerance."""
+def integrator(execution: dict[str, Any], tolerance: float) -> Any:
+    """(start, output inertia) -> the states at all sample times but the first, by CVODES to this relative tolerance."""
     import casadi
 
     maths = Maths(
@@ -37,17 +46,35 @@ def prepare(execution: dict[str, Any], tolerance: float) -> Callable[[], Array]:
         lambda function: function,
     )
     start, times = initial_state(), sample_times()
-    time, state = casadi.SX.sym("time"), casadi.SX.sym("state", start.size)
+    time, state, inertia = casadi.SX.sym("time"), casadi.SX.sym("state", start.size), casadi.SX.sym("output_inertia")
     rates = casadi.SX.zeros(start.size)
-    right_hand_side(maths)(time, state, rates)
-    equations = {"t": time, "x": state, "ode": rates}
+    right_hand_side(maths)(time, state, rates, inertia)
+    equations = {"t": time, "x": state, "p": inertia, "ode": rates}
     options = {"reltol": tolerance, "abstol": 1e-2 * tolerance, "max_num_steps": 5_000_000, **execution}
     # CasADi compiles in the working directory; the library stays loaded when its file is gone.
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        integrate = casadi.integrator("drive", "cvodes", equations, 0.0, list(times[1:]), options)
+        return casadi.integrator("drive", "cvodes", equations, 0.0, list(times[1:]), options)
+
+
+def prepare(execution: dict[str, Any], tolerance: float) -> Callable[[], Array]:
+    """A run by CVODES to this relative tolerance."""
+    integrate, start = integrator(execution, tolerance), initial_state()
 
     def solve() -> Array:
-        return output_and_torque(np.column_stack([start, np.array(integrate(x0=start)["xf"])]))
+        return output_and_torque(np.column_stack([start, np.array(integrate(x0=start, p=OUTPUT_INERTIA)["xf"])]))
+
+    return solve
+
+
+def prepare_crowd(members: int, threads: int, tolerance: float) -> Callable[[], Array]:
+    """A run of many members by CasADi's map over threads."""
+    integrate, start = integrator(COMPILED, tolerance), initial_state()
+    mapped = integrate.map(members, "thread", threads)
+    starts, inertias = np.tile(start[:, None], members), output_inertias(members)[None, :]
+
+    def solve() -> Array:
+        states = np.array(mapped(x0=starts, p=inertias)["xf"])  # the samples of one member after those of the other
+        return output_and_torque(np.column_stack([start, states[:, : len(sample_times()) - 1]]))
 
     return solve
 
@@ -66,5 +93,19 @@ PEERS = (
         setting="rtol",
         ladder=(1e-4, 1e-5, 1e-6),
         prepare=partial(prepare, COMPILED),
+    ),
+)
+MEMBERS, THREADS = 8, 2
+CROWDS = (
+    Crowd(
+        Peer(
+            name="CasADi map, CVODES, gcc",
+            distributions=("casadi",),
+            setting="rtol",
+            ladder=(1e-4,),
+            prepare=partial(prepare_crowd, MEMBERS, THREADS),
+        ),
+        MEMBERS,
+        THREADS,
     ),
 )

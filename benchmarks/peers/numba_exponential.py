@@ -9,13 +9,26 @@ No stage leaves |z| <= breakaway / bristle stiffness, which the true bristle nev
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from fixed_step import Function, advance, ahead, stage, trial
-from reference_drive import BREAKAWAY, BRISTLE_STIFFNESS, Maths, bristle_decay, clip
+import numpy as np
+from fixed_step import Function, advance, ahead, simulation, stage, trial
+from reference_drive import (
+    BREAKAWAY,
+    BRISTLE_STIFFNESS,
+    DURATION,
+    SAMPLE,
+    Array,
+    Maths,
+    bristle_decay,
+    clip,
+    numba_maths,
+    output_inertias,
+)
 
-from peers import Peer
+from peers import Crowd, Peer
 from peers.numba_rk4 import prepare_fixed_step
 
 BRISTLE_LIMIT = BREAKAWAY / BRISTLE_STIFFNESS  # rad
@@ -96,6 +109,27 @@ def exponential(maths: Maths) -> Function:
     return exponential
 
 
+def prepare_crowd(members: int, threads: int, step: float) -> Callable[[], Array]:
+    """A run of many members, each compiled as the single one is, by Numba's prange."""
+    import numba
+
+    numba.set_num_threads(threads)
+    options: dict[str, Any] = {"fastmath": True, "error_model": "numpy"}
+    simulate = simulation(numba_maths(**options), exponential)
+
+    def run(sample: float, steps: int, count: int, inertias: Array) -> Array:
+        samples = np.empty((inertias.size, count, 2))
+        for member in numba.prange(inertias.size):
+            one = simulate(sample, steps, count, inertias[member])
+            samples[member, :, 0], samples[member, :, 1] = one[:, 2], one[:, 4]
+        return samples
+
+    compiled = numba.njit(parallel=True, **options)(run)
+    compiled(SAMPLE, 1, 2, output_inertias(2))
+    steps, count, inertias = round(SAMPLE / step), round(DURATION / SAMPLE) + 1, output_inertias(members)
+    return lambda: np.asarray(compiled(SAMPLE, steps, count, inertias)[0])
+
+
 PEERS = (
     Peer(
         name="Numba exponential",
@@ -104,4 +138,8 @@ PEERS = (
         ladder=(5e-4, 2e-4, 1e-4),
         prepare=partial(prepare_fixed_step, exponential),
     ),
+)
+CROWDS = tuple(
+    Crowd(Peer("Numba prange, exponential", ("numba",), "step", (5e-4, 2e-4), partial(prepare_crowd, 64, threads)), 64, threads)
+    for threads in (1, 2)
 )

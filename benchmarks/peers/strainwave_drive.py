@@ -3,23 +3,45 @@
 from __future__ import annotations
 
 import math
+import os
+import warnings
 from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import reference_drive as reference
 from reference_drive import Array
 
-from peers import Peer
+from peers import Crowd, Peer
+
+if TYPE_CHECKING:
+    import strainwave as sw
 
 
-def prepare(step: float) -> Callable[[], Array]:
-    """A run with this step, through the public interface."""
+def friction() -> sw.friction.LuGre:
+    """At the input; it could create energy, as its damping does not fade with speed, and warns of it."""
+    import strainwave as sw
+
+    with warnings.catch_warnings(action="ignore"):
+        return sw.friction.LuGre(
+            coulomb=reference.COULOMB,
+            breakaway=reference.BREAKAWAY,
+            stribeck_speed=reference.STRIBECK_SPEED,
+            bristle_stiffness=reference.BRISTLE_STIFFNESS,
+            bristle_damping=reference.BRISTLE_DAMPING,
+            viscous=reference.VISCOUS_INPUT,
+        )
+
+
+def gear() -> sw.Gear:
+    """The gear of the reference drive, by the public interface."""
     import strainwave as sw
 
     orders = range(1, len(reference.ERROR_AMPLITUDE) + 1)
     # The kinematic error counts positive where the output lags; the drive's twist adds where it leads.
     phase = [p + math.pi for p in reference.ERROR_PHASE]
-    gear = sw.Gear(
+    return sw.Gear(
         kinematics=sw.kinematics.PlainRatio(reduction=reference.RATIO),
         kinematic_error=sw.kinematic_error.Fourier(order=list(orders), amplitude=list(reference.ERROR_AMPLITUDE), phase=phase),
         stiffness=sw.stiffness.Cubic(a1=reference.STIFFNESS_LINEAR, a3=reference.STIFFNESS_CUBIC),
@@ -28,19 +50,18 @@ def prepare(step: float) -> Callable[[], Array]:
             breakaway=[reference.ELEMENT_STIFFNESS * limit for limit in reference.ELEMENT_LIMIT],
         ),
         damping=reference.DAMPING,
-        friction_input=sw.friction.LuGre(
-            coulomb=reference.COULOMB,
-            breakaway=reference.BREAKAWAY,
-            stribeck_speed=reference.STRIBECK_SPEED,
-            bristle_stiffness=reference.BRISTLE_STIFFNESS,
-            bristle_damping=reference.BRISTLE_DAMPING,
-            viscous=reference.VISCOUS_INPUT,
-        ),
+        friction_input=friction(),
         friction_output=sw.friction.Viscous(viscous=reference.VISCOUS_OUTPUT),
         input_inertia=0.0,
     )
-    drive = sw.drives.PositionDrive(
-        gear=gear,
+
+
+def drive() -> sw.drives.PositionDrive:
+    """The reference drive, by the public interface."""
+    import strainwave as sw
+
+    return sw.drives.PositionDrive(
+        gear=gear(),
         motor=sw.motor.DC(
             resistance=reference.RESISTANCE,
             inductance=reference.INDUCTANCE,
@@ -53,15 +74,58 @@ def prepare(step: float) -> Callable[[], Array]:
         ),
         load=sw.loads.Pendulum(inertia=reference.OUTPUT_INERTIA, gravity_torque=reference.GRAVITY_TORQUE),
     )
-    command = sw.scenario.ramp(reference.COMMAND_SLOPE, reference.DURATION) + sw.scenario.sine(
-        reference.COMMAND_AMPLITUDE, reference.COMMAND_FREQUENCY, reference.DURATION
-    )
+
+
+def command(duration: float = reference.DURATION) -> sw.scenario.Scenario:
+    """The output angle that the reference drive is to follow."""
+    import strainwave as sw
+
+    rise = sw.scenario.ramp(reference.COMMAND_SLOPE, duration)
+    return rise + sw.scenario.sine(reference.COMMAND_AMPLITUDE, reference.COMMAND_FREQUENCY, duration)
+
+
+def prepare(step: float) -> Callable[[], Array]:
+    """A run with this step, through the public interface."""
+    import strainwave as sw
+
+    one, wanted = drive(), command()
 
     def solve() -> Array:
-        run = sw.simulate(drive, command, dt=step, sample=reference.SAMPLE)
+        run = sw.simulate(one, wanted, dt=step, sample=reference.SAMPLE)
         return np.column_stack([run["output_angle"], run["torque"]])
 
     solve()  # the first run imports what the later ones need
+    return solve
+
+
+def prepare_crowd(instruction_set: str, members: int, threads: int, step: float) -> Callable[[], Array]:
+    """A run of many members side by side."""
+    os.environ["STRAINWAVE_INSTRUCTION_SET"] = instruction_set
+    import strainwave as sw
+
+    one, wanted, inertias = drive(), command(), {"load.inertia": reference.output_inertias(members)}
+    outputs = ["output_angle", "torque"]
+
+    def solve() -> Array:
+        runs = sw.simulate_many(one, wanted, inertias, step, record=outputs, sample=reference.SAMPLE, threads=threads)
+        return np.column_stack([runs[name][0] for name in outputs])
+
+    solve()
+    return solve
+
+
+def prepare_loop(members: int, step: float) -> Callable[[], Array]:
+    """The same members one after the other."""
+    import strainwave as sw
+
+    one, wanted = drive(), command()
+    drives = [one.replace(load=one.load.replace(inertia=inertia)) for inertia in reference.output_inertias(members).tolist()]
+
+    def solve() -> Array:
+        first, *_ = [sw.simulate(each, wanted, dt=step, sample=reference.SAMPLE) for each in drives]
+        return np.column_stack([first["output_angle"], first["torque"]])
+
+    solve()
     return solve
 
 
@@ -72,5 +136,29 @@ PEERS = (
         setting="step",
         ladder=(5e-4, 2e-4, 1e-4),
         prepare=prepare,
+    ),
+)
+INSTRUCTION_SETS = ("avx512", "avx2", "baseline")
+MEMBERS, MEMBERS_OF_LOOP = 512, 32
+CROWDS = (
+    *(
+        Crowd(
+            Peer(
+                f"strainwave, {instruction_set}",
+                ("strainwave",),
+                "step",
+                (5e-4, 2e-4),
+                partial(prepare_crowd, instruction_set, MEMBERS, threads),
+            ),
+            MEMBERS,
+            threads,
+        )
+        for instruction_set in INSTRUCTION_SETS
+        for threads in (1, 2)
+    ),
+    Crowd(
+        Peer("strainwave, loop of simulate", ("strainwave",), "step", (5e-4, 2e-4), partial(prepare_loop, MEMBERS_OF_LOOP)),
+        MEMBERS_OF_LOOP,
+        1,
     ),
 )

@@ -1,0 +1,101 @@
+"""Many reference drives at once, each with another inertia at the output: trajectories a second.
+
+Each solver runs as many members as it takes to keep it busy, and is judged by the first, which is the reference drive itself.
+Of strainwave every instruction set that the machine has is measured, and `simulate` in a loop. All keep output angle and
+torque at 1 kHz. The ratio compares at equal error and on equally many threads: trajectories a second of strainwave's fastest
+setting that is no less accurate, over those of the row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from measure import Effort, Failure, Result, measure_all
+from peers import Crowd, casadi_cvodes, diffrax_tsit5, numba_exponential, strainwave_drive
+from reference import reference_solution
+from reference_drive import DURATION
+from report import Column, figure, save, save_figure, table, three_digits
+from rich.console import Console
+
+MODULES = (strainwave_drive, numba_exponential, casadi_cvodes, diffrax_tsit5)
+CROWDS: tuple[Crowd, ...] = tuple(crowd for module in MODULES for crowd in module.CROWDS)
+BASELINE = "strainwave"
+
+THOROUGH = Effort(limit=120.0, runs=20, enough=5.0)
+QUICK = Effort(limit=20.0, runs=1, enough=0.0)
+
+COLUMNS = (
+    Column("solver", words=True),
+    Column("setting", words=True),
+    *(Column(heading) for heading in ("threads", "members", "angle error [rad]", "torque error [N.m]", "1/s", "ratio")),
+)
+CAPTION = "1/s: trajectories a second; ratio: of strainwave's fastest with errors no larger, on as many threads, over these"
+TITLE = f"Many reference drives, {DURATION:.0f} s each"
+
+
+@dataclass(frozen=True)
+class Rate:
+    """A solver of many drives at one setting."""
+
+    first: Result
+    members: int
+    threads: int
+
+    @property
+    def trajectories(self) -> float:
+        """A second."""
+        return self.members / self.first.wall_time
+
+
+def run(console: Console, peers: Sequence[str], quick: bool) -> None:
+    """Measures those solvers whose name contains one of the words; prints, and writes table and figure."""
+    crowds = {crowd.peer: crowd for crowd in CROWDS if any(word in crowd.peer.name.lower() for word in peers)}
+    rates = []
+    for peer, outcome in measure_all(console, list(crowds), QUICK if quick else THOROUGH, reference_solution()[:, [2, 4]]):
+        if isinstance(outcome, Failure):
+            console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)
+        else:
+            rates.append(Rate(outcome, crowds[peer].members, crowds[peer].threads))
+    console.print(table(TITLE, COLUMNS, [row(rate, rates) for rate in rates], CAPTION))
+    save("ensemble", rates)
+    draw(rates)
+
+
+def ratio(rate: Rate, rates: Sequence[Rate]) -> str:
+    """Trajectories a second of the baseline's fastest over these, at equal error and threads."""
+    equal = [
+        other.trajectories
+        for other in rates
+        if other.first.solver.startswith(BASELINE)
+        and other.threads == rate.threads
+        and other.first.no_less_accurate_than(rate.first)
+    ]
+    return three_digits(max(equal) / rate.trajectories) if equal else "-"
+
+
+def row(rate: Rate, rates: Sequence[Rate]) -> list[str]:
+    return [
+        rate.first.solver,
+        rate.first.setting,
+        str(rate.threads),
+        str(rate.members),
+        f"{rate.first.output_angle_error:.1e}",
+        f"{rate.first.torque_error:.1e}",
+        three_digits(rate.trajectories),
+        ratio(rate, rates),
+    ]
+
+
+def draw(rates: Sequence[Rate]) -> None:
+    """A bar for each row of the table."""
+    drawn = figure(height=1.0 + 0.25 * len(rates))
+    axes = drawn.add_subplot()
+    labels = [f"{rate.first.solver}, {rate.first.setting}, {rate.threads} threads" for rate in rates]
+    bars = axes.barh(range(len(rates)), [rate.trajectories for rate in rates])
+    axes.bar_label(bars, [three_digits(rate.trajectories) for rate in rates], fontsize=7, padding=2)
+    axes.set_yticks(range(len(rates)), labels, fontsize=7)
+    axes.invert_yaxis()
+    axes.set(xscale="log", xlabel="trajectories a second", title=TITLE)
+    axes.margins(x=0.1)
+    save_figure("ensemble", drawn)

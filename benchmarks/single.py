@@ -1,0 +1,79 @@
+"""One trajectory of the reference drive: accuracy and time of everything installed, side by side.
+
+Each solver goes through a ladder of settings. Errors are the largest over 5 s at 1 kHz; compiling is timed apart. The
+ratio compares at equal error: time over that of strainwave's cheapest setting that is no less accurate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from measure import WANTED_OUTPUT_ANGLE, WANTED_TORQUE, Effort, Failure, Result, measure_all
+from peers import Peer, casadi_cvodes, cvode, diffrax_tsit5, numba_exponential, numba_rk4, scipy_lsoda, strainwave_drive
+from reference import reference_solution
+from reference_drive import DURATION
+from report import Column, figure, save, save_figure, table, three_digits
+from rich.console import Console
+
+MODULES = (strainwave_drive, numba_exponential, numba_rk4, casadi_cvodes, cvode, diffrax_tsit5, scipy_lsoda)
+PEERS: tuple[Peer, ...] = tuple(peer for module in MODULES for peer in module.PEERS)
+BASELINE = "strainwave"
+
+THOROUGH = Effort(limit=120.0, runs=20, enough=5.0)
+QUICK = Effort(limit=20.0, runs=1, enough=0.0)
+
+COLUMNS = (
+    Column("solver", words=True),
+    Column("setting", words=True),
+    *(Column(heading) for heading in ("angle error [rad]", "torque error [N.m]", "wall [ms]", "ratio", "build [s]")),
+)
+CAPTION = (
+    "ratio: time over that of strainwave's cheapest setting with errors no larger; "
+    f"* misses {WANTED_OUTPUT_ANGLE} rad or {WANTED_TORQUE} N.m"
+)
+
+
+def run(console: Console, peers: Sequence[str], quick: bool) -> None:
+    """Measures those peers whose name contains one of the words; prints, and writes table and figure."""
+    chosen = [peer for peer in PEERS if any(word in peer.name.lower() for word in peers)]
+    effort = QUICK if quick else THOROUGH
+    outcomes = [outcome for _, outcome in measure_all(console, chosen, effort, reference_solution()[:, [2, 4]])]
+    results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
+    console.print(table(f"Reference drive, {DURATION:.0f} s", COLUMNS, [row(result, results) for result in results], CAPTION))
+    for outcome in outcomes:
+        if isinstance(outcome, Failure):
+            console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)
+    save("single", outcomes, wanted={"output_angle_error": WANTED_OUTPUT_ANGLE, "torque_error": WANTED_TORQUE})
+    draw(results)
+
+
+def ratio(result: Result, results: Sequence[Result]) -> str:
+    """Time over that of the baseline at equal error."""
+    equal = [other for other in results if other.solver == BASELINE and other.no_less_accurate_than(result)]
+    return three_digits(result.wall_time / min(other.wall_time for other in equal)) if equal else "-"
+
+
+def row(result: Result, results: Sequence[Result]) -> list[str]:
+    return [
+        result.solver + ("" if result.accurate else " *"),
+        result.setting,
+        f"{result.output_angle_error:.1e}",
+        f"{result.torque_error:.1e}",
+        three_digits(1e3 * result.wall_time),
+        ratio(result, results),
+        f"{result.compile_time:.1f}",
+    ]
+
+
+def draw(results: Sequence[Result]) -> None:
+    """Time over error, a line a solver."""
+    drawn = figure()
+    axes = drawn.add_subplot()
+    for solver in dict.fromkeys(result.solver for result in results):
+        mine = [result for result in results if result.solver == solver]
+        errors, times = [result.torque_error for result in mine], [result.wall_time for result in mine]
+        axes.loglog(errors, times, marker="o", label=solver, linewidth=2.5 if solver == BASELINE else 1.0)
+    axes.set(title=f"Reference drive, {DURATION:.0f} s", xlabel="largest error of the torque [N.m]", ylabel="time of a run [s]")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=7)
+    save_figure("single", drawn)
