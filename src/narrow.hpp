@@ -61,6 +61,9 @@ template <template <class...> class... FrictionInput>
 using Usual = Models<List<kinematic_error::Fourier>, List<stiffness::Linear, stiffness::Cubic>, List<hysteresis::MaxwellSlip>,
                      List<FrictionInput...>, List<friction::Viscous>, List<friction::Viscous>>;
 
+using DrivesOnBristles = Usual<friction::LuGre>;
+using DrivesWithoutMemory = Usual<friction::Viscous, friction::Coulomb, friction::Stribeck>;
+
 /// Whether so little is left to choose from that all the code of a step may be inlined into one function.
 template <class M>
 inline constexpr bool few_models = detail::one_model<typename M::Error> && detail::one_model<typename M::Hysteresis> &&

@@ -124,8 +124,7 @@ typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const 
         };
         return run_compiled<S>(compiled, from, course, record, pause, advance);
     };
-    return run_among<S>(drive, start, runner, static_cast<Usual<friction::LuGre>*>(nullptr),
-                        static_cast<Usual<friction::Viscous, friction::Coulomb, friction::Stribeck>*>(nullptr),
+    return run_among<S>(drive, start, runner, static_cast<DrivesOnBristles*>(nullptr), static_cast<DrivesWithoutMemory*>(nullptr),
                         static_cast<Small*>(nullptr));
 }
 

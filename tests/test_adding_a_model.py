@@ -28,32 +28,36 @@ TORSION_CURVE = "a spring that a measured torsion loop is told by"
 STEADY_TABLE = "a law that a table of torque over speed can tell"
 LOG = "viscous friction becomes Coulomb's where a log is to tell it"
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
+USUAL = "one of the models whose drives run in code of their own, for speed"
 ELSEWHERE = {
     "Fourier": {
+        "narrow.hpp": USUAL,
         "kinematic_error/misalignment.hpp": "what a misalignment is to leading order",
         "verbs.hpp": "the harmonics of any error are of this form",
         "identify/log.py": "harmonics found in a log are of this form",
     },
-    "Viscous": {"identify/log.py": LOG, "identify/friction.py": STEADY_TABLE},
+    "Viscous": {"narrow.hpp": USUAL, "identify/log.py": LOG, "identify/friction.py": STEADY_TABLE},
     "Coulomb": {
+        "narrow.hpp": USUAL,
         "friction/thermal.hpp": "what it modulates by default",
         "identify/log.py": LOG,
         "identify/friction.py": STEADY_TABLE,
     },
     "Stribeck": {
+        "narrow.hpp": USUAL,
         "friction/cyclic.hpp": "what it modulates by default",
         "identify/friction.py": STEADY_TABLE,
     },
-    "LuGre": {"identify/friction.py": STEADY_TABLE},
+    "LuGre": {"narrow.hpp": USUAL, "identify/friction.py": STEADY_TABLE},
     "Cyclic": {"any.hpp": BOUND_TO_ANY},
     "Thermal": {"any.hpp": BOUND_TO_ANY},
     "Preisach": {"any.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {"identify/experiment.py": "a run under gravity starts hanging, so must the log that it is fitted to"},
-    "Linear": {"identify/torsion.py": TORSION_CURVE},
+    "Linear": {"narrow.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
     "ThreeSegment": {"identify/torsion.py": TORSION_CURVE},
-    "Cubic": {"identify/torsion.py": TORSION_CURVE},
-    "MaxwellSlip": {"identify/torsion.py": "the hysteresis of a measured torsion loop"},
+    "Cubic": {"narrow.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
+    "MaxwellSlip": {"narrow.hpp": USUAL, "identify/torsion.py": "the hysteresis of a measured torsion loop"},
 }
 
 EVERY_MODEL = [

@@ -236,6 +236,8 @@ class State:
     motion: What flows continuously; default Motion(motor=(0.0,), control=(0.0,), input_angle=0.0, input_speed=0.0, transmission_error=0.0, output_speed=0.0, friction_input=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_mesh=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_output=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     hysteresis: Memory of the hysteresis; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     held_twist: Twist at which the hysteresis was last brought up to date [rad]; default 0.0
+    held_rate: Rate of the twist there [rad/s]; default 0.0
+    elapsed: Time since [s]; default 0.0
     turns: Whole revolutions of the input; default 0.0
     sliding_input: Sense of sliding at the input, 0 while it sticks; default 1.0
     sliding_output: Sense of sliding at the output, 0 while it sticks; default 1.0
@@ -246,9 +248,9 @@ class State:
     ValueError: a number that is not finite or out of its range
     """
 
-    def __init__(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> None: ...
+    def __init__(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> None: ...
 
-    def replace(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> State:
+    def replace(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> State:
         """The same with the named parameters changed."""
 
     @property
@@ -262,6 +264,14 @@ class State:
     @property
     def held_twist(self) -> float:
         """Twist at which the hysteresis was last brought up to date [rad]"""
+
+    @property
+    def held_rate(self) -> float:
+        """Rate of the twist there [rad/s]"""
+
+    @property
+    def elapsed(self) -> float:
+        """Time since [s]"""
 
     @property
     def turns(self) -> float:
@@ -347,7 +357,7 @@ def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typ
     `state` with what friction remembers after `dt` [s] at constant speeds.
     """
 
-def remembered(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State:
+def led(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State:
     """`state` with its hysteresis brought up to date at `twist` [rad]."""
 
 def consistent(drive: strainwave.drives.PositionDrive, state: State) -> State:

@@ -168,7 +168,7 @@ class _Sines:
         inputs, state = excitation.over(course), self.start
         while True:
             first = _core.now(self.drive, state, excitation.first())
-            outputs, state = _core.simulate(self.drive, state, course.instants, inputs, course.samples[1:])
+            outputs, state = _core.simulate(self.drive, state, course.instants, inputs, course.samples[1:], 0)
             run = recording(self.drive, course, np.concatenate((first, outputs), axis=1), step)
             yield {name: run[name] for name in run.names if name != "time"}
 

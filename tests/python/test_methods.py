@@ -153,8 +153,9 @@ def resolvable(drive: sw.drives.PositionDrive, rtol: float, voltage: float = 12.
 
 
 def check_tolerance(drive: sw.drives.PositionDrive, factor: float) -> None:
-    """The error is so many times the tolerance at most, or what a change of the voltage by as much makes: a drive that is about to
-    lock or to break away magnifies both.
+    """The error is so many times the tolerance at most, or so many times what a change of the voltage by as much makes.
+
+    A drive that is about to lock or to break away magnifies both.
     """
     assume(cannot_create_energy(drive.gear))
     assume(max(_core.vibration(drive, 1e-3), _core.bristle_vibration(drive)) < 1e4)
@@ -168,7 +169,9 @@ def check_tolerance(drive: sw.drives.PositionDrive, factor: float) -> None:
 @given(data=st.data())
 def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, data: st.DataObject) -> None:
     law = data.draw(laws(part, model))
-    # What slips and what sticks is decided at the ends of steps: of first order there, which two half steps do not show in full.
+    # Friction that falls to nothing within 0.01 rad/s makes every run a matter of chance.
+    assume(getattr(innermost(law), "stribeck_speed", 1.0) >= 1.0)
+    # What slips and what sticks is decided at the ends of steps: of first order there, more than two half steps tell.
     factor = 30.0 if isinstance(innermost(law), sw.friction.MaxwellSlipFriction) else 10.0
     check_tolerance(EVERYTHING.replace(gear=EVERYTHING.gear.replace(**{part: law})), factor)
 
