@@ -56,7 +56,7 @@ void check_bounds(const Drive& drive, const typename Drive::State& x, const Inpu
         if (all(domain.holds())) return;
         each_lane(domain.value, domain.low, domain.high, [&](double value, double low, double high) {
             const Domain<double> of_lane{domain.name, value, low, high, domain.unit, domain.remedy};
-            if (!of_lane.holds()) throw OutOfBounds{part, of_lane, time};
+            if (value == value && !of_lane.holds()) throw OutOfBounds{part, of_lane, time};  // not a number: told at the end
         });
     });
 }
