@@ -91,14 +91,15 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
         nb::gil_scoped_release free;
         verdicts = simulate_many(drive, variation, request.course, recorded, threads, out.data(), request.kept, pause);
     }
-    Values twists = array({variation.members}), vibrations = array({variation.members});
+    Values twists = array({variation.members}), vibrations = array({variation.members}), on_bristles = array({variation.members});
     nb::dict refusals;
     for (std::size_t m = 0; m < verdicts.size(); ++m) {
         twists.data()[m] = verdicts[m].twist;
         vibrations.data()[m] = verdicts[m].vibration;
+        on_bristles.data()[m] = verdicts[m].bristle_vibration;
         if (verdicts[m].refusal) refusals[nb::int_(m)] = text_of(*verdicts[m].refusal);
     }
-    return nb::make_tuple(out, twists, vibrations, refusals);
+    return nb::make_tuple(out, twists, vibrations, on_bristles, refusals);
 }
 
 nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Numbers& inputs, const Flags& keep,
@@ -373,9 +374,10 @@ void bind_drives(nb::module_& core) {
         nb::sig(
             "def simulate_many(drive: strainwave.drives.PositionDrive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
             ", " SW_COURSE ", recorded: collections.abc.Sequence[int], threads: int" SW_PROGRESS ") -> tuple[" SW_ARRAY
-            ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
+            ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
         "Outputs of members from rest, shape (recorded, members, 1 + kept); the largest twist of each [rad], the fastest vibration "
-        "of its gear up to there [rad/s], and why members ended early, if any did. `values`, shape (numbers, members), takes the "
+        "of its gear up to there and of a shaft on its bristles [rad/s], and why members ended early, if any did. `values`, shape "
+        "(numbers, members), takes the "
         "place of the numbered parameters.");
     core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
              nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),

@@ -17,9 +17,15 @@ struct Choice {
 std::vector<Choice> choices() {
 #if defined(__x86_64__)
     __builtin_cpu_init();
+    // Of those that were compiled.
+    const auto built = [](const char* name) {
+        return std::string(SW_INSTRUCTION_SETS).find(std::string(",") + name + ",") != std::string::npos;
+    };
     const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-    return {{"avx512", wide}, {"avx2", bool(__builtin_cpu_supports("avx2"))}, {"baseline", true}};
+    return {{"avx512", wide && built("avx512")},
+            {"avx2", __builtin_cpu_supports("avx2") && built("avx2")},
+            {"baseline", built("baseline")}};
 #else
     return {{"baseline", true}};
 #endif

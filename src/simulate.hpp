@@ -30,6 +30,7 @@ struct Variation {
 struct Verdict {
     double twist = 0.0;                    ///< largest recorded, rad
     double vibration = 0.0;                ///< the fastest of the gear up to that twist, rad/s
+    double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
 };
 

@@ -97,8 +97,9 @@ private:
         run<S>(drive, drive.rest(), course, record, [this](std::size_t) {
             if (stopping) throw Stopped{};
         });
-        const S vibration = drive.vibration(twist);
-        for (std::size_t i = 0; i < count; ++i) verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), {}};
+        const S vibration = drive.vibration(twist), on_bristles = drive.bristle_vibration();
+        for (std::size_t i = 0; i < count; ++i)
+            verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), {}};
     }
 
     void run_alone(std::size_t member) {
@@ -148,7 +149,12 @@ std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variatio
         ended.notify_one();
     };
     std::vector<std::jthread> team;
-    for (std::size_t i = working; i > 0; --i) team.emplace_back(work);
+    try {
+        for (std::size_t i = working; i > 0; --i) team.emplace_back(work);
+    } catch (...) {  // no more threads to be had
+        crowd.stop();
+        throw;
+    }
     std::unique_lock held(lock);
     while (!ended.wait_for(held, std::chrono::milliseconds(50), [&] { return working == 0; })) {
         held.unlock();

@@ -60,12 +60,13 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     x = drive.consistent(x);
     integrate::Adaptive<double, Compiled, decltype(advance)> adaptive(drive, advance, tolerance,
                                                                       1e-2 * (course.instants[1] - course.instants[0]));
-    for (std::size_t i = 0; i < course.steps; ++i) {
-        pause(i);
+    for (std::size_t i = 0, taken = 0; i < course.steps; ++i) {
+        if (i % 256 == 0) pause(i);
         const Interval<double> u = interval<double>(course.inputs + 12 * i);
         const double begin = course.instants[i], dt = course.instants[i + 1] - begin;
         if (has_bounds) check_bounds(drive, x, u.start, begin);
         const auto within = [&](const State& from, const State& half, const State& end, double done, double middle, double to) {
+            if (++taken % steps_between_pauses == 0) pause(i);
             if (has_bounds) check_bounds(drive, end, u.at(to, dt), begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
             for (; record.k < record.count && samples[record.k] <= until;) {

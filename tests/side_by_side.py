@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,4 +19,5 @@ def side_by_side(
     values = np.array([[value for _, value, *_ in _core.parameters(drive)] for drive in drives])
     record = [name for name, _, _ in _core.outputs]
     parameters = dict(zip(paths, values.T, strict=True))
-    return sw.simulate_many(drives[0], command, parameters, dt, record=record, **others)
+    with warnings.catch_warnings(action="ignore", category=sw.EnsembleWarning):  # of bristles too stiff for dt
+        return sw.simulate_many(drives[0], command, parameters, dt, record=record, **others)

@@ -28,12 +28,14 @@ TORSION_CURVE = "a spring that a measured torsion loop is told by"
 STEADY_TABLE = "a law that a table of torque over speed can tell"
 LOG = "viscous friction becomes Coulomb's where a log is to tell it"
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
+STEADY_RUNNING = "steady running leaves the kinematic error out"
 USUAL = "one of the models whose drives run in code of their own, for speed"
 ELSEWHERE = {
     "Fourier": {
         "narrow.hpp": USUAL,
         "kinematic_error/misalignment.hpp": "what a misalignment is to leading order",
         "verbs.hpp": "the harmonics of any error are of this form",
+        "steady.py": STEADY_RUNNING,
         "identify/log.py": "harmonics found in a log are of this form",
     },
     "Viscous": {"narrow.hpp": USUAL, "identify/log.py": LOG, "identify/friction.py": STEADY_TABLE},
@@ -48,6 +50,7 @@ ELSEWHERE = {
         "friction/cyclic.hpp": "what it modulates by default",
         "identify/friction.py": STEADY_TABLE,
     },
+    "Stochastic": {"steady.py": STEADY_RUNNING},
     "LuGre": {"narrow.hpp": USUAL, "identify/friction.py": STEADY_TABLE},
     "Cyclic": {"any.hpp": BOUND_TO_ANY},
     "Thermal": {"any.hpp": BOUND_TO_ANY},

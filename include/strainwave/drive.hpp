@@ -268,6 +268,7 @@ struct PositionDrive {
     constexpr State led(State x, const S& twist) const {
         x.hysteresis = gear.hysteresis.advance(x.hysteresis, twist - x.held_twist);
         x.held_twist = twist;
+        x.held_rate = x.elapsed = S(0.0);
         return x;
     }
 
@@ -278,7 +279,6 @@ struct PositionDrive {
         if (any(turned)) x = led(x, select(turned, turning_point(x, now), x.held_twist));
         x = led(x, now.twist);
         x.held_rate = now.twist_rate;
-        x.elapsed = S(0.0);
         return x;
     }
 

@@ -94,7 +94,8 @@ struct Gear {
         return mesh;
     }
 
-    /// The largest stiffness [N.m/rad] that spring and hysteresis show together at twists up to `twist` [rad], of either sign.
+    /// The largest stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign, and with it that of the
+    /// hysteresis where it is first loaded; on turning back some are up to twice as stiff.
     constexpr S steepest(const S& twist) const {
         constexpr int parts = 64;
         S largest = stiffness.tangent(S(0.0));

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from strainwave.gear_set import GearSet, catalogue, load, save
     from strainwave.identify.fit import Fit, fit
     from strainwave.identify.twin import Twin, twin
-    from strainwave.linear import Linear, linearise
+    from strainwave.linear import LinearView, linearise
     from strainwave.recording import Recording
     from strainwave.response import FrequencyResponse, frequency_response
     from strainwave.simulation import Run, simulate, simulate_adaptively
@@ -44,7 +44,7 @@ _LAZY = {
     "Fit": "identify.fit",
     "FrequencyResponse": "response",
     "GearSet": "gear_set",
-    "Linear": "linear",
+    "LinearView": "linear",
     "Recording": "recording",
     "Run": "simulation",
     "Twin": "identify.twin",
@@ -70,7 +70,7 @@ __all__ = [
     "FrequencyResponse",
     "Gear",
     "GearSet",
-    "Linear",
+    "LinearView",
     "PassivityWarning",
     "Recording",
     "Run",

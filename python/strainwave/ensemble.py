@@ -19,9 +19,11 @@ from strainwave.recording import Recording
 from strainwave.scenario import Scenario
 from strainwave.simulation import (
     COARSEST,
+    FASTEST_ON_BRISTLES,
     ROOM_TEMPERATURE,
     Course,
     Excitation,
+    check_drive,
     output_units,
     progressing,
     remedy,
@@ -42,7 +44,7 @@ class EnsembleWarning(UserWarning):
     """Members of an ensemble could not be run to their end."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ensemble:
     """Runs of many members through one command.
 
@@ -72,6 +74,8 @@ class Ensemble:
 
     def member(self, number: int) -> Recording:
         """One member's run; `ValueError` with the reason if it has none."""
+        if not 0 <= number < len(self):
+            raise ValueError(f"member {number} is not among the {len(self)} members, which count from 0")
         if number in self.failures:
             raise ValueError(f"member {number} has no result: {self.failures[number]}")
         series = {name: values[number] for name, values in self.columns.items()}
@@ -123,10 +127,10 @@ class _Plan:
         record: Sequence[str],
         threads: int | None,
     ) -> _Plan:
+        check_drive(drive)
         numbers, values = _checked(drive, parameters)
-        unknown = [name for name in record if name not in OUTPUTS]
-        if unknown or not record:
-            raise ValueError(f"record = {list(record)} must name outputs of a drive: {', '.join(OUTPUTS)}")
+        if isinstance(record, str) or not record or not set(record) <= set(OUTPUTS):
+            raise ValueError(f"record = {record!r} must list outputs of a drive: {', '.join(OUTPUTS)}")
         if threads is not None and threads < 1:
             raise ValueError(f"threads = {threads} must be 1 or more")
         course = excitation.course(dt, sample)
@@ -150,7 +154,7 @@ class _Plan:
         """Members `first` up to `last`, not included."""
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
         channels = [OUTPUTS.index(name) for name in self.recorded]
-        outputs, twists, vibrations, refusals = _core.simulate_many(
+        outputs, twists, vibrations, on_bristles, refusals = _core.simulate_many(
             self.drive,
             self.numbers,
             values,
@@ -162,6 +166,7 @@ class _Plan:
             shown,  # type: ignore[arg-type]
         )
         failures = self.failures(outputs, twists, vibrations, refusals)
+        _tell_of_bristles(self.dt, on_bristles)
         outputs[:, list(failures), :] = np.nan
         units = output_units(self.drive)
         return Ensemble(
@@ -199,9 +204,9 @@ def simulate_many(
 ) -> Ensemble:
     """Runs a drive many times through one command, each time with other numbers: several to a vector register, on all cores.
 
-    The same trajectories as `simulate` from rest, to rounding; the same to the last bit whatever the number of threads and the
-    instruction set. The outputs take 8 bytes times members, outputs recorded and samples; `simulate_to` writes them to files
-    instead, in flat memory.
+    The same trajectories as `simulate` gives from rest with its method "exponential", to the last bit, whatever the number of
+    threads and the instruction set. The outputs take 8 bytes times members, outputs recorded and samples; `simulate_to` writes
+    them to files instead, in memory that is flat over members.
 
     Args:
         drive: the drive
@@ -220,7 +225,8 @@ def simulate_many(
             not known, `threads` below 1, and as `simulate`
 
     Warns:
-        EnsembleWarning: members without result; `failures` of the ensemble says why, and their outputs are not-a-number
+        EnsembleWarning: members without result; `failures` of the ensemble says why, and their outputs are not-a-number. Or
+            members whose bristles are too stiff for `dt`
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -375,6 +381,19 @@ def _write_table(path: Path, table: pyarrow.Table, floats: list[str]) -> None:
             use_dictionary=[name for name in table.column_names if name not in floats],
             column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
             write_page_checksum=True,
+        )
+
+
+def _tell_of_bristles(dt: float, vibrations: Array) -> None:
+    stiff = np.flatnonzero(dt * vibrations > FASTEST_ON_BRISTLES)
+    if stiff.size:
+        fastest = float(vibrations.max())
+        warnings.warn(
+            f"{stiff.size} members have bristles on which a shaft vibrates faster than steps of {dt:g} s can follow, at "
+            f"{fastest:.3g} rad/s; where it comes to rest their results may be wrong: take "
+            f"dt = {FASTEST_ON_BRISTLES / fastest:.2g} s or less",
+            EnsembleWarning,
+            stacklevel=4,
         )
 
 

@@ -27,7 +27,7 @@ INPUTS = ("command", "command_rate", "load_torque", "temperature")
 
 
 @dataclass(frozen=True, eq=False)
-class Linear:
+class LinearView:
     """A drive seen from close by: A, B, C, D of its small deviations from a state, for n states, 4 inputs and m outputs.
 
     Unpacks to the four matrices, as ``control.StateSpace(*linear)`` of python-control wants them. `command_rate` is the rate
@@ -121,7 +121,7 @@ def linearise(
     command_rate: float = 0.0,
     load_torque: float = 0.0,
     temperature: float = ROOM_TEMPERATURE,
-) -> Linear:
+) -> LinearView:
     """The drive as small deviations from a state see it.
 
     Small means: so small that nothing else changes. A side that sticks does not move, and its states drop out; so does what
@@ -172,7 +172,7 @@ def linearise(
     outputs = tuple(name for name, _, _ in _core.outputs)
     states = tuple(names[place] for place in kept)
     chosen = {name: units[name] for name in (*states, *INPUTS, *outputs)}
-    return Linear(a[kept], b[kept], c, d, states, INPUTS, outputs, chosen)
+    return LinearView(a[kept], b[kept], c, d, states, INPUTS, outputs, chosen)
 
 
 def _vibrating(drive: PositionDrive, state: _core.State, inputs: Array, sense: float) -> _core.State:

@@ -70,8 +70,12 @@ class Excitation:
     temperature: Scenario | float = ROOM_TEMPERATURE
 
     def __post_init__(self) -> None:
+        if not isinstance(self.command, Scenario):
+            raise TypeError(f"command = {self.command!r} must be a Scenario, as sw.scenario.constant(...) makes one")
         for name in ("load_torque", "temperature"):
             signal = getattr(self, name)
+            if not isinstance(signal, Scenario | float | int):
+                raise TypeError(f"{name} = {signal!r} must be a number or a Scenario")
             if isinstance(signal, Scenario) and signal.duration != self.command.duration:
                 raise ValueError(
                     f"{name} lasts {signal.duration} s, command {self.command.duration} s; both must last equally long"
@@ -98,20 +102,22 @@ class Excitation:
         return ends
 
     def _coarse(self, ends: Array, rtol: float) -> NDArray[np.intp]:
-        """The stretches whose quarters miss an input by more than `rtol` of the largest it is."""
-        start, end = ends[:-1], ends[1:]
+        """The stretches within which a step misses an input by more than `rtol` of the largest it is.
+
+        Looked for at places that no wave has in common.
+        """
+        start, span = ends[:-1], np.diff(ends)
         missed = np.zeros(len(start), dtype=bool)
         for signal in (self.command, self.load_torque, self.temperature):
             if not isinstance(signal, Scenario):
                 continue
-            values = np.array([signal.value(start + share * (end - start)) for share in (0.0, 0.25, 0.5, 0.75)])
-            last = signal.value_before(end)
-            values = np.vstack((values, last))
-            bow = 2.0 * (values[0] - 2.0 * values[2] + values[4])
-            parabola = [values[0] + x * ((values[4] - values[0] - bow) + x * bow) for x in (0.25, 0.75)]
-            off = np.maximum(np.abs(parabola[0] - values[1]), np.abs(parabola[1] - values[3]))
-            missed |= off > max(rtol, 1e-13) * np.abs(values).max()
-        return np.flatnonzero(missed & (end - start > SHORTEST))
+            begin, middle, end = signal.value(start), signal.value(start + 0.5 * span), signal.value_before(ends[1:])
+            bow = 2.0 * (begin - 2.0 * middle + end)
+            places = (0.1371, 0.2718, 0.4093, 0.6180, 0.7321, 0.8862)
+            values = np.array([signal.value(start + place * span) for place in places])
+            known = np.array([begin + place * ((end - begin - bow) + place * bow) for place in places])
+            missed |= np.abs(values - known).max(axis=0) > max(rtol, 1e-13) * max(np.abs(values).max(), np.abs(begin).max())
+        return np.flatnonzero(missed & (span > SHORTEST))
 
     def first(self) -> Array:
         """Command, its rate, load torque and temperature at t = 0."""
@@ -134,7 +140,7 @@ class Excitation:
 
 METHODS = ("exponential", "moreau_jean", "rosenbrock")
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
-STIFFEST = 2.0  # step times angular frequency of a shaft on its bristles, beyond which the exponential method is in doubt
+FASTEST_ON_BRISTLES = 2.0  # step times angular frequency of a shaft on its bristles, beyond which fixed steps are in doubt
 
 
 class Run(Recording):
@@ -179,10 +185,10 @@ def simulate(
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K], for friction that depends on it
         start: where the drive starts, as `end` of another run; at rest, untwisted, if not given
-
-            third order for bristles so stiff that a shaft vibrates on them within a step; "moreau_jean", time-stepping of
-            second order that looks for no events, however many there are. If not given the bristles decide between the
-            first two. To keep a tolerance, see `simulate_adaptively`.
+        method: "exponential", a Runge-Kutta method of fourth order that lets bristles relax exactly; "rosenbrock", a W-method
+            of third order for shafts that rest on stiff bristles; "moreau_jean", time-stepping of second order that looks for
+            no events, however many there are. If not given it is the first, unless a shaft vibrates on its bristles faster than
+            steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its tolerances.
         progress: show a progress bar
 
     Returns:
@@ -208,9 +214,22 @@ def simulate(
     """
     if method not in (None, *METHODS):
         raise ValueError(f'method = "{method}" is not known; there are {", ".join(METHODS)}')
+    check_drive(drive)
+    check_positive("dt", dt)
+    if method is None and dt * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
+        interval = dt if sample is None else sample
+        return simulate_adaptively(
+            drive,
+            command,
+            sample=interval,
+            load_torque=load_torque,
+            temperature=temperature,
+            start=start,
+            progress=progress,
+        )
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, sample)
-    taken = method or ("rosenbrock" if dt * _core.bristle_vibration(drive) > STIFFEST else "exponential")
+    taken = method or "exponential"
     state = drive.rest() if start is None else start
     pieces = [_core.now(drive, state, excitation.first())]
     with progressing(progress, len(course.instants) - 1) as shown:
@@ -224,7 +243,13 @@ def simulate(
     _check_finite(time, whole, remedy(dt))
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
         _check_resolution(drive, dt, whole)
-    return Run(_columns(time, whole), output_units(drive), state, f"{_NAMED[taken]}, steps of {dt:g} s")
+    named = _NAMED[taken] + (", cut at events" if taken != "moreau_jean" and _sticks(drive) else "")
+    return Run(_columns(time, whole), output_units(drive), state, f"{named}, steps of {dt:g} s")
+
+
+def _sticks(drive: PositionDrive) -> bool:
+    """Whether a friction of the drive holds its place at rest."""
+    return not drive.rest().sliding_input or not drive.rest().sliding_output
 
 
 _NAMED = {
@@ -271,6 +296,7 @@ def simulate_adaptively(
     >>> run.method.partition(":")[0]
     'exponential Runge-Kutta, adaptive, rtol 1e-08, atol 1e-12'
     """
+    check_drive(drive)
     if not 1e-11 <= rtol <= 1e-2:
         raise ValueError(f"rtol = {rtol} must lie in [1e-11, 1e-2]")
     if not 0.0 < atol < np.inf:
@@ -338,6 +364,11 @@ def _lay_out(
     jumps = np.flatnonzero(np.isin(end, breaks)) if len(breaks) else np.empty(0, np.intp)
     ends = np.append(jumps[jumps < len(end) - 1], len(end) - 1)
     columns[ends, 2] = before(end[ends])
+
+
+def check_drive(drive: object) -> None:
+    if not isinstance(drive, PositionDrive):
+        raise TypeError(f"drive = {drive!r} must be a drive, as sw.drives.PositionDrive(...) makes one")
 
 
 def check_positive(name: str, value: float) -> None:

@@ -221,9 +221,9 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
         (
             {"load.inertia": [0.5]},
             {"record": ["torque", "torsion"]},
-            r"^record = .*'torsion'.* must name outputs of a drive: comm",
+            r"^record = .*'torsion'.* must list outputs of a drive: comm",
         ),
-        ({"load.inertia": [0.5]}, {"record": []}, r"^record = \[\] must name outputs of a drive: command, "),
+        ({"load.inertia": [0.5]}, {"record": []}, r"^record = \[\] must list outputs of a drive: command, "),
         ({"load.inertia": [0.5]}, {"threads": 0}, r"^threads = 0 must be 1 or more$"),
         ({"load.inertia": [0.5]}, {"dt": -1.0}, r"^dt = -1\.0 s must lie in \(0, inf\)$"),
         ({"load.inertia": [0.5]}, {"temperature": -1.0}, r"^temperature = -1 K must lie in \(0, inf\)"),

@@ -91,7 +91,7 @@ private:
         for (int i = 0; i < n; ++i) {
             const S tolerated = S(tolerance.absolute) + S(tolerance.relative) * max(largest[i], abs(b[i]));
             const S relative = abs(a[i] - b[i]) / (S(15.0) * tolerated);
-            if (!(relative <= worst)) worst = relative;
+            if (!(relative <= worst) && worst == worst) worst = relative;  // what is not a number stays
         }
         return worst;
     }

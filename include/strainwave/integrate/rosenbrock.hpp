@@ -64,16 +64,20 @@ struct Ros34pw2 {
     }
 };
 
-/// What `rate` answers to each member of `y` by itself: the Jacobian, by differences.
-template <class S, int n, class Rate>
-constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Array<S, n>& y, const Array<S, n>& now, const S& dt) {
+/// What `rate` answers to each member of `y` by itself: the Jacobian, by differences towards zero, within what `confined` allows.
+template <class S, int n, class Rate, class Confined>
+constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Confined& confined, const Array<S, n>& y, const Array<S, n>& now,
+                                         const S& dt) {
     Array<Array<S, n>, n> matrix{};
     for (int j = 0; j < n; ++j) {
         const S moved = S(1e-7) * (abs(y[j]) + dt * abs(now[j])) + S(1e-10);
         Array<S, n> beside = y;
-        beside[j] = y[j] + moved;
+        beside[j] = y[j] - along(y[j], moved);
+        beside[j] = confined(beside)[j];
+        const S difference = beside[j] - y[j];
+        if (difference == S(0.0)) continue;
         const Array<S, n> then = rate(beside);
-        for (int i = 0; i < n; ++i) matrix[i][j] = (then[i] - now[i]) / (beside[j] - y[j]);
+        for (int i = 0; i < n; ++i) matrix[i][j] = (then[i] - now[i]) / difference;
     }
     return matrix;
 }
@@ -95,8 +99,8 @@ constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typena
     const auto confined = [&](const Vector& y) { return drive.confined(shaped<Motion>(y), now.contacts, now.mesh.per_input); };
     const Vector y = flattened<S>(before.motion);
     const auto matrix = detail::jacobian<S, n>(
-        [&](const Vector& beside) { return flattened<S>(drive.flow(x, shaped<Motion>(beside), u.start).rate); }, y,
-        flattened<S>(now.rate), dt);
+        [&](const Vector& beside) { return flattened<S>(drive.flow(x, shaped<Motion>(beside), u.start).rate); },
+        [&](const Vector& beside) { return flattened<S>(confined(beside)); }, y, flattened<S>(now.rate), dt);
     Array<Vector, n> left{};
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) left[i][j] = S(i == j ? 1.0 : 0.0) - dt * S(Table::gamma) * matrix[i][j];
