@@ -276,7 +276,7 @@ struct PositionDrive {
     /// turning point first: missing it would be an error of memory, that stays.
     constexpr State remembered(State x, const typename Gear::Mesh& now) const {
         const auto turned = x.held_rate * now.twist_rate < S(0.0);
-        if (any(turned)) x = led(x, select(turned, turning_point(x, now), x.held_twist));
+        if (any(turned)) x = chosen<S>(turned, led(x, turning_point(x, now)), x);
         x = led(x, now.twist);
         x.held_rate = now.twist_rate;
         return x;

@@ -48,7 +48,8 @@ def neighbours(drive: PositionDrive, seed: int) -> list[PositionDrive]:
     """Eight with other numbers, but for whole ones: orders of errors are summed up otherwise if all of a pack are whole."""
     _, numbers, _, _, low, high = (np.array(column) for column in zip(*_core.parameters(drive), strict=True))
     factors = 1.0 + np.random.default_rng(seed).uniform(-0.1, 0.1, (8, numbers.size))
-    others = np.where(numbers == np.rint(numbers), numbers, np.clip(numbers * factors, low, high))
+    others = np.clip(numbers * factors, low, high)
+    others = np.where((numbers == np.rint(numbers)) | (others == np.rint(others)), numbers, others)
     return [_core.with_numbers(drive, other) for other in others]
 
 

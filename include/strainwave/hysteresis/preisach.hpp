@@ -106,12 +106,14 @@ struct Preisach {
 private:
     /// From the outermost turning point inwards, until the twist is reached.
     constexpr S held(const State& x) const {
-        S torque = density.virgin(x.maximum[0]);
-        for (int k = 0;; ++k) {
-            torque = torque - S(2.0) * density.everett(x.maximum[k], x.low(k));
-            if (k + 1 == capacity || !any(x.low(k) < x.twist)) return torque;
-            torque = torque + S(2.0) * density.everett(x.maximum[k + 1], x.low(k));
+        S torque = density.virgin(x.maximum[0]) - S(2.0) * density.everett(x.maximum[0], x.low(0));
+        auto inside = x.low(0) < x.twist;  // a lane that has reached its twist waits for the others
+        for (int k = 1; k < capacity && any(inside); ++k) {
+            const S risen = torque + S(2.0) * density.everett(x.maximum[k], x.low(k - 1));
+            torque = select(inside, risen - S(2.0) * density.everett(x.maximum[k], x.low(k)), torque);
+            inside = inside & (x.low(k) < x.twist);
         }
+        return torque;
     }
 
     /// Work on the initial curve, beyond all turning points.
