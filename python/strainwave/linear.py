@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core
 from strainwave.drives import PositionDrive
-from strainwave.simulation import ROOM_TEMPERATURE, output_units
+from strainwave.simulation import ROOM_TEMPERATURE, check_drive, output_units
 from strainwave.steady import N_MOTION, PLACE, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
@@ -154,6 +154,7 @@ def linearise(
     >>> round(float(abs(linear.response(0.0))), 12)  # it goes where it is told
     1.0
     """
+    check_drive(drive)
     inputs = constant_inputs(command, load_torque, temperature, command_rate)
     if state is None:
         state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)

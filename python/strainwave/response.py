@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core
 from strainwave.drives import PositionDrive
 from strainwave.scenario import Scenario, constant, sine
-from strainwave.simulation import ROOM_TEMPERATURE, Excitation, check_positive, recording
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, check_drive, check_positive, recording
 from strainwave.steady import averaged, equilibrium
 
 Array = NDArray[np.float64]
@@ -102,6 +102,7 @@ def frequency_response(
     >>> abs(answer["output_angle"] / linear.response([1.0, 2.0])).round(3)
     array([1., 1.])
     """
+    check_drive(drive)
     frequencies = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     _check(frequencies, amplitude, input)
     check_positive("dt", dt)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from numbers import Real
 from typing import Literal
 
 import numpy as np
@@ -74,7 +75,7 @@ class Excitation:
             raise TypeError(f"command = {self.command!r} must be a Scenario, as sw.scenario.constant(...) makes one")
         for name in ("load_torque", "temperature"):
             signal = getattr(self, name)
-            if not isinstance(signal, Scenario | float | int):
+            if not isinstance(signal, Scenario | Real):
                 raise TypeError(f"{name} = {signal!r} must be a number or a Scenario")
             if isinstance(signal, Scenario) and signal.duration != self.command.duration:
                 raise ValueError(

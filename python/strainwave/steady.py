@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import _core, kinematic_error
 from strainwave.drives import PositionDrive
-from strainwave.simulation import ROOM_TEMPERATURE, check_temperature
+from strainwave.simulation import ROOM_TEMPERATURE, check_drive, check_temperature
 
 Array = NDArray[np.float64]
 SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
@@ -56,6 +56,7 @@ def equilibrium(
     >>> held.motion.input_speed, held.motion.output_speed
     (0.0, 0.0)
     """
+    check_drive(drive)
     inputs = constant_inputs(command, load_torque, temperature)
     begin = _at_rest(drive, drive.rest() if start is None else start)
     found = _resting(drive, begin, inputs) or _running(averaged(drive), begin, inputs)
