@@ -81,7 +81,7 @@ class Excitation:
                 raise ValueError(
                     f"{name} lasts {signal.duration} s, command {self.command.duration} s; both must last equally long"
                 )
-            if not isinstance(signal, Scenario) and not np.isfinite(signal):
+            if not isinstance(signal, Scenario) and not np.isfinite(float(signal)):
                 raise ValueError(f"{name} = {signal} must be finite")
         if not isinstance(self.temperature, Scenario):
             check_temperature(self.temperature)
