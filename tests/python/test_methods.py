@@ -170,12 +170,13 @@ def check_tolerance(drive: sw.drives.PositionDrive, factor: float) -> None:
 
 
 @pytest.mark.parametrize(("part", "model"), EVERY_PART)
-@settings(max_examples=3, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=3, derandomize=True, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
 def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, data: st.DataObject) -> None:
     law = data.draw(laws(part, model))
-    # Friction that falls to nothing within 0.01 rad/s makes every run a matter of chance.
+    # Friction that changes within 0.01 rad/s or a microradian by more than drives the shaft makes every run a matter of chance.
     assume(getattr(innermost(law), "stribeck_speed", 1.0) >= 1.0)
+    assume(getattr(innermost(law), "presliding", 1.0) > 1e-4)
     # What slips and what sticks is decided at the ends of steps: of first order there, more than two half steps tell.
     factor = 30.0 if isinstance(innermost(law), sw.friction.MaxwellSlipFriction) else 10.0
     check_tolerance(EVERYTHING.replace(gear=EVERYTHING.gear.replace(**{part: law})), factor)
