@@ -100,8 +100,7 @@ struct BoucWenFlow {
 
 private:
     static constexpr double knee_depth = 1.0;
-    static constexpr double vanishing = 80.0;  ///< exp(-80) vanishes beside 1 in every scalar
-    static constexpr double tiny = 1e-30;      ///< its powers vanish, its logarithm does not overflow
+    static constexpr double tiny = 1e-30;  ///< its powers vanish, its logarithm does not overflow
     /// A Newton step whose square is below this leaves an error below rounding.
     static constexpr double settled = sizeof(S) == sizeof(float) ? 1e-8 : 1e-17;
 
@@ -135,7 +134,7 @@ private:
     }
 
     /// -n ln v where v > 0, cut where v^n vanishes.
-    constexpr S depth(const S& v) const { return min(n * -log(max(v, S(tiny))), S(vanishing)); }
+    constexpr S depth(const S& v) const { return min(n * -log(max(v, S(tiny))), S(beyond_digits)); }
     constexpr S loss(const S& v) const { return select(v < S(0.0), -reversal, S(1.0)) * exp(-depth(abs(v))); }
     constexpr S path(const S& v) const { return v * polynomial(path_terms, loss(v)); }
     constexpr BoucWenFlow plain() const {
@@ -165,7 +164,7 @@ private:
 
     /// The torque after the path `p`, where wanted: the logarithm of the depth falls nearly in proportion to the path.
     constexpr S after_knee(const S& from, const S& p, auto wanted) const {
-        const S start = depth(from), fall = min(n * p, S(vanishing)), origin = detached(start), goal = detached(fall);
+        const S start = depth(from), fall = min(n * p, S(beyond_digits)), origin = detached(start), goal = detached(fall);
         if (!any(wanted)) return origin;
         const Depths terms = bernoulli(S(1.0) - S(1.0) / n), plain_terms = detached_all(terms);
         S y = log_step(plain_terms, S(0.0), origin, goal);
