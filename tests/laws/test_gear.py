@@ -332,6 +332,16 @@ def test_an_output_that_breaks_away_takes_along_an_input_that_nothing_holds(law:
     assert np.abs(run["input_speed"]).max() > 1.0
 
 
+@given(backdriving=st.floats(0.5, 8.0), dt=st.floats(2e-6, 2e-5))
+def test_an_output_whose_hold_ends_all_at_once_stops_nothing_else(backdriving: float, dt: float) -> None:
+    """Its hold is of the sense it is pushed in: none one way, and large the other way up to that very moment."""
+    one_way = sw.friction.LoadDependent(driving_reverse=0.08, backdriving_reverse=backdriving)
+    run = sw.simulate(changed("friction_output", one_way), REVERSAL, dt, load_torque=3.0)
+    moved = run["output_speed"] != 0.0
+    assert np.any(~moved[:-1] & moved[1:])  # it was held, and set off
+    assert np.abs(np.diff(run["input_speed"])).max() < 1e5 * dt  # rad/s2, of some 10 N.m on 1.2e-4 kg.m2
+
+
 @pytest.mark.parametrize("place", PLACES)
 @given(command=commands, load=loads, breakaway=st.floats(0.0, 1.0))
 def test_what_sticks_holds_no_more_than_its_breakaway(

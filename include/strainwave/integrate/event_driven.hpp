@@ -5,7 +5,8 @@
 namespace strainwave::integrate {
 
 /// The moment within (from, 1] at which the margin first falls below zero, in lanes where it does by the end; 1 in the others.
-/// Illinois' variant of regula falsi, which keeps the bracket.
+/// Illinois' variant of regula falsi, which keeps the bracket. Where the margin jumps, it is a moment after the jump: before it
+/// nothing tells which side's margin falls.
 template <class S, class Margin>
 constexpr S crossing(const Margin& margin, const S& from, const S& at_start, const S& at_end) {
     const auto crosses = at_end < S(0.0);
@@ -13,6 +14,7 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
     S a = from, b{1.0}, fa = detached(max(at_start, S(0.0))), fb = detached(at_end), x{1.0};
     for (int i = 0; i < 80; ++i) {
         S guess = b - fb * (b - a) / select(sought, fb - fa, S(-1.0));
+        if (i >= 20) guess = a;  // a jump, which no secant finds: halved from here
         guess = select((guess > a) & (guess < b), guess, S(0.5) * (a + b));
         const auto moved = sought & (abs(guess - x) > S(1e-15)) & (b - a > S(1e-15));
         x = select(sought, guess, x);
@@ -25,10 +27,11 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
         a = select(before, x, a);
         b = select(before, b, x);
     }
+    x = select(crosses & (b - x < S(1e-14)), b, x);
     if constexpr (differentiates<S>) {  // the moment moves with the parameters: implicit function theorem
-        const S h(1e-4);
-        const S slope = detached((margin(x + h) - margin(x - h)) / (S(2.0) * h));
-        x = select(crosses & (abs(slope) > S(smallest)), x - (margin(x) - detached(margin(x))) / slope, x);
+        const S h(1e-4), now = margin(x);
+        const S slope = detached((S(4.0) * margin(x + h) - S(3.0) * now - margin(x + S(2.0) * h)) / (S(2.0) * h));
+        x = select(crosses & (abs(slope) > S(smallest)), x - (now - detached(now)) / slope, x);
     }
     return x;
 }
