@@ -416,7 +416,11 @@ void bind_drives(nb::module_& core) {
         nb::sig("def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ", dt: float) -> State"),
         "`state` with what friction remembers after `dt` [s] at constant speeds.");
     core.def(
-        "led", [](const Drive& drive, const Drive::State& state, double twist) { return drive.led(state, twist); },
+        "led",
+        [](const Drive& drive, Drive::State state, double twist) {
+            drive.lead(state, twist);
+            return state;
+        },
         nb::arg("drive"), nb::arg("state"), nb::arg("twist"),
         nb::sig("def led(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State"),
         "`state` with its hysteresis brought up to date at `twist` [rad].");

@@ -194,16 +194,14 @@ struct PositionDrive {
 
     constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u) const { return flow(x, y, u, mesh(x, y)); }
 
-    /// What a step begins with: the state brought up to date, and its flow.
-    struct Start {
-        State x;
-        Flow now;
-    };
-    constexpr Start start(const State& before, const Input<S>& u) const {
-        const auto geometry = this->geometry(before, before.motion);
-        const State x = remembered(before, geometry);
-        return {x, flow(x, x.motion, u, gear.loaded(geometry, x.hysteresis, x.held_twist))};
+    /// Brings a state up to date and gives its flow: what a step begins with.
+    constexpr Flow begin(State& x, const Input<S>& u) const {
+        const auto geometry = this->geometry(x, x.motion);
+        remember(x, geometry);
+        return flow(x, x.motion, u, gear.loaded(geometry, x.hysteresis, x.held_twist));
     }
+    /// The flow where a state stands once it is up to date.
+    constexpr Flow standing(State x, const Input<S>& u) const { return begin(x, u); }
 
     constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u, const typename Gear::Mesh& mesh) const {
         const auto reference = this->reference(x, y, u);
@@ -264,31 +262,32 @@ struct PositionDrive {
         return x;
     }
 
-    /// The hysteresis led straight to a twist.
-    constexpr State led(State x, const S& twist) const {
+    /// Leads the hysteresis straight to a twist.
+    constexpr void lead(State& x, const S& twist) const {
         x.hysteresis = gear.hysteresis.advance(x.hysteresis, twist - x.held_twist);
         x.held_twist = twist;
         x.held_rate = x.elapsed = S(0.0);
-        return x;
     }
 
-    /// The hysteresis brought up to date where the shafts now stand. Where the twist has turned round on the way it is led to the
+    /// Brings the hysteresis up to date where the shafts now stand. Where the twist has turned round on the way it is led to the
     /// turning point first: missing it would be an error of memory, that stays.
-    constexpr State remembered(State x, const typename Gear::Mesh& now) const {
+    constexpr void remember(State& x, const typename Gear::Mesh& now) const {
         const auto turned = x.held_rate * now.twist_rate < S(0.0);
-        if (any(turned)) x = chosen<S>(turned, led(x, turning_point(x, now)), x);
-        x = led(x, now.twist);
+        if (any(turned)) {
+            State there = x;
+            lead(there, turning_point(x, now));
+            x = chosen<S>(turned, there, x);
+        }
+        lead(x, now.twist);
         x.held_rate = now.twist_rate;
-        return x;
     }
 
-    /// The state `dt` [s] after it was remembered, its input angle within its turn, whole turns counted.
-    constexpr State wrapped(State x, const S& dt) const {
+    /// The state becomes that `dt` [s] after it was remembered: its input angle within its turn, whole turns counted.
+    constexpr void wrap(State& x, const S& dt) const {
         x.elapsed = dt;
         const S turns = rint(x.motion.input_angle * S(0.5 / pi));
         x.motion.input_angle = x.motion.input_angle - turns * S(2.0 * pi);
         x.turns = x.turns + turns;
-        return x;
     }
 
     /// A state from outside, with each side's sense of sliding as its speed and its law have it.
@@ -316,13 +315,17 @@ struct PositionDrive {
 
     /// How far both sides are from changing between sticking and sliding; below zero, one has.
     constexpr S margin(const State& x, const Input<S>& u) const {
-        const Flow now = start(x, u).now;
+        if (!sticks(x))
+            return min(gliding(input_sticks(), x.sliding_input, x.motion.input_speed),
+                       gliding(output_sticks(), x.sliding_output, x.motion.output_speed));
+        const Flow now = standing(x, u);
         return min(margin_input(x, now), margin_output(x, now));
     }
 
     /// Sides that stick and are driven beyond what their friction holds set off.
     constexpr State released(State x, const Input<S>& u) const {
-        const Flow now = start(x, u).now;
+        if (!sticks(x)) return x;
+        const Flow now = standing(x, u);
         const auto set_off = [](const S& sliding, const S& hold, const S& balance) {
             return select((sliding == S(0.0)) & (hold < abs(balance)), sign(balance), sliding);
         };
@@ -367,13 +370,13 @@ struct PositionDrive {
     /// At an event: the side whose margin is used up stops, or breaks away, or turns round.
     template <class Mask>
     constexpr State settled(State x, const Input<S>& u, const Mask& lanes) const {
-        const Flow before = start(x, u).now;
+        const Flow before = standing(x, u);
         const auto at_input = lanes & !(margin_output(x, before) < margin_input(x, before));
         const auto at_output = lanes & (margin_output(x, before) < margin_input(x, before));
         const auto input_stops = at_input & !(x.sliding_input == S(0.0)), output_stops = at_output & !(x.sliding_output == S(0.0));
         x.motion.input_speed = select(input_stops, S(0.0), x.motion.input_speed);
         x.motion.output_speed = select(output_stops, S(0.0), x.motion.output_speed);
-        const Flow now = start(x, u).now;
+        const Flow now = standing(x, u);
         x.sliding_input = select(at_input, sense(now.input_balance, hold_input(now), input_stops), x.sliding_input);
         x.sliding_output = select(at_output, sense(now.output_balance, hold_output(now), output_stops), x.sliding_output);
         return x;
@@ -382,7 +385,7 @@ struct PositionDrive {
     /// Whether every part is valid where the drive stands; visit(part, Domain) of those that may not be.
     template <class Visit>
     constexpr void bounds(const State& x, const Input<S>& u, Visit&& visit) const {
-        const Flow now = start(x, u).now;
+        const Flow now = standing(x, u);
         if (bounded<S>(gear.stiffness)) visit("gear.stiffness", domain<S>(gear.stiffness, now.mesh.twist));
         if (bounded<Contact>(gear.friction_input)) visit("gear.friction_input", domain<S>(gear.friction_input, now.contacts.input));
         if (bounded<Contact>(gear.friction_mesh)) visit("gear.friction_mesh", domain<S>(gear.friction_mesh, now.contacts.mesh));
@@ -401,8 +404,8 @@ struct PositionDrive {
         return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist);
     }
 
-    constexpr Output output(const State& at, const Input<S>& u) const {
-        const auto [x, now] = start(at, u);
+    constexpr Output output(State x, const Input<S>& u) const {
+        const Flow now = begin(x, u);
         const Motion& y = x.motion;
         const S voltage = control.voltage(y.control, reference(x, y, u));
         const S output_angle = this->output_angle(x, y);
@@ -502,8 +505,13 @@ private:
         return margin(output_sticks(), x.sliding_output, x.motion.output_speed, hold_output(now), now.output_balance);
     }
     static constexpr S margin(bool sticks, const S& sliding, const S& speed, const S& hold, const S& balance) {
-        if (!sticks) return S(unbounded);
-        return select(sliding == S(0.0), hold - abs(balance), sliding * speed);
+        return sticks ? select(sliding == S(0.0), hold - abs(balance), sliding * speed) : S(unbounded);
+    }
+    /// That of a side that slides.
+    static constexpr S gliding(bool sticks, const S& sliding, const S& speed) { return sticks ? sliding * speed : S(unbounded); }
+    /// Whether a side sticks, in any lane.
+    constexpr bool sticks(const State& x) const {
+        return (input_sticks() && any(x.sliding_input == S(0.0))) || (output_sticks() && any(x.sliding_output == S(0.0)));
     }
     /// N.m. What a side that can stick holds at the least: less is the rounding of its balance, to which it would set off and stop
     /// without end.

@@ -140,7 +140,7 @@ inline constexpr int size_of = [] {
 /// The scalars of a described state, in the order it lists them.
 template <class S, Described X>
 constexpr Array<S, size_of<S, X>> flattened(const X& state) {
-    Array<S, size_of<S, X>> scalars{};
+    Array<S, size_of<S, X>> scalars;
     detail::Read<S> read{scalars.item};
     X::fields(state, read);
     return scalars;

@@ -51,33 +51,33 @@ class Relaxation {
 
 public:
     constexpr Relaxation(const X& rates_of_decay, const S& dt) : decay(flattened<S>(rates_of_decay)) {
-        for (int i = 0; i < n; ++i) set(i, any(decay[i] > S(0.0)) ? Exponential<S>::of(decay[i] * dt) : Exponential<S>{}, dt);
+        for_each_of<n>([&](int i) { set(i, any(decay[i] > S(0.0)) ? Exponential<S>::of(decay[i] * dt) : Exponential<S>{}, dt); });
     }
     constexpr Scalars forcing(const X& rate, const X& at) const {
         Scalars force = flattened<S>(rate);
         const Scalars y = flattened<S>(at);
-        for (int i = 0; i < n; ++i) force[i] = force[i] + decay[i] * y[i];
+        for_each_of<n>([&](int i) { force[i] = force[i] + decay[i] * y[i]; });
         return force;
     }
     constexpr X halfway(const X& from, const Scalars& force) const {
         Scalars y = flattened<S>(from);
-        for (int i = 0; i < n; ++i) y[i] = half[i] * y[i] + stage[i] * force[i];
+        for_each_of<n>([&](int i) { y[i] = half[i] * y[i] + stage[i] * force[i]; });
         return shaped<X>(y);
     }
     constexpr X onward(const X& halfway, const Scalars& force, const Scalars& at_start) const {
         Scalars y = flattened<S>(halfway);
-        for (int i = 0; i < n; ++i) y[i] = half[i] * y[i] + stage[i] * (S(2.0) * force[i] - at_start[i]);
+        for_each_of<n>([&](int i) { y[i] = half[i] * y[i] + stage[i] * (S(2.0) * force[i] - at_start[i]); });
         return shaped<X>(y);
     }
     /// Exponential Euler over the whole step.
     constexpr X across(const X& from, const Scalars& force) const {
         Scalars y = flattened<S>(from);
-        for (int i = 0; i < n; ++i) y[i] = full[i] * y[i] + stage[i] * (S(1.0) + half[i]) * force[i];
+        for_each_of<n>([&](int i) { y[i] = full[i] * y[i] + stage[i] * (S(1.0) + half[i]) * force[i]; });
         return shaped<X>(y);
     }
     constexpr X complete(const X& from, const Scalars& n1, const Scalars& n2, const Scalars& n3, const Scalars& n4) const {
         Scalars y = flattened<S>(from);
-        for (int i = 0; i < n; ++i) y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]);
+        for_each_of<n>([&](int i) { y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]); });
         return shaped<X>(y);
     }
 
@@ -98,9 +98,8 @@ template <class S, class Drive>
 constexpr typename Drive::State exponential_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
                                                  const S& dt) {
     const auto y1 = before.motion;
-    const auto start = drive.start(before, u.start);
-    const auto& now = start.now;
-    auto x = start.x;
+    auto x = before;
+    const auto now = drive.begin(x, u.start);
     const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
     const auto confined = [&](const auto& y) { return drive.confined(y, now.contacts, now.mesh.per_input); };
     const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y1, now.contacts), dt);
@@ -112,7 +111,8 @@ constexpr typename Drive::State exponential_step(const Drive& drive, const typen
     const auto y4 = confined(scheme.onward(y2, n3, n1));
     const auto n4 = scheme.forcing(rate(y4, u.end), y4);
     x.motion = drive.renewed(confined(scheme.complete(y1, n1, n2, n3, n4)), now.contacts, now.mesh.per_input);
-    return drive.wrapped(x, dt);
+    drive.wrap(x, dt);
+    return x;
 }
 
 }  // namespace strainwave::integrate

@@ -10,9 +10,8 @@ template <class S, class Drive>
 constexpr typename Drive::State moreau_jean_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
                                                  const S& dt) {
     const auto y = before.motion;
-    const auto start = drive.start(before, u.start);
-    const auto& now = start.now;
-    auto x = start.x;
+    auto x = before;
+    const auto now = drive.begin(x, u.start);
     const auto confined = [&](const auto& motion) { return drive.confined(motion, now.contacts, now.mesh.per_input); };
     const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y, now.contacts), dt);
     const S half = S(0.5) * dt;
@@ -20,7 +19,8 @@ constexpr typename Drive::State moreau_jean_step(const Drive& drive, const typen
     const auto then = drive.flow(x, middle, u.middle);
     x = drive.arriving(x, scheme.across(y, scheme.forcing(then.rate, middle)), then, dt);
     x.motion = drive.renewed(confined(x.motion), now.contacts, now.mesh.per_input);
-    return drive.wrapped(x, dt);
+    drive.wrap(x, dt);
+    return x;
 }
 
 }  // namespace strainwave::integrate

@@ -93,9 +93,8 @@ constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typena
     using Table = detail::Ros34pw2;
     constexpr int n = size_of<S, Motion>;
     using Vector = Array<S, n>;
-    const auto start = drive.start(before, u.start);
-    const auto& now = start.now;
-    auto x = start.x;
+    auto x = before;
+    const auto now = drive.begin(x, u.start);
     const auto confined = [&](const Vector& y) { return drive.confined(shaped<Motion>(y), now.contacts, now.mesh.per_input); };
     const Vector y = flattened<S>(before.motion);
     const auto matrix = detail::jacobian<S, n>(
@@ -125,7 +124,8 @@ constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typena
         for (int i = 0; i < n; ++i) end[i] = end[i] + S(Table::weight[stage]) * k[stage][i];
     }
     x.motion = drive.renewed(confined(end), now.contacts, now.mesh.per_input);
-    return drive.wrapped(x, dt);
+    drive.wrap(x, dt);
+    return x;
 }
 
 }  // namespace strainwave::integrate

@@ -31,7 +31,7 @@ constexpr L everywhere(double x) {
 /// `a` where the mask is all bits, `b` where it is none.
 template <class L>
 constexpr L blend(const WordOf<L>& mask, const L& a, const L& b) {
-    return lanes<L>((bits(a) & mask) | (bits(b) & ~mask));
+    return mask ? a : b;
 }
 /// x within [low, high]; what is not a number stays so.
 template <class L>

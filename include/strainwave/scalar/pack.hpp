@@ -55,7 +55,7 @@ struct Pack {
 
     Lanes part[count];
 
-    constexpr Pack() : part{} {}
+    Pack() = default;
     constexpr Pack(double x) {
         for (Lanes& lanes : part) lanes = Lanes{} + x;
     }
