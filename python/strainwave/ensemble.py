@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core
+from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.files import replacing
 from strainwave.recording import Recording
@@ -23,7 +23,6 @@ from strainwave.simulation import (
     ROOM_TEMPERATURE,
     Course,
     Excitation,
-    check_drive,
     output_units,
     progressing,
     remedy,
@@ -74,7 +73,8 @@ class Ensemble:
 
     def member(self, number: int) -> Recording:
         """One member's run; `ValueError` with the reason if it has none."""
-        if not 0 <= number < len(self):
+        arguments.whole("member", number, 0)
+        if number >= len(self):
             raise ValueError(f"member {number} is not among the {len(self)} members, which count from 0")
         if number in self.failures:
             raise ValueError(f"member {number} has no result: {self.failures[number]}")
@@ -127,15 +127,13 @@ class _Plan:
         record: Sequence[str],
         threads: int | None,
     ) -> _Plan:
-        check_drive(drive)
+        arguments.drive(drive)
         numbers, values = _checked(drive, parameters)
-        if isinstance(record, str) or not record or not set(record) <= set(OUTPUTS):
-            raise ValueError(f"record = {record!r} must list outputs of a drive: {', '.join(OUTPUTS)}")
-        if threads is not None and threads < 1:
-            raise ValueError(f"threads = {threads} must be 1 or more")
-        course = excitation.course(dt, sample)
-        inputs = excitation.over(course)
-        return cls(drive, numbers, values, course, inputs, list(record), dt, threads or available_threads())
+        recorded = _outputs(record)
+        threads = available_threads() if threads is None else arguments.whole("threads", threads, 1)
+        dt = arguments.seconds("dt", dt)
+        course = excitation.course(dt, dt if sample is None else arguments.seconds("sample", sample))
+        return cls(drive, numbers, values, course, excitation.over(course), recorded, dt, threads)
 
     @property
     def members(self) -> int:
@@ -221,6 +219,7 @@ def simulate_many(
         Ensemble, whose columns have shape (members, samples)
 
     Raises:
+        TypeError: values that are no numbers, `threads` that is no whole number, and as `simulate`
         ValueError: a parameter that the drive does not have, values out of its range or of unequal number, an output that is
             not known, `threads` below 1, and as `simulate`
 
@@ -273,7 +272,7 @@ def simulate_to(
 
     Raises:
         FileExistsError: the folder is not empty
-        ValueError: as `simulate_many`
+        TypeError, ValueError: as `simulate_many`
 
     Warns:
         EnsembleWarning: as `simulate_many`
@@ -311,13 +310,15 @@ def available_threads() -> int:
 def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
     """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
     known = {path: (number, unit, low, high) for number, (path, _, unit, _, low, high) in enumerate(_core.parameters(drive))}
+    if not isinstance(parameters, Mapping):
+        raise TypeError(f"parameters must map paths to values, as in {{'load.inertia': [0.01, 0.02]}}, not {parameters!r}")
     if not parameters:
         raise ValueError("parameters must name at least one number that the members differ in")
     values: dict[str, Array] = {}
     for path, column in parameters.items():
         if path not in known:
-            raise ValueError(f'the drive has no parameter "{path}"{_meant(path, list(known))}')
-        values[path] = np.asarray(column, dtype=np.float64)
+            raise ValueError(f'the drive has no parameter "{path}"{_meant(str(path), list(known))}')
+        values[path] = arguments.numbers(path, column)
         if values[path].ndim != 1 or len(values[path]) == 0:
             raise ValueError(f"{path} must have one value a member, shape (members,), not {values[path].shape}")
         _, unit, low, high = known[path]
@@ -329,6 +330,14 @@ def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
         raise ValueError(f"all parameters must have as many values as there are members: {counts}")
     return [known[path][0] for path in values], values
+
+
+def _outputs(record: Sequence[str]) -> list[str]:
+    """The outputs to record, in order."""
+    names = list(record) if isinstance(record, Iterable) and not isinstance(record, str) else []
+    if not names or any(name not in OUTPUTS for name in names):
+        raise ValueError(f"record = {record!r} must list outputs of a drive: {', '.join(OUTPUTS)}")
+    return names
 
 
 def _limits(low: float, high: float) -> str:

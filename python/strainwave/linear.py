@@ -15,9 +15,9 @@ from math import tau
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core
+from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
-from strainwave.simulation import ROOM_TEMPERATURE, check_drive, output_units
+from strainwave.simulation import ROOM_TEMPERATURE, output_units
 from strainwave.steady import N_MOTION, PLACE, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
@@ -97,9 +97,12 @@ class LinearView:
             Transfer function at 2 pi i `frequency` [unit of the output / unit of the input], of the shape of `frequency`.
 
         Raises:
-            ValueError: there is no such input or output, or a frequency is that of an undamped pole
+            ValueError: there is no such input or output, or a frequency is not finite or that of an undamped pole
         """
-        at = tau * 1j * np.asarray(frequency, dtype=np.float64)[..., None]
+        frequencies = arguments.numbers("frequency", frequency)
+        if not np.isfinite(frequencies).all():
+            raise ValueError(f"frequency = {frequencies[~np.isfinite(frequencies)][0]} Hz must be finite")
+        at = tau * 1j * frequencies[..., None]
         row, column = _place(output, self.outputs, "output"), _place(input, self.inputs, "input")
         b, d = self.B[:, column] + 0.0 * at, self.D[row, column] + 0.0 * at
         if input == "command":
@@ -142,6 +145,7 @@ def linearise(
         Matrices with the names of their rows and columns.
 
     Raises:
+        TypeError: an argument is not of its kind
         ValueError: an input is not finite, `temperature` is not positive, or no state is given and there is no equilibrium
 
     >>> import strainwave as sw
@@ -154,11 +158,11 @@ def linearise(
     >>> round(float(abs(linear.response(0.0))), 12)  # it goes where it is told
     1.0
     """
-    check_drive(drive)
+    arguments.drive(drive)
     inputs = constant_inputs(command, load_torque, temperature, command_rate)
     if state is None:
         state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
-    state = _core.consistent(drive, state)
+    state = _core.consistent(drive, arguments.state("state", state))
     if state.motion.input_speed != 0.0:
         drive = averaged(drive)
     slopes = [_core.differentiate_flow(drive, _vibrating(drive, state, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]

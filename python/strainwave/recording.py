@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from strainwave import arguments
 from strainwave.files import replacing
 from strainwave.units import check as check_unit
 from strainwave.units import convert
@@ -285,19 +286,12 @@ def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> 
 
 def _frozen(name: str, values: ArrayLike) -> Array:
     """The values as read-only float64, copied only where someone else could still change them."""
-    try:
-        array = np.asarray(values)
-    except ValueError:
-        raise ValueError(f'column "{name}" must be one series of numbers') from None
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f'column "{name}" must hold numbers, not {array.dtype}')
+    array = arguments.numbers(f'column "{name}"', values)
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f'column "{name}" must be one series of at least one sample; its shape is {array.shape}')
-    if np.ma.is_masked(values):
-        raise ValueError(f'column "{name}" has masked values; every sample must be a number')
-    if array.dtype == np.float64 and array.flags.c_contiguous and _is_frozen(array):
+    if array.flags.c_contiguous and _is_frozen(array):
         return array
-    copy = np.array(array, dtype=np.float64)
+    copy = np.array(array)
     copy.setflags(write=False)
     return copy
 

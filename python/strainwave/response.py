@@ -10,11 +10,11 @@ from math import ceil
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core
+from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.scenario import Scenario, constant, sine
-from strainwave.simulation import ROOM_TEMPERATURE, Excitation, check_drive, check_positive, recording
-from strainwave.steady import averaged, equilibrium
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, recording
+from strainwave.steady import averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -49,7 +49,7 @@ class FrequencyResponse:
 
     def __getitem__(self, output: str) -> Complex:
         if output not in self.responses:
-            raise KeyError(f"no output {output!r}; there are {', '.join(self.responses)}")
+            raise ValueError(f'no output "{output}"; there are {", ".join(self.responses)}')
         return self.responses[output]
 
 
@@ -90,7 +90,9 @@ def frequency_response(
         Responses, distortions and the number of periods they took.
 
     Raises:
-        ValueError: `amplitude`, `dt` or a frequency is not positive, `input` is another, or there is no equilibrium
+        TypeError: an argument is not of its kind
+        ValueError: a frequency, `amplitude`, `dt` or `tolerance` is not positive, `most_periods` is below 2, `input` is
+            another, or there is no equilibrium
         FloatingPointError: as `simulate`
         RuntimeError: a motion is not periodic after `most_periods`; says how far it is from that
 
@@ -102,12 +104,17 @@ def frequency_response(
     >>> abs(answer["output_angle"] / linear.response([1.0, 2.0])).round(3)
     array([1., 1.])
     """
-    check_drive(drive)
-    frequencies = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
-    _check(frequencies, amplitude, input)
-    check_positive("dt", dt)
+    arguments.drive(drive)
+    constant_inputs(command, load_torque, temperature)  # refuses what makes no sense
+    frequencies = np.atleast_1d(arguments.numbers("frequency", frequency))
+    amplitude = arguments.number("amplitude", amplitude, low=0.0)
+    _check(frequencies, input)
+    dt = arguments.seconds("dt", dt)
+    tolerance = arguments.number("tolerance", tolerance, low=0.0)
+    most_periods = arguments.whole("most_periods", most_periods, 2)
     if start is None:
         start = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
+    arguments.state("start", start)
     if start.motion.input_speed != 0.0:
         drive = averaged(drive)
     sines = _Sines(drive, start, temperature, dt)
@@ -126,11 +133,9 @@ def frequency_response(
     return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, periods)
 
 
-def _check(frequencies: Array, amplitude: float, signal: str) -> None:
+def _check(frequencies: Array, signal: str) -> None:
     if frequencies.ndim != 1 or frequencies.size == 0 or not (np.isfinite(frequencies) & (frequencies > 0.0)).all():
         raise ValueError("frequency must hold positive numbers [Hz], one at least")
-    if not 0.0 < amplitude < np.inf:
-        raise ValueError(f"amplitude = {amplitude} must lie in (0, inf)")
     if signal not in _SINES:
         raise ValueError(f"input = {signal!r} must be one of {', '.join(_SINES)}")
 

@@ -16,13 +16,14 @@ commanded, rad for a position-controlled drive, V for an open-loop motor; a scen
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf, pi, tau
+from math import pi, tau
 from numbers import Real
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from strainwave import arguments
 from strainwave.recording import Recording
 
 Array = NDArray[np.float64]
@@ -92,9 +93,9 @@ class Scenario:
     __array_ufunc__ = None  # numpy scalars leave `factor * scenario` to __rmul__
 
     def __post_init__(self) -> None:
-        _check("scenario.duration", self.duration, "s", low=0.0)
+        arguments.number("scenario.duration", self.duration, "s", low=0.0)
         for name in ("start", "level", "slope"):
-            values = np.array(getattr(self, name), dtype=np.float64)
+            values = np.array(arguments.numbers(f"scenario.{name}", getattr(self, name)))
             values.setflags(write=False)
             object.__setattr__(self, name, values)
             if values.ndim != 1 or values.shape != self.start.shape or not np.isfinite(values).all():
@@ -102,8 +103,8 @@ class Scenario:
         if not (self.start.size and self.start[0] == 0.0 and (np.diff(self.start, append=self.duration) > 0.0).all()):
             raise ValueError(f"scenario.start must increase from 0 s and stay below {self.duration} s")
         for wave in self.waves:
-            for name, number in vars(wave).items():
-                _check(f"wave.{name}", number)
+            for name, value in vars(wave).items():
+                arguments.number(f"wave.{name}", value)
 
     def value(self, time: ArrayLike) -> Array:
         """The command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
@@ -140,7 +141,7 @@ class Scenario:
         >>> ramp(rate=2.0, duration=1.0).recording(dt=0.25, unit="rad")["command"]
         array([0. , 0.5, 1. , 1.5, 2. ])
         """
-        _check("recording.dt", dt, "s", "(]", 0.0, self.duration)
+        arguments.number("recording.dt", dt, "s", "(]", 0.0, self.duration)
         intervals = int(self.duration / dt * (1.0 + 4.0 * np.finfo(float).eps))  # 0.3 / 0.1 falls just short of 3
         time = np.minimum(dt * np.arange(intervals + 1), self.duration)
         return Recording({"time": time, "command": self.value(time)}, {"time": "s", "command": unit})
@@ -167,7 +168,7 @@ class Scenario:
         """The command times a number."""
         if not isinstance(factor, Real):
             return NotImplemented
-        _check("factor", factor)
+        arguments.number("factor", factor)
         waves = tuple(replace(wave, amplitude=float(factor * wave.amplitude)) for wave in self.waves)
         return replace(self, level=factor * self.level, slope=factor * self.slope, waves=waves)
 
@@ -181,7 +182,7 @@ class Scenario:
         return self + -other
 
     def _inside(self, time: ArrayLike) -> Array:
-        times = np.asarray(time, dtype=np.float64)
+        times = arguments.numbers("time", time)
         if times.size and not (times.min() >= 0.0 and times.max() <= self.duration):
             outside = times[~((times >= 0.0) & (times <= self.duration))]
             raise ValueError(f"time = {outside[0]} s lies outside the scenario, [0, {self.duration}] s")
@@ -229,8 +230,8 @@ def constant(value: float, duration: float) -> Scenario:
     >>> constant(1.5, duration=2.0).value([0.0, 2.0])
     array([1.5, 1.5])
     """
-    _check("constant.value", value)
-    _check("constant.duration", duration, "s", low=0.0)
+    arguments.number("constant.value", value)
+    arguments.number("constant.duration", duration, "s", low=0.0)
     return _from(0.0, duration, level=value, slope=0.0)
 
 
@@ -248,9 +249,9 @@ def step(amplitude: float, duration: float, start: float = 0.0) -> Scenario:
     >>> step(2.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 2., 2.])
     """
-    _check("step.amplitude", amplitude)
-    _check("step.duration", duration, "s", low=0.0)
-    _check("step.start", start, "s", "[)", 0.0, duration)
+    arguments.number("step.amplitude", amplitude)
+    arguments.number("step.duration", duration, "s", low=0.0)
+    arguments.number("step.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=amplitude, slope=0.0)
 
 
@@ -268,9 +269,9 @@ def ramp(rate: float, duration: float, start: float = 0.0) -> Scenario:
     >>> ramp(4.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 0., 2.])
     """
-    _check("ramp.rate", rate)
-    _check("ramp.duration", duration, "s", low=0.0)
-    _check("ramp.start", start, "s", "[)", 0.0, duration)
+    arguments.number("ramp.rate", rate)
+    arguments.number("ramp.duration", duration, "s", low=0.0)
+    arguments.number("ramp.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=0.0, slope=rate)
 
 
@@ -290,11 +291,11 @@ def sine(amplitude: float, frequency: float, duration: float, phase: float = 0.0
     >>> sine(2.0, frequency=0.25, duration=4.0, offset=1.0).value([0.0, 1.0, 3.0])
     array([ 1.,  3., -1.])
     """
-    _check("sine.amplitude", amplitude)
-    _check("sine.frequency", frequency, "Hz", "[)", 0.0)
-    _check("sine.duration", duration, "s", low=0.0)
-    _check("sine.phase", phase, "rad")
-    _check("sine.offset", offset)
+    arguments.number("sine.amplitude", amplitude)
+    arguments.number("sine.frequency", frequency, "Hz", "[)", 0.0)
+    arguments.number("sine.duration", duration, "s", low=0.0)
+    arguments.number("sine.phase", phase, "rad")
+    arguments.number("sine.offset", offset)
     wave = Wave(amplitude, frequency, sweep=0.0, phase=phase)
     return replace(constant(offset, duration), waves=(wave,))
 
@@ -317,10 +318,10 @@ def chirp(amplitude: float, start_frequency: float, stop_frequency: float, durat
     >>> float(chirp(1.0, start_frequency=0.0, stop_frequency=1.0, duration=8.0).value(1.0).round(12))  # sin(pi / 8)
     0.382683432365
     """
-    _check("chirp.amplitude", amplitude)
-    _check("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
-    _check("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
-    _check("chirp.duration", duration, "s", low=0.0)
+    arguments.number("chirp.amplitude", amplitude)
+    arguments.number("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
+    arguments.number("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
+    arguments.number("chirp.duration", duration, "s", low=0.0)
     wave = Wave(amplitude, start_frequency, sweep=(stop_frequency - start_frequency) / duration, phase=0.0)
     return replace(constant(0.0, duration), waves=(wave,))
 
@@ -341,11 +342,11 @@ def pulse_train(amplitude: float, period: float, width: float, duration: float, 
     >>> pulse_train(3.0, period=1.0, width=0.25, duration=2.0, start=0.5).breaks
     array([0.5 , 0.75, 1.5 , 1.75])
     """
-    _check("pulse_train.amplitude", amplitude)
-    _check("pulse_train.period", period, "s", low=0.0)
-    _check("pulse_train.width", width, "s", low=0.0, high=period)
-    _check("pulse_train.duration", duration, "s", low=0.0)
-    _check("pulse_train.start", start, "s", "[)", 0.0, duration)
+    arguments.number("pulse_train.amplitude", amplitude)
+    arguments.number("pulse_train.period", period, "s", low=0.0)
+    arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
+    arguments.number("pulse_train.duration", duration, "s", low=0.0)
+    arguments.number("pulse_train.start", start, "s", "[)", 0.0, duration)
     rise = start + period * np.arange(np.ceil((duration - start) / period))
     edges = np.column_stack((rise, rise + width)).ravel()
     levels = np.resize([amplitude, 0.0], edges.size)
@@ -382,14 +383,3 @@ def _from(start: float, duration: float, level: float, slope: float) -> Scenario
     before = [0.0] if start > 0.0 else []
     starts, levels, slopes = (np.array([*before, last]) for last in (start, level, slope))
     return Scenario(duration, starts, levels, slopes)
-
-
-def _check(name: str, number: float, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> None:
-    """Refuse a number outside the interval from low to high, whose ends belong to it where the bracket is square."""
-    if not isinstance(number, Real):
-        raise TypeError(f"{name} must be a number, not {number!r}")
-    above = low <= number if brackets[0] == "[" else low < number
-    below = number <= high if brackets[1] == "]" else number < high
-    if not (above and below):
-        interval = f"{brackets[0]}{low:g}, {high:g}{brackets[1]}"
-        raise ValueError(f"{f'{name} = {number} {unit}'.rstrip()} must lie in {interval}")

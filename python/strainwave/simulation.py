@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core
+from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
@@ -37,12 +37,8 @@ class Course:
 
         Where neither asks for more, steps are exactly `dt`; the last may be shorter.
         """
-        check_positive("dt", dt)
-        if np.ndim(samples) == 0:
-            interval = float(samples)
-            check_positive("sample", interval)
-            samples = _grid(interval, duration, 1e-9 * min(dt, interval))
-        samples = np.asarray(samples, dtype=np.float64)
+        if not isinstance(samples, np.ndarray):
+            samples = _grid(samples, duration, 1e-9 * min(dt, samples))
         tolerance = 1e-9 * min(dt, float(np.min(np.diff(samples))))
         sampled = samples
         instants = np.concatenate((_grid(dt, duration, tolerance), sampled, breaks))
@@ -81,8 +77,8 @@ class Excitation:
                 raise ValueError(
                     f"{name} lasts {signal.duration} s, command {self.command.duration} s; both must last equally long"
                 )
-            if not isinstance(signal, Scenario) and not np.isfinite(float(signal)):
-                raise ValueError(f"{name} = {signal} must be finite")
+            if not isinstance(signal, Scenario):
+                arguments.number(name, signal)
         if not isinstance(self.temperature, Scenario):
             check_temperature(self.temperature)
 
@@ -199,6 +195,7 @@ def simulate(
         (n,); the first sample is at t = 0. Its `end` is the state at the end, its `method` says how steps were taken.
 
     Raises:
+        TypeError: an argument is not of its kind
         ValueError: `dt`, `sample` or `temperature` is not positive, `load_torque` or `temperature` lasts another time than
             `command`, `method` is not known, or the drive leaves the range in which one of its parts is valid; says which,
             where and when
@@ -215,10 +212,11 @@ def simulate(
     """
     if method not in (None, *METHODS):
         raise ValueError(f'method = "{method}" is not known; there are {", ".join(METHODS)}')
-    check_drive(drive)
-    check_positive("dt", dt)
+    arguments.drive(drive)
+    dt = arguments.seconds("dt", dt)
+    interval = dt if sample is None else arguments.seconds("sample", sample)
+    state = drive.rest() if start is None else arguments.state("start", start)
     if method is None and dt * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
-        interval = dt if sample is None else sample
         return simulate_adaptively(
             drive,
             command,
@@ -229,9 +227,8 @@ def simulate(
             progress=progress,
         )
     excitation = Excitation(command, load_torque, temperature)
-    course = excitation.course(dt, sample)
+    course = excitation.course(dt, interval)
     taken = method or "exponential"
-    state = drive.rest() if start is None else start
     pieces = [_core.now(drive, state, excitation.first())]
     with progressing(progress, len(course.instants) - 1) as shown:
         for number, chunk in enumerate(course.chunks()):
@@ -288,6 +285,7 @@ def simulate_adaptively(
         as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
 
     Raises:
+        TypeError: as `simulate`
         ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, and as `simulate`
         FloatingPointError: the trajectory left the finite numbers, or no step keeps the tolerance; says when
 
@@ -297,16 +295,14 @@ def simulate_adaptively(
     >>> run.method.partition(":")[0]
     'exponential Runge-Kutta, adaptive, rtol 1e-08, atol 1e-12'
     """
-    check_drive(drive)
-    if not 1e-11 <= rtol <= 1e-2:
-        raise ValueError(f"rtol = {rtol} must lie in [1e-11, 1e-2]")
-    if not 0.0 < atol < np.inf:
-        raise ValueError(f"atol = {atol} must lie in (0, inf)")
+    arguments.drive(drive)
+    rtol = arguments.number("rtol", rtol, brackets="[]", low=1e-11, high=1e-2)
+    atol = arguments.number("atol", atol, low=0.0)
+    sample = arguments.seconds("sample", sample)
+    state = drive.rest() if start is None else arguments.state("start", start)
     excitation = Excitation(command, load_torque, temperature)
-    check_positive("sample", sample)
     samples = _grid(sample, command.duration, 1e-9 * sample)
     instants = excitation.instants(rtol)
-    state = drive.rest() if start is None else start
     pieces, accepted, rejected = [_core.now(drive, state, excitation.first())], 0, 0
     with progressing(progress, len(instants) - 1) as shown:
         for first in range(0, len(instants) - 1, CHUNK):
@@ -367,16 +363,6 @@ def _lay_out(
     columns[ends, 2] = before(end[ends])
 
 
-def check_drive(drive: object) -> None:
-    if not isinstance(drive, PositionDrive):
-        raise TypeError(f"drive = {drive!r} must be a drive, as sw.drives.PositionDrive(...) makes one")
-
-
-def check_positive(name: str, value: float) -> None:
-    if not 0.0 < value < np.inf:
-        raise ValueError(f"{name} = {value} s must lie in (0, inf)")
-
-
 def check_temperature(lowest: float) -> None:
     if lowest <= 0.0:
         raise ValueError(f"temperature = {lowest:g} K must lie in (0, inf); 20 degC are 293.15 K")
@@ -384,6 +370,8 @@ def check_temperature(lowest: float) -> None:
 
 def _grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
+    if step < np.spacing(duration):
+        raise ValueError(f"steps of {step:g} s cannot be told apart within {duration:g} s")
     grid = step * np.arange(int(duration / step) + 2)
     return np.append(grid[grid < duration - tolerance], duration)
 

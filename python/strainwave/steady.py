@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, kinematic_error
+from strainwave import _core, arguments, kinematic_error
 from strainwave.drives import PositionDrive
-from strainwave.simulation import ROOM_TEMPERATURE, check_drive, check_temperature
+from strainwave.simulation import ROOM_TEMPERATURE, check_temperature
 
 Array = NDArray[np.float64]
 SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
@@ -48,6 +48,7 @@ def equilibrium(
         A state, for `simulate` to start from or `linearise` to look around in.
 
     Raises:
+        TypeError: an argument is not of its kind
         ValueError: an input is not finite, `temperature` is not positive, or there is no equilibrium; says why
 
     >>> import strainwave as sw
@@ -56,9 +57,9 @@ def equilibrium(
     >>> held.motion.input_speed, held.motion.output_speed
     (0.0, 0.0)
     """
-    check_drive(drive)
+    arguments.drive(drive)
     inputs = constant_inputs(command, load_torque, temperature)
-    begin = _at_rest(drive, drive.rest() if start is None else start)
+    begin = _at_rest(drive, drive.rest() if start is None else arguments.state("start", start))
     found = _resting(drive, begin, inputs) or _running(averaged(drive), begin, inputs)
     turns = round(found.motion.input_angle / tau)
     motion = found.motion.replace(input_angle=found.motion.input_angle - tau * turns)
@@ -67,12 +68,10 @@ def equilibrium(
 
 def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:
     """The inputs in the order of the core, shape (4,), if they make sense."""
-    check_temperature(temperature)
     inputs = {"command": command, "command_rate": command_rate, "load_torque": load_torque, "temperature": temperature}
-    for name, value in inputs.items():
-        if not np.isfinite(value):
-            raise ValueError(f"{name} = {value} must be finite")
-    return np.array(list(inputs.values()), dtype=np.float64)
+    numbers = [arguments.number(name, value) for name, value in inputs.items()]
+    check_temperature(temperature)
+    return np.array(numbers)
 
 
 def _controls_position(drive: PositionDrive) -> bool:

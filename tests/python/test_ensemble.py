@@ -206,6 +206,7 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
         ({}, {}, r"^parameters must name at least one number that the members differ in$"),
         ({"load.inertai": [0.5]}, {}, r'^the drive has no parameter "load\.inertai"; did you mean .*load\.inertia.*\?$'),
         ({"zzz": [0.5]}, {}, r'^the drive has no parameter "zzz"$'),
+        ({3: [0.5]}, {}, r'^the drive has no parameter "3"$'),
         ({"load.inertia": []}, {}, r"^load\.inertia must have one value a member, shape \(members,\), not \(0,\)$"),
         ({"load.inertia": 0.5}, {}, r"^load\.inertia must have one value a member, shape \(members,\), not \(\)$"),
         ({"load.inertia": [[0.5]]}, {}, r"^load\.inertia must have one value a member, shape \(members,\), not \(1, 1\)$"),
@@ -223,6 +224,12 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
             {"record": ["torque", "torsion"]},
             r"^record = .*'torsion'.* must list outputs of a drive: comm",
         ),
+        ({"load.inertia": [0.5]}, {"record": 3}, r"^record = 3 must list outputs of a drive: command, input_angle, "),
+        (
+            {"load.inertia": [0.5]},
+            {"record": [["torque"]]},
+            r"^record = \[\['torque'\]\] must list outputs of a drive: comm",
+        ),
         ({"load.inertia": [0.5]}, {"record": []}, r"^record = \[\] must list outputs of a drive: command, "),
         ({"load.inertia": [0.5]}, {"threads": 0}, r"^threads = 0 must be 1 or more$"),
         ({"load.inertia": [0.5]}, {"dt": -1.0}, r"^dt = -1\.0 s must lie in \(0, inf\)$"),
@@ -238,6 +245,25 @@ def test_what_makes_no_sense_is_refused(parameters: dict[str, Any], others: dict
         with pytest.raises(ValueError, match=words):
             run()
     assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        (["load.inertia"], r"^parameters must map paths to values, as in .*, not \['load\.inertia'\]$"),
+        (None, r"^parameters must map paths to values, as in .*, not None$"),
+        ({"load.inertia": ["0.5", "0.6"]}, r"^load\.inertia must hold numbers, not <U3$"),
+        ({"load.inertia": [0.5, None]}, r"^load\.inertia must hold numbers, not object$"),
+    ],
+)
+def test_what_holds_no_numbers_is_refused(parameters: Any, words: str) -> None:
+    with pytest.raises(TypeError, match=words):
+        sw.simulate_many(DRIVE, command(0.01), parameters)
+
+
+def test_outputs_may_be_listed_by_anything_that_goes_through_them() -> None:
+    runs = sw.simulate_many(DRIVE, command(0.01), {"load.inertia": [0.5]}, record=(name for name in ("torque", "twist")))  # type: ignore[arg-type]
+    assert list(runs.columns) == ["torque", "twist"]
 
 
 # Members that fail
@@ -274,6 +300,10 @@ def test_a_member_that_fails_is_told_and_disturbs_no_other(
         assert np.isnan(runs[name][wrong]).all(), name
     with pytest.raises(ValueError, match=rf"^member 9 has no result: {reason}"):
         runs.member(9)
+    with pytest.raises(ValueError, match=r"^member 19 is not among the 19 members, which count from 0$"):
+        runs.member(19)
+    with pytest.raises(TypeError, match=r"^member must be a whole number, not 9\.0$"):
+        runs.member(9.0)  # type: ignore[arg-type]
     with pytest.warns(EnsembleWarning, match=r"^3 of 19 members have no result; the first is member 3: "):
         sw.simulate_to(tmp_path / "runs", *arguments)
     assert same_bits(sw.Ensemble.read(tmp_path / "runs"), runs)

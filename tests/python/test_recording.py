@@ -170,7 +170,7 @@ def test_pickling_keeps_everything(recording: Recording) -> None:
         (
             {"a": np.ma.masked_array([1.0, 2.0], [False, True])},
             {"a": "1"},
-            'column "a" has masked values; every sample must be a number',
+            'column "a" has masked values; every one must be a number',
         ),
         ({"a": [1.0]}, {}, 'column "a" has no unit; pass units={"a": "N.m"}, or "1" for a plain number'),
         ({"a": [1.0]}, {"a": "1", "b": "s"}, 'units names "b", which is not a column; there are a'),

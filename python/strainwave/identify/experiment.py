@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, loads, scenario
+from strainwave import _core, arguments, loads, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.recording import Recording
@@ -231,7 +231,7 @@ class DriveLog:
             command - command[0] if drive.control.command_unit == "rad" else command.copy(),
             chosen,
             np.stack([recording.values(name, known[name]) for name in chosen]),
-            min(2e-4, interval) if dt is None else dt,
+            min(2e-4, interval) if dt is None else arguments.seconds("dt", dt),
         )
 
     @property

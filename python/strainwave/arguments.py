@@ -1,0 +1,73 @@
+"""Arguments of functions: each is what it must be, or is refused in one line that names it, its value and what is allowed."""
+
+from __future__ import annotations
+
+from math import inf
+from numbers import Integral, Real
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import _core
+from strainwave.drives import PositionDrive
+
+
+def number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
+    """A number in the interval from `low` to `high`, whose ends belong to it where the bracket is square.
+
+    >>> number("dt", 1, "s", low=0.0)
+    1.0
+    >>> number("dt", -1.0, "s", low=0.0)
+    Traceback (most recent call last):
+    ValueError: dt = -1.0 s must lie in (0, inf)
+    """
+    if not isinstance(value, Real) or isinstance(value, bool):
+        raise TypeError(f"{name} must be a number, not {value!r}")
+    given = float(value)
+    above = low <= given if brackets[0] == "[" else low < given
+    below = given <= high if brackets[1] == "]" else given < high
+    if not (above and below):
+        allowed = "be finite" if (low, high) == (-inf, inf) else f"lie in {brackets[0]}{low:g}, {high:g}{brackets[1]}"
+        raise ValueError(f"{f'{name} = {value} {unit}'.rstrip()} must {allowed}")
+    return given
+
+
+def seconds(name: str, value: object) -> float:
+    """A time that is positive [s]."""
+    return number(name, value, "s", low=0.0)
+
+
+def whole(name: str, value: object, low: int) -> int:
+    """A whole number that is `low` or more."""
+    if not isinstance(value, Integral) or isinstance(value, bool):
+        raise TypeError(f"{name} must be a whole number, not {value!r}")
+    if value < low:
+        raise ValueError(f"{name} = {value} must be {low} or more")
+    return int(value)
+
+
+def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Numbers of any shape, finite or not; text, dates and masked values are none."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise ValueError(f"{name} must be one series of numbers") from None
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must hold numbers, not {array.dtype}")
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name} has masked values; every one must be a number")
+    return array.astype(np.float64, copy=False)
+
+
+def drive(value: object) -> PositionDrive:
+    """A drive to run or to look at."""
+    if not isinstance(value, PositionDrive):
+        raise TypeError(f"drive = {value!r} must be a drive, as sw.drives.PositionDrive(...) makes one")
+    return value
+
+
+def state(name: str, value: object) -> _core.State:
+    """A state of a drive."""
+    if not isinstance(value, _core.State):
+        raise TypeError(f"{name} = {value!r} must be a state of a drive, as `end` of a run or sw.equilibrium(...) is one")
+    return value

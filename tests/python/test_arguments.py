@@ -1,0 +1,154 @@
+"""Arguments of functions: what is taken, what is refused, and in which words, by whatever function they go to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave import arguments
+
+DRIVE = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+COMMAND = sw.scenario.step(0.1, 0.01)
+MEMBERS = {"load.inertia": [0.01, 0.02]}
+
+
+def exactly(message: str) -> str:
+    return f"^{re.escape(message)}$"
+
+
+@pytest.mark.parametrize("value", [1, 1.0, np.float32(1.0), np.int64(1), Fraction(1)])
+def test_a_number_of_any_kind_is_taken_as_a_float(value: Any) -> None:
+    given = arguments.number("dt", value, "s", low=0.0)
+    assert type(given) is float
+    assert given == 1.0
+
+
+@pytest.mark.parametrize("value", ["1", "1 ms", None, True, np.True_, 1j, [1.0], np.array(1.0), np.array([1.0])])
+def test_what_is_no_number_is_refused(value: Any) -> None:
+    with pytest.raises(TypeError, match=exactly(f"dt must be a number, not {value!r}")):
+        arguments.number("dt", value, "s")
+
+
+@pytest.mark.parametrize(
+    ("brackets", "low", "high", "wrong", "interval"),
+    [
+        ("()", 0.0, 2.0, (0.0, 2.0, -1.0, np.nan), "lie in (0, 2)"),
+        ("[)", 0.0, 2.0, (2.0, -1e-9, np.nan), "lie in [0, 2)"),
+        ("(]", 0.0, 2.0, (0.0, 2.1, np.nan), "lie in (0, 2]"),
+        ("[]", 0.0, 2.0, (-0.1, 2.1, np.nan), "lie in [0, 2]"),
+        ("()", -np.inf, np.inf, (np.inf, -np.inf, np.nan), "be finite"),
+    ],
+)
+def test_a_number_outside_its_interval_is_refused(
+    brackets: str, low: float, high: float, wrong: tuple[float, ...], interval: str
+) -> None:
+    for value in wrong:
+        with pytest.raises(ValueError, match=exactly(f"twist = {value} rad must {interval}")):
+            arguments.number("twist", value, "rad", brackets, low, high)
+    inside = {"(": [], "[": [low]}[brackets[0]] + {")": [], "]": [high]}[brackets[1]] + [1.0]
+    assert [arguments.number("twist", value, "rad", brackets, low, high) for value in inside] == inside
+
+
+def test_a_whole_number_is_no_other() -> None:
+    assert arguments.whole("threads", np.int64(2), 1) == 2
+    for value in (1.5, 2.0, "2", True, None):
+        with pytest.raises(TypeError, match=exactly(f"threads must be a whole number, not {value!r}")):
+            arguments.whole("threads", value, 1)
+    with pytest.raises(ValueError, match=exactly("threads = 0 must be 1 or more")):
+        arguments.whole("threads", 0, 1)
+
+
+class Column:
+    """As a table of another library hands out its columns."""
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray[Any, Any]:
+        return np.array([1, 2])
+
+
+@pytest.mark.parametrize("values", [[1, 2], (1.0, 2.0), range(1, 3), np.float32([1.0, 2.0]), Column()])
+def test_numbers_of_any_kind_are_taken_as_floats(values: Any) -> None:
+    given = arguments.numbers("inertia", values)
+    assert given.dtype == np.float64
+    assert given.tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("values", "error", "message"),
+    [
+        (["1", "2"], TypeError, "inertia must hold numbers, not <U1"),
+        ("5 Hz", TypeError, "inertia must hold numbers, not <U4"),
+        ([True], TypeError, "inertia must hold numbers, not bool"),
+        ([1.0, None], TypeError, "inertia must hold numbers, not object"),
+        ({1.0}, TypeError, "inertia must hold numbers, not object"),
+        (np.array(["2020-01-01"], "datetime64[D]"), TypeError, "inertia must hold numbers, not datetime64[D]"),
+        ([1j], TypeError, "inertia must hold numbers, not complex128"),
+        ([[1.0], [1.0, 2.0]], ValueError, "inertia must be one series of numbers"),
+        (np.ma.masked_array([1.0, 2.0], [False, True]), ValueError, "inertia has masked values; every one must be a number"),
+    ],
+)
+def test_what_holds_no_numbers_is_refused(values: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=exactly(message)):
+        arguments.numbers("inertia", values)
+
+
+def functions(**given: Any) -> list[Callable[[], object]]:
+    """Calls of every function that takes an argument of this name."""
+    (name,) = given
+    takes: dict[Callable[..., object], tuple[tuple[Any, ...], set[str]]] = {
+        sw.simulate: ((DRIVE, COMMAND), {"dt", "sample", "start"}),
+        sw.simulate_adaptively: ((DRIVE, COMMAND), {"rtol", "atol", "sample", "start"}),
+        sw.simulate_many: ((DRIVE, COMMAND, MEMBERS), {"dt", "sample", "threads"}),
+        sw.frequency_response: (
+            (DRIVE, 20.0) + (() if name == "amplitude" else (0.01,)),
+            {"amplitude", "command", "load_torque", "temperature", "dt", "tolerance", "most_periods", "start"},
+        ),
+        sw.equilibrium: ((DRIVE,), {"command", "load_torque", "temperature", "start"}),
+        sw.linearise: ((DRIVE,), {"state", "command", "command_rate", "load_torque", "temperature"}),
+    }
+    return [lambda f=f, a=a: f(*a, **given) for f, (a, names) in takes.items() if name in names]
+
+
+NUMBERS = ("dt", "sample", "rtol", "atol", "amplitude", "tolerance", "command", "command_rate", "load_torque", "temperature")
+
+
+@pytest.mark.parametrize("value", ["0.1", "1 ms", [1e-3], np.array([1e-3]), 1e-3 + 0j], ids=repr)
+@pytest.mark.parametrize("name", NUMBERS)
+def test_every_function_wants_numbers_where_it_takes_one(name: str, value: Any) -> None:
+    for call in functions(**{name: value}):
+        with pytest.raises(TypeError, match=exactly(f"{name} must be a number, not {value!r}")):
+            call()
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_every_function_wants_numbers_that_are_some(name: str) -> None:
+    for call in functions(**{name: float("nan")}):
+        with pytest.raises(ValueError, match=rf"^{name} = nan( s)? must (be finite|lie in .*)$"):
+            call()
+
+
+@pytest.mark.parametrize(("name", "low"), [("threads", 1), ("most_periods", 2)])
+def test_every_function_wants_whole_numbers_where_it_counts(name: str, low: int) -> None:
+    for call in functions(**{name: 3.5}):
+        with pytest.raises(TypeError, match=exactly(f"{name} must be a whole number, not 3.5")):
+            call()
+    for call in functions(**{name: low - 1}):
+        with pytest.raises(ValueError, match=exactly(f"{name} = {low - 1} must be {low} or more")):
+            call()
+
+
+@pytest.mark.parametrize("name", ["start", "state"])
+def test_every_function_wants_a_state_where_it_starts_from_one(name: str) -> None:
+    for call in functions(**{name: "rest"}):
+        with pytest.raises(TypeError, match=f"^{name} = 'rest' must be a state of a drive, as "):
+            call()
+
+
+def test_steps_that_no_clock_could_tell_apart_are_refused() -> None:
+    for call in (*functions(dt=1e-300), *functions(sample=1e-300)):
+        with pytest.raises(ValueError, match=r"^steps of 1e-300 s cannot be told apart within [\d.]+ s$"):
+            call()
