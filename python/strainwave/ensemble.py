@@ -23,6 +23,7 @@ from strainwave.simulation import (
     ROOM_TEMPERATURE,
     Course,
     Excitation,
+    left_finite,
     output_units,
     progressing,
     remedy,
@@ -181,7 +182,7 @@ class _Plan:
         finite = np.isfinite(outputs).all(axis=(0, 2)) & np.isfinite(twists)
         for member in np.flatnonzero(~finite | (self.dt * vibrations > COARSEST)).tolist():
             if member not in found and not finite[member]:
-                found[member] = f"the simulation left the finite numbers; {remedy(self.dt)}"
+                found[member] = left_finite(self.time, self.recorded, outputs[:, member], remedy(self.dt))
             elif member not in found:
                 found[member] = too_coarse(self.dt, float(twists[member]), float(vibrations[member]))
         return dict(sorted(found.items()))

@@ -389,13 +389,17 @@ def _columns(time: Array, outputs: Array) -> dict[str, Array]:
 
 
 def _check_finite(time: Array, outputs: Array, what_to_do: str) -> None:
-    finite = np.isfinite(outputs).all(axis=0)
-    if not finite.all():
-        where = int(np.argmin(finite))
-        names = [name for (name, _, _), ok in zip(_core.outputs, np.isfinite(outputs[:, where]), strict=True) if not ok]
-        raise FloatingPointError(
-            f"the simulation left the finite numbers at t = {time[where]:.6g} s ({', '.join(names)}); {what_to_do}"
-        )
+    if not np.isfinite(outputs).all():
+        raise FloatingPointError(left_finite(time, [name for name, _, _ in _core.outputs], outputs, what_to_do))
+
+
+def left_finite(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
+    """Says when outputs, shape (names, samples), first are not finite, and which; not when, where something else is not."""
+    finite = np.isfinite(outputs)
+    where = int(np.argmin(finite.all(axis=0)))
+    wrong = [name for name, is_finite in zip(names, finite[:, where], strict=True) if not is_finite]
+    place = f" at t = {time[where]:.6g} s ({', '.join(wrong)})" if wrong else ""
+    return f"the simulation left the finite numbers{place}; {what_to_do}"
 
 
 def _check_resolution(drive: PositionDrive, dt: float, outputs: Array) -> None:

@@ -277,7 +277,7 @@ RISE = command(0.1)
 FAILING = {  # drive, path, a value that works, one that does not, how its reason begins
     "beyond its domain": (OUT_OF_DOMAIN, "gear.friction_input.domain_end", 50.0, 3.0, "gear.friction_input: angle = 3"),
     "too coarse a step": (DRIVE, "gear.stiffness.a1", 1.2e4, 2e6, "dt = 0.0005 s is too coarse for this drive: "),
-    "not a number": (DRIVE, "gear.stiffness.a1", 1.2e4, 1e15, "the simulation left the finite numbers; take a smaller dt"),
+    "not a number": (DRIVE, "gear.stiffness.a1", 1.2e4, 1e15, "the simulation left the finite numbers at t = "),
 }
 failing = pytest.mark.parametrize(("drive", "path", "good", "bad", "reason"), FAILING.values(), ids=FAILING)
 
@@ -309,14 +309,23 @@ def test_a_member_that_fails_is_told_and_disturbs_no_other(
     assert same_bits(sw.Ensemble.read(tmp_path / "runs"), runs)
 
 
-@pytest.mark.parametrize("kind", ["beyond its domain", "too coarse a step"])
+@pytest.mark.parametrize("kind", FAILING)
 def test_the_reason_is_that_of_the_member_alone(kind: str) -> None:
     drive, path, good, bad, _ = FAILING[kind]
     with pytest.warns(EnsembleWarning):
-        reason = sw.simulate_many(drive, RISE, {path: [good, bad]}, 5e-4).failures[1]
+        reason = sw.simulate_many(drive, RISE, {path: [good, bad]}, 5e-4, record=OUTPUTS).failures[1]
     with pytest.raises((ValueError, FloatingPointError)) as alone:
         sw.simulate(with_parameters(drive, {path: bad}), RISE, 5e-4)
     assert str(alone.value) == reason
+
+
+def test_a_member_whose_twist_alone_is_no_number_is_told_too() -> None:
+    drive, path, good, bad, _ = FAILING["not a number"]
+    with pytest.warns(EnsembleWarning):
+        runs = sw.simulate_many(drive, RISE, {path: [good, bad]}, 5e-4, record=["command"])
+    assert runs.failures == {
+        1: "the simulation left the finite numbers; take a smaller dt (now 0.0005 s) or check the parameters"
+    }
 
 
 # Progress and interruption
