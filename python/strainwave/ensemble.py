@@ -28,6 +28,7 @@ from strainwave.simulation import (
     progressing,
     remedy,
     too_coarse,
+    too_stiff,
 )
 
 if TYPE_CHECKING:
@@ -397,14 +398,8 @@ def _write_table(path: Path, table: pyarrow.Table, floats: list[str]) -> None:
 def _tell_of_bristles(dt: float, vibrations: Array) -> None:
     stiff = np.flatnonzero(dt * vibrations > FASTEST_ON_BRISTLES)
     if stiff.size:
-        fastest = float(vibrations.max())
-        warnings.warn(
-            f"{stiff.size} members have bristles on which a shaft vibrates faster than steps of {dt:g} s can follow, at "
-            f"{fastest:.3g} rad/s; where it comes to rest their results may be wrong: take "
-            f"dt = {FASTEST_ON_BRISTLES / fastest:.2g} s or less",
-            EnsembleWarning,
-            stacklevel=4,
-        )
+        told = f"{stiff.size} members have {too_stiff(dt, float(vibrations.max()))}"
+        warnings.warn(told, EnsembleWarning, stacklevel=4)
 
 
 def _tell(failures: Mapping[int, str], members: int) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.scenario import Scenario, constant, sine
-from strainwave.simulation import ROOM_TEMPERATURE, Excitation, recording
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, recording, warn_of_bristles
 from strainwave.steady import averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
@@ -96,6 +96,9 @@ def frequency_response(
         FloatingPointError: as `simulate`
         RuntimeError: a motion is not periodic after `most_periods`; says how far it is from that
 
+    Warns:
+        RuntimeWarning: the drive's bristles are too stiff for `dt`
+
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> drive = sw.drives.PositionDrive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
@@ -117,20 +120,25 @@ def frequency_response(
     arguments.state("start", start)
     if start.motion.input_speed != 0.0:
         drive = averaged(drive)
+    warn_of_bristles(drive, max(_step(1.0 / f, dt) for f in frequencies.tolist()))
     sines = _Sines(drive, start, temperature, dt)
     found = []
     for f in frequencies.tolist():
         levels = {"command": constant(command, 1.0 / f), "load_torque": constant(load_torque, 1.0 / f)}
         levels[input] = levels[input] + sine(amplitude, f, 1.0 / f)
         found.append(sines.periodic(levels, tolerance, most_periods))
-    periods = np.array([count for _, count in found])
+    return _response(frequencies, amplitude, [period for period, _ in found], [count for _, count in found])
+
+
+def _response(frequencies: Array, amplitude: float, found: list[dict[str, Array]], counts: list[int]) -> FrequencyResponse:
+    """From the outputs over one period of each frequency, and its number."""
     responses, distortions, drifts = {}, {}, {}
-    for name in found[0][0]:
-        first, higher = np.array([_harmonics(period[name]) for period, _ in found]).T
+    for name in found[0]:
+        first, higher = np.array([_harmonics(period[name]) for period in found]).T
         responses[name] = first / amplitude
         distortions[name] = higher.real / np.maximum(np.abs(first), np.finfo(float).tiny)
-        drifts[name] = np.array([period[name][-1] - period[name][0] for period, _ in found])
-    return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, periods)
+        drifts[name] = np.array([period[name][-1] - period[name][0] for period in found])
+    return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, np.array(counts))
 
 
 def _check(frequencies: Array, signal: str) -> None:
@@ -169,7 +177,7 @@ class _Sines:
     def _periods(self, excitation: Excitation) -> Iterator[dict[str, Array]]:
         """The outputs over each period, both ends included."""
         period = excitation.command.duration
-        step = period / max(ceil(period / self.dt), _FEWEST)
+        step = _step(period, self.dt)
         course = excitation.course(step, None)
         inputs, state = excitation.over(course), self.start
         while True:
@@ -177,6 +185,11 @@ class _Sines:
             outputs, state = _core.simulate(self.drive, state, course.instants, inputs, course.samples[1:], 0)
             run = recording(self.drive, course, np.concatenate((first, outputs), axis=1), step)
             yield {name: run[name] for name in run.names if name != "time"}
+
+
+def _step(period: float, dt: float) -> float:
+    """The longest step that divides a period and keeps to `dt` [s]."""
+    return period / max(ceil(period / dt), _FEWEST)
 
 
 def _change(values: Array, before: Array) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -424,6 +425,21 @@ def too_coarse(dt: float, twist: float, vibration: float) -> str:
         f"dt = {dt:g} s is too coarse for this drive: its gear vibrates at {vibration:.4g} rad/s at a twist of "
         f"{twist:.3g} rad; take dt = {COARSEST / vibration:.2g} s or less"
     )
+
+
+def too_stiff(dt: float, vibration: float) -> str:
+    """Says of bristles on which a shaft vibrates [rad/s] that fixed steps of `dt` [s] are in doubt."""
+    return (
+        f"bristles on which a shaft vibrates faster than steps of {dt:g} s can follow, at {vibration:.3g} rad/s; where it "
+        f"comes to rest results may be wrong: take dt = {FASTEST_ON_BRISTLES / vibration:.2g} s or less"
+    )
+
+
+def warn_of_bristles(drive: PositionDrive, dt: float) -> None:
+    """Warns the caller of a function of this package that takes steps of `dt` [s], if the drive's bristles are too stiff."""
+    vibration = _core.bristle_vibration(drive)
+    if dt * vibration > FASTEST_ON_BRISTLES:
+        warnings.warn(f"the drive has {too_stiff(dt, vibration)}", RuntimeWarning, stacklevel=3)
 
 
 def remedy(dt: float) -> str:

@@ -121,9 +121,13 @@ def test_bristles_of_any_stiffness_are_followed_as_chosen(stiffer: float) -> Non
     assert difference(sw.simulate(drive, to_and_fro, 2e-4, sample=1e-3), exact) < 1e-3
 
 
-def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
+def on_stiff_bristles() -> sw.drives.PositionDrive:
     law = DRIVE.gear.friction_input
-    stiff = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=1e5)))
+    return DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=1e5)))
+
+
+def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
+    stiff = on_stiff_bristles()
     assert _core.bristle_vibration(stiff) == pytest.approx(np.sqrt(1e5 / 1e-4), rel=1e-4)
     assert _core.bristle_vibration(STICKING) == 0.0
     assert sw.simulate(stiff, command(0.01)).method.startswith("exponential Runge-Kutta, adaptive, rtol 1e-06")
@@ -136,6 +140,26 @@ def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
         sw.simulate_many(stiff, command(0.01), {"load.inertia": [0.5]})
     with pytest.raises(ValueError, match=r'^method = "euler" is not known; there are exponential, moreau_jean, rosenbrock$'):
         sw.simulate(DRIVE, command(0.01), method="euler")  # type: ignore[arg-type]
+
+
+TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than steps of .* take dt = 6\.3e-05 s or less$"
+
+
+def test_a_response_in_steps_too_long_for_the_bristles_is_warned_of() -> None:
+    stiff, loose = on_stiff_bristles(), {"tolerance": 1e9, "most_periods": 2}  # whatever comes of it
+    with pytest.warns(RuntimeWarning, match=TOO_STIFF) as told:
+        sw.frequency_response(stiff, [500.0, 50.0], 1e-3, **loose)
+    assert [warning.filename for warning in told] == [__file__]
+    sw.frequency_response(stiff, 500.0, 1e-3, **loose)  # of which 64 steps are short enough
+
+
+def test_a_fit_in_steps_too_long_for_the_bristles_is_warned_of() -> None:
+    stiff = on_stiff_bristles()
+    log = sw.simulate(stiff, command(0.02)).select(["time", "command", "input_angle", "torque"])
+    with pytest.warns(RuntimeWarning, match=TOO_STIFF) as told:
+        sw.fit(stiff, log, ["gear.damping"])
+    assert [warning.filename for warning in told] == [__file__]
+    sw.fit(stiff, log, ["gear.damping"], dt=5e-5)
 
 
 # Tolerances

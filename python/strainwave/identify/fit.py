@@ -15,6 +15,7 @@ from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
 from strainwave.recording import Recording
+from strainwave.simulation import warn_of_bristles
 
 Array = NDArray[np.float64]
 DEGENERATE = 1e-10  # singular values below this share of the largest carry no information
@@ -136,6 +137,9 @@ def fit(
         ValueError: an unknown path, too few samples, a recording without the columns needed, a model that is not valid over
             the measurement from the start
 
+    Warns:
+        RuntimeWarning: the bristles of the drive found are too stiff for `dt`
+
     >>> import numpy as np, strainwave as sw
     >>> truth = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
     >>> speed = np.linspace(1.0, 50.0, 20)
@@ -156,7 +160,10 @@ def fit(
         residual = (experiment.measured - problem.predict(found)[0])[:, problem.training]
         weights = 1.0 / np.maximum(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)), 1e-12 * _scale(experiment.measured))
         start = found
-    return problem.fit(found, weights)
+    result = problem.fit(found, weights)
+    if isinstance(experiment, DriveLog):
+        warn_of_bristles(result.model, experiment.dt)
+    return result
 
 
 def experiment_of(
