@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from math import inf
 from numbers import Integral, Real
+from reprlib import repr as shortened
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,12 +24,13 @@ def number(name: str, value: object, unit: str = "", brackets: str = "()", low: 
     ValueError: dt = -1.0 s must lie in (0, inf)
     """
     if not isinstance(value, Real) or isinstance(value, bool):
-        raise TypeError(f"{name} must be a number, not {value!r}")
+        raise TypeError(f"{name} must be a number, not {shortened(value)}")
     given = float(value)
     above = low <= given if brackets[0] == "[" else low < given
     below = given <= high if brackets[1] == "]" else given < high
     if not (above and below):
-        allowed = "be finite" if (low, high) == (-inf, inf) else f"lie in {brackets[0]}{low:g}, {high:g}{brackets[1]}"
+        interval = f"{brackets[0]}{low:g}, {high:g}{brackets[1]}"
+        allowed = "be finite" if interval == "(-inf, inf)" else f"lie in {interval}"
         raise ValueError(f"{f'{name} = {value} {unit}'.rstrip()} must {allowed}")
     return given
 
@@ -40,7 +43,7 @@ def seconds(name: str, value: object) -> float:
 def whole(name: str, value: object, low: int) -> int:
     """A whole number that is `low` or more."""
     if not isinstance(value, Integral) or isinstance(value, bool):
-        raise TypeError(f"{name} must be a whole number, not {value!r}")
+        raise TypeError(f"{name} must be a whole number, not {shortened(value)}")
     if value < low:
         raise ValueError(f"{name} = {value} must be {low} or more")
     return int(value)
@@ -59,15 +62,31 @@ def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
     return array.astype(np.float64, copy=False)
 
 
+def names(name: str, values: object) -> list[str]:
+    """Names, by whatever goes through them; one alone is no list of them."""
+    listed = list(values) if isinstance(values, Iterable) and not isinstance(values, str) else None
+    if listed is None or not all(isinstance(each, str) for each in listed):
+        raise TypeError(f"{name} must be a list of names, not {shortened(values)}")
+    return listed
+
+
+def mapping(name: str, value: object, example: str) -> None:
+    """Refuses what does not map names to something, as the example does."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name} must be a mapping, as in {example}, not {shortened(value)}")
+
+
 def drive(value: object) -> PositionDrive:
     """A drive to run or to look at."""
     if not isinstance(value, PositionDrive):
-        raise TypeError(f"drive = {value!r} must be a drive, as sw.drives.PositionDrive(...) makes one")
+        raise TypeError(f"drive = {shortened(value)} must be a drive, as sw.drives.PositionDrive(...) makes one")
     return value
 
 
 def state(name: str, value: object) -> _core.State:
     """A state of a drive."""
     if not isinstance(value, _core.State):
-        raise TypeError(f"{name} = {value!r} must be a state of a drive, as `end` of a run or sw.equilibrium(...) is one")
+        raise TypeError(
+            f"{name} = {shortened(value)} must be a state of a drive, as `end` of a run or sw.equilibrium(...) is one"
+        )
     return value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -312,8 +312,7 @@ def available_threads() -> int:
 def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
     """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
     known = {path: (number, unit, low, high) for number, (path, _, unit, _, low, high) in enumerate(_core.parameters(drive))}
-    if not isinstance(parameters, Mapping):
-        raise TypeError(f"parameters must map paths to values, as in {{'load.inertia': [0.01, 0.02]}}, not {parameters!r}")
+    arguments.mapping("parameters", parameters, '{"load.inertia": [0.01, 0.02]}')
     if not parameters:
         raise ValueError("parameters must name at least one number that the members differ in")
     values: dict[str, Array] = {}
@@ -336,9 +335,9 @@ def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple
 
 def _outputs(record: Sequence[str]) -> list[str]:
     """The outputs to record, in order."""
-    names = list(record) if isinstance(record, Iterable) and not isinstance(record, str) else []
-    if not names or any(name not in OUTPUTS for name in names):
-        raise ValueError(f"record = {record!r} must list outputs of a drive: {', '.join(OUTPUTS)}")
+    names = arguments.names("record", record)
+    if not names or not set(names) <= set(OUTPUTS):
+        raise ValueError(f"record = {names!r} must list outputs of a drive: {', '.join(OUTPUTS)}")
     return names
 
 

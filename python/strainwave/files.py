@@ -21,6 +21,10 @@ def replacing(path: str | Path) -> Iterator[Path]:
     'done'
     """
     target = Path(path)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"{target} cannot be written: there is no folder {target.parent}")
+    if target.is_dir():
+        raise IsADirectoryError(f"{target} cannot be written: it is a folder")
     temporary = target.with_name(f".{target.name}.{uuid4().hex}")
     try:
         yield temporary

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -15,6 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar, overload
 
+from strainwave import arguments
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.units import check as check_unit
@@ -46,9 +46,8 @@ class Entry:
     def __post_init__(self) -> None:
         _check_line("source", self.source)
         for name in ("spread", "uncertainty"):
-            number = getattr(self, name)
-            if number is not None and not 0.0 <= number < math.inf:
-                raise ValueError(f"{name} = {number} must lie in [0, inf)")
+            if (number := getattr(self, name)) is not None:
+                arguments.number(name, number, brackets="[)", low=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,8 +72,7 @@ class Quantity(Entry):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_unit(self.unit)
-        if not math.isfinite(self.value):
-            raise ValueError(f"value = {self.value} {self.unit} must be finite")
+        arguments.number("value", self.value, self.unit)
 
     def to(self, unit: str) -> Quantity:
         """The same in another unit; `ValueError` where the units do not agree."""
@@ -101,8 +99,8 @@ class GearSet:
         motor, control, load: the rest of a drive, models of `sw.motor`, `sw.control` and `sw.loads`; None if not known
 
     Raises:
-        ValueError: a number has no source, a source has no number, or the name is no line of text
-        TypeError: a model is of the wrong family, or a source or rating not of its type
+        ValueError: a number has no source, a source has no number, or name or maker is no line of text
+        TypeError: a text is none, a model is of the wrong family, or a source or rating not of its type
 
     >>> gear_set = GearSet.read("csg-20-100")
     >>> gear_set.gear.stiffness.k1, gear_set.sources["gear.stiffness.k1"].spread
@@ -122,8 +120,10 @@ class GearSet:
     load: Any = None
 
     def __post_init__(self) -> None:
-        _check_line("name", self.name)
+        _check_texts(self.name, self.maker, self.note)
         _drive(vars(self))  # refuses what is no model of its family
+        arguments.mapping("sources", self.sources, '{"gear.damping": Entry("assumed")}')
+        arguments.mapping("ratings", self.ratings, '{"peak_torque": Quantity(…)}')
         paths = list(_paths(vars(self)))
         if bare := [path for path in paths if path not in self.sources]:
             raise ValueError(f"{self.name}: {bare[0]} has no source")
@@ -334,6 +334,14 @@ def _drive(models: Mapping[str, Any]) -> PositionDrive:
     return PositionDrive(gear=models["gear"], **rest)
 
 
+def _check_texts(name: str, maker: str, note: str) -> None:
+    _check_line("name", name)
+    if maker != "":
+        _check_line("maker", maker)
+    if not isinstance(note, str):
+        raise TypeError(f"note must be a text, not {note!r}")
+
+
 def _check_line(name: str, text: str) -> None:
     if not isinstance(text, str):
         raise TypeError(f"{name} must be a text, not {text!r}")
@@ -343,6 +351,8 @@ def _check_line(name: str, text: str) -> None:
 
 def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]:
     for key, entry in entries.items():
+        if not isinstance(key, str):
+            raise TypeError(f"a number is named by a text, not {key!r}")
         if not isinstance(entry, kind):
             raise TypeError(f"{key} must have a strainwave.gear_set.{kind.__name__}, not {entry!r}")
     return MappingProxyType(dict(entries))

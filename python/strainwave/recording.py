@@ -55,6 +55,8 @@ class Recording:
 
     def __init__(self, columns: Mapping[str, ArrayLike], units: Mapping[str, str], title: str = "") -> None:
         _check_names(columns, units)
+        if not isinstance(title, str):
+            raise TypeError(f"title must be a text, not {title!r}")
         if title and not title.isprintable():
             raise ValueError(f"title {title!r} must be one line of text")
         frozen = {name: _frozen(name, values) for name, values in columns.items()}
@@ -116,10 +118,12 @@ class Recording:
 
     def select(self, names: Sequence[str]) -> Recording:
         """The named columns only, in the order given."""
+        names = arguments.names("names", names)
         return Recording({name: self[name] for name in names}, {name: self.unit(name) for name in names}, self.title)
 
     def between(self, start: float, stop: float) -> Recording:
         """The samples with start <= time <= stop [s]; `ValueError` where there is none."""
+        start, stop = (arguments.number(*end, "s", "[]") for end in (("start", start), ("stop", stop)))
         time = self.time
         first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
         if not first < last:
@@ -246,7 +250,8 @@ class Recording:
         from matplotlib.figure import Figure
 
         groups: dict[str, list[str]] = {}
-        for name in [name for name in self.names if name != against] if names is None else names:
+        drawn = [name for name in self.names if name != against] if names is None else arguments.names("names", names)
+        for name in drawn:
             groups.setdefault(self.unit(name), []).append(name)
         if not groups:
             raise ValueError(f'nothing to draw against "{against}"; there are {", ".join(self.names)}')
@@ -271,6 +276,8 @@ class _Fault(NamedTuple):
 
 
 def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> None:
+    arguments.mapping("columns", columns, '{"time": [0.0, 0.1]}')
+    arguments.mapping("units", units, '{"time": "s"}')
     if not columns:
         raise ValueError("a recording needs at least one column")
     for name in columns:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import arguments
 from strainwave.units import check as check_unit
 
 if TYPE_CHECKING:
@@ -118,6 +119,8 @@ def sources_of(
     path: str | Path, labels: Sequence[Label], columns: Mapping[str, str] | None, units: Mapping[str, str] | None
 ) -> list[Source]:
     """The columns to read, each found in the file and with its unit."""
+    arguments.mapping("columns", {} if columns is None else columns, '{"speed": "Motor Speed"}')
+    arguments.mapping("units", {} if units is None else units, '{"speed": "rpm"}')
     if columns is None:
         _check_labels(path, labels)
         chosen = {label.name: index for index, label in enumerate(labels)}

@@ -96,6 +96,29 @@ def test_what_holds_no_numbers_is_refused(values: Any, error: type[Exception], m
         arguments.numbers("inertia", values)
 
 
+def test_names_are_taken_from_whatever_goes_through_them() -> None:
+    for values in (["a", "b"], ("a", "b"), {"a": 1, "b": 2}, (name for name in "ab"), np.array(["a", "b"])):
+        assert arguments.names("record", values) == ["a", "b"]
+    assert arguments.names("record", []) == []
+    for wrong in ("torque", 3, None, [3], [["a"]]):
+        with pytest.raises(TypeError, match=exactly(f"record must be a list of names, not {wrong!r}")):
+            arguments.names("record", wrong)
+
+
+def test_a_mapping_is_no_list() -> None:
+    arguments.mapping("units", {}, '{"time": "s"}')
+    for wrong in (["s"], "s", 3, None):
+        with pytest.raises(TypeError, match=exactly(f'units must be a mapping, as in {{"time": "s"}}, not {wrong!r}')):
+            arguments.mapping("units", wrong, '{"time": "s"}')
+
+
+def test_what_is_shown_of_a_wrong_argument_is_short() -> None:
+    for refuse in (arguments.drive, lambda value: arguments.number("dt", value), lambda value: arguments.state("start", value)):
+        with pytest.raises(TypeError) as told:
+            refuse(1000 * "no drive ")
+        assert len(str(told.value)) < 150
+
+
 def functions(**given: Any) -> list[Callable[[], object]]:
     """Calls of every function that takes an argument of this name."""
     (name,) = given

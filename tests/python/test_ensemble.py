@@ -224,12 +224,6 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
             {"record": ["torque", "torsion"]},
             r"^record = .*'torsion'.* must list outputs of a drive: comm",
         ),
-        ({"load.inertia": [0.5]}, {"record": 3}, r"^record = 3 must list outputs of a drive: command, input_angle, "),
-        (
-            {"load.inertia": [0.5]},
-            {"record": [["torque"]]},
-            r"^record = \[\['torque'\]\] must list outputs of a drive: comm",
-        ),
         ({"load.inertia": [0.5]}, {"record": []}, r"^record = \[\] must list outputs of a drive: command, "),
         ({"load.inertia": [0.5]}, {"threads": 0}, r"^threads = 0 must be 1 or more$"),
         ({"load.inertia": [0.5]}, {"dt": -1.0}, r"^dt = -1\.0 s must lie in \(0, inf\)$"),
@@ -248,17 +242,19 @@ def test_what_makes_no_sense_is_refused(parameters: dict[str, Any], others: dict
 
 
 @pytest.mark.parametrize(
-    ("parameters", "words"),
+    ("parameters", "others", "words"),
     [
-        (["load.inertia"], r"^parameters must map paths to values, as in .*, not \['load\.inertia'\]$"),
-        (None, r"^parameters must map paths to values, as in .*, not None$"),
-        ({"load.inertia": ["0.5", "0.6"]}, r"^load\.inertia must hold numbers, not <U3$"),
-        ({"load.inertia": [0.5, None]}, r"^load\.inertia must hold numbers, not object$"),
+        (["load.inertia"], {}, r"^parameters must be a mapping, as in .*, not \['load\.inertia'\]$"),
+        (None, {}, r"^parameters must be a mapping, as in .*, not None$"),
+        ({"load.inertia": ["0.5", "0.6"]}, {}, r"^load\.inertia must hold numbers, not <U3$"),
+        ({"load.inertia": [0.5, None]}, {}, r"^load\.inertia must hold numbers, not object$"),
+        ({"load.inertia": [0.5]}, {"record": "torque"}, r"^record must be a list of names, not 'torque'$"),
+        ({"load.inertia": [0.5]}, {"record": [["torque"]]}, r"^record must be a list of names, not \[\['torque'\]\]$"),
     ],
 )
-def test_what_holds_no_numbers_is_refused(parameters: Any, words: str) -> None:
+def test_what_is_of_the_wrong_kind_is_refused(parameters: Any, others: dict[str, Any], words: str) -> None:
     with pytest.raises(TypeError, match=words):
-        sw.simulate_many(DRIVE, command(0.01), parameters)
+        sw.simulate_many(DRIVE, command(0.01), parameters, **others)
 
 
 def test_outputs_may_be_listed_by_anything_that_goes_through_them() -> None:

@@ -67,13 +67,28 @@ def test_a_set_is_frozen_hashable_and_survives_pickling_and_copying() -> None:
         (lambda: Entry("two\nlines"), ValueError, r"source = 'two\nlines' must be one line of text"),
         (lambda: Entry(3), TypeError, "source must be a text, not 3"),
         (lambda: Entry("x", spread=-1.0), ValueError, "spread = -1.0 must lie in [0, inf)"),
+        (lambda: Entry("x", spread="1"), TypeError, "spread must be a number, not '1'"),
         (lambda: Entry("x", uncertainty=math.nan), ValueError, "uncertainty = nan must lie in [0, inf)"),
         (lambda: Entry("x", uncertainty=math.inf), ValueError, "uncertainty = inf must lie in [0, inf)"),
         (lambda: Quantity(value=math.inf, unit="N.m", source="x"), ValueError, "value = inf N.m must be finite"),
+        (lambda: Quantity(value="1", unit="N.m", source="x"), TypeError, "value must be a number, not '1'"),
         (
             lambda: Quantity(value=1.0, unit="N.n", source="x"),
             ValueError,
             'unit "N.n" is not known; write it like N.m, rad/s, deg',
+        ),
+        (lambda: GearSet.read("hfuc-25-100").replace(maker=3), TypeError, "maker must be a text, not 3"),
+        (lambda: GearSet.read("hfuc-25-100").replace(maker="a\nb"), ValueError, r"maker = 'a\nb' must be one line of text"),
+        (lambda: GearSet.read("hfuc-25-100").replace(note=3), TypeError, "note must be a text, not 3"),
+        (
+            lambda: GearSet.read("hfuc-25-100").replace(sources=[]),
+            TypeError,
+            'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not []',
+        ),
+        (
+            lambda: GearSet.read("hfuc-25-100").replace(ratings={3: Quantity(value=4.0, unit="N.m", source="x")}),
+            TypeError,
+            "a number is named by a text, not 3",
         ),
         (lambda: GearSet.of(3, name="x", source="x"), TypeError, "position_drive.gear must be a Gear, not 3"),
         (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pickle
 import re
@@ -218,6 +219,38 @@ def test_what_is_no_number_is_refused(values: list[object], kind: str) -> None:
 def test_what_is_not_there_is_refused(ask: Callable[[], object], message: str) -> None:
     with pytest.raises(ValueError, match=exactly(message)):
         ask()
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: Recording([1.0], {}), 'columns must be a mapping, as in {"time": [0.0, 0.1]}, not [1.0]'),  # type: ignore[arg-type]
+        (lambda: Recording({"a": [1.0]}, "s"), """units must be a mapping, as in {"time": "s"}, not 's'"""),  # type: ignore[arg-type]
+        (lambda: Recording({"a": [1.0]}, {"a": "1"}, 3), "title must be a text, not 3"),  # type: ignore[arg-type]
+        (lambda: RUN.select("time"), "names must be a list of names, not 'time'"),
+        (lambda: RUN.plot("time"), "names must be a list of names, not 'time'"),
+        (lambda: RUN.between("0", "1"), "start must be a number, not '0'"),  # type: ignore[arg-type]
+        (lambda: RUN.between(0.0, None), "stop must be a number, not None"),  # type: ignore[arg-type]
+    ],
+)
+def test_what_is_of_the_wrong_kind_is_refused(ask: Callable[[], object], message: str) -> None:
+    with pytest.raises(TypeError, match=exactly(message)):
+        ask()
+
+
+def test_a_stretch_of_time_may_be_without_end_but_not_without_number() -> None:
+    assert RUN.between(-math.inf, math.inf) == RUN
+    with pytest.raises(ValueError, match=exactly("stop = nan s must lie in [-inf, inf]")):
+        RUN.between(0.0, math.nan)
+
+
+def test_a_file_that_cannot_be_written_is_told_by_its_own_name(tmp_path: Path) -> None:
+    with pytest.raises(
+        FileNotFoundError, match=f"^{re.escape(str(tmp_path))}/none/run.csv cannot be written: there is no folder"
+    ):
+        RUN.to_csv(tmp_path / "none" / "run.csv")
+    with pytest.raises(IsADirectoryError, match=exactly(f"{tmp_path} cannot be written: it is a folder")):
+        RUN.to_csv(tmp_path)
 
 
 # Files of our own

@@ -216,7 +216,8 @@ class DriveLog:
             if name not in recording:
                 raise ValueError(f'a drive log needs a column "{name}"; this one has {", ".join(recording.names)}')
         known = {name: unit for name, unit, _ in _core.outputs if name != "command"}
-        chosen = tuple(name for name in recording.names if name in known) if channels is None else tuple(channels)
+        wanted = [name for name in recording.names if name in known] if channels is None else channels
+        chosen = tuple(arguments.names("channels", wanted))
         for name in chosen:
             if name not in known or name not in recording:
                 raise ValueError(f'a drive log cannot be compared by "{name}"; it can by {", ".join(known)}')

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core
+from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
@@ -134,6 +134,7 @@ def fit(
         the fitted model with its uncertainty
 
     Raises:
+        TypeError: an argument is not of its kind
         ValueError: an unknown path, too few samples, a recording without the columns needed, a model that is not valid over
             the measurement from the start
 
@@ -150,6 +151,7 @@ def fit(
     >>> round(found.gear.friction_input.coulomb, 9), round(found.gear.friction_input.viscous, 9)
     (0.02, 0.0003)
     """
+    _check_kinds(model, recording, loss)
     experiment = experiment_of(model, recording, channels, dt) if isinstance(recording, Recording) else recording
     problem = _Problem(model, experiment, _numbers(model, free), training)
     start = problem.start()
@@ -164,6 +166,15 @@ def fit(
     if isinstance(experiment, DriveLog):
         warn_of_bristles(result.model, experiment.dt)
     return result
+
+
+def _check_kinds(model: object, recording: object, loss: object) -> None:
+    if not isinstance(model, Gear | PositionDrive):
+        raise TypeError(f"model must be a Gear or a drive, not {model!r}")
+    if not isinstance(recording, Recording) and not hasattr(recording, "predict"):
+        raise TypeError(f"recording must be a Recording, or an experiment made of one, not {recording!r}")
+    if loss not in ("linear", "soft_l1"):
+        raise ValueError(f"loss = {loss!r} must be linear or soft_l1")
 
 
 def experiment_of(
@@ -199,7 +210,7 @@ class _Place:
 
 
 def _numbers(model: Gear | PositionDrive, free: Sequence[str]) -> list[_Place]:
-    parameters = _core.parameters(model)
+    free, parameters = arguments.names("free", free), _core.parameters(model)
     places = [
         _Place(number, path, unit, value, low, high)
         for number, (path, value, unit, _, low, high) in enumerate(parameters)
@@ -234,10 +245,14 @@ class _Problem:
     ) -> None:
         self.model, self.experiment, self.places = model, experiment, places
         n = experiment.measured.shape[1]
-        self.training = np.ones(n, bool) if training is None else np.asarray(training, bool)
+        self.training = np.ones(n, bool) if training is None else np.asarray(training)
+        if self.training.dtype != bool:
+            raise TypeError(f"training must hold True or False for each sample, not {self.training.dtype}")
         if self.training.shape != (n,):
             raise ValueError(f"training has shape {self.training.shape}, the measurement has {n} samples")
         unknowns = len(places) + len(experiment.nuisances)
+        if unknowns == 0:
+            raise ValueError("free must name at least one parameter: nothing else of this measurement is unknown")
         if self.training.sum() * len(experiment.channels) <= unknowns:
             raise ValueError(f"{self.training.sum()} samples cannot determine {unknowns} unknowns")
         self.evaluations = 0
