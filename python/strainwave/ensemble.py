@@ -224,6 +224,7 @@ def simulate_many(
         TypeError: values that are no numbers, `threads` that is no whole number, and as `simulate`
         ValueError: a parameter that the drive does not have, values out of its range or of unequal number, an output that is
             not known, `threads` below 1, and as `simulate`
+        MemoryError: the outputs are too many; says how large they are
 
     Warns:
         EnsembleWarning: members without result; `failures` of the ensemble says why, and their outputs are not-a-number. Or
@@ -238,8 +239,12 @@ def simulate_many(
     (5, 501)
     """
     plan = _Plan.of(drive, Excitation(command, load_torque, temperature), parameters, dt, sample, record, threads)
-    with progressing(progress, plan.members * plan.steps) as shown:
-        ensemble = plan.run(0, plan.members, shown)
+    try:
+        with progressing(progress, plan.members * plan.steps) as shown:
+            ensemble = plan.run(0, plan.members, shown)
+    except MemoryError:
+        size = f"{1e-9 * 8 * plan.members * len(plan.recorded) * len(plan.time):.3g} GB"
+        raise MemoryError(f"the outputs take {size}; record fewer, sample less often, or let simulate_to write files") from None
     _tell(ensemble.failures, plan.members)
     return ensemble
 
