@@ -24,8 +24,8 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
         const auto before = f > S(0.0);
         fa = select(before, f, S(0.5) * fa);
         fb = select(before, S(0.5) * fb, f);
-        a = select(before, x, a);
-        b = select(before, b, x);
+        a = select(sought & before, x, a);
+        b = select(sought & !before, x, b);
     }
     x = select(crosses & (b - x < S(1e-14)), b, x);
     if constexpr (differentiates<S>) {  // the moment moves with the parameters: implicit function theorem
