@@ -51,6 +51,8 @@ def whole(name: str, value: object, low: int) -> int:
 
 def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Numbers of any shape, finite or not; text, dates and masked values are none."""
+    if type(values) is np.ndarray and values.dtype == np.float64:
+        return values
     try:
         array = np.asarray(values)
     except ValueError:

@@ -16,6 +16,7 @@ commanded, rad for a position-controlled drive, V for an open-loop motor; a scen
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import pi, tau
 from numbers import Real
 from typing import Literal
@@ -122,13 +123,14 @@ class Scenario:
         """Left limit of the rate at `time` [s]; at 0 the rate there."""
         return self._rate(self._inside(time), "left")
 
-    @property
+    @cached_property
     def breaks(self) -> Array:
         """The times [s] in (0, duration) at which the command or its rate jumps, increasing."""
         inner = self.start[1:]
         jumps = self._line(inner, "left") != self._line(inner, "right")
         kinks = self.slope[1:] != self.slope[:-1]
         breaks: Array = inner[jumps | kinks]
+        breaks.setflags(write=False)
         return breaks
 
     def recording(self, dt: float, unit: str) -> Recording:

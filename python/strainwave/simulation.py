@@ -386,6 +386,9 @@ def recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -
 
 
 def _columns(time: Array, outputs: Array) -> dict[str, Array]:
+    """The columns of a recording, which need not be copied as nobody can change them."""
+    time.setflags(write=False)
+    outputs.setflags(write=False)
     return {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
 
 
