@@ -98,6 +98,7 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
         vibrations.data()[m] = verdicts[m].vibration;
         on_bristles.data()[m] = verdicts[m].bristle_vibration;
         if (verdicts[m].refusal) refusals[nb::int_(m)] = text_of(*verdicts[m].refusal);
+        if (!verdicts[m].problem.empty()) refusals[nb::int_(m)] = verdicts[m].problem;
     }
     return nb::make_tuple(out, twists, vibrations, on_bristles, refusals);
 }
@@ -231,7 +232,10 @@ void bind_numbers(nb::module_& core) {
             const Parts parts = parts_of(model);
             if (numbers.size() != parts.numbers.size())
                 throw nb::value_error("as many numbers as the model has parameters are needed");
-            return assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
+            const M other = assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
+            const std::string problem = problem_of(other);
+            if (!problem.empty()) throw nb::value_error(problem.c_str());
+            return other;
         },
         nb::arg("model"), nb::arg("numbers"),
         nb::sig(kept("def with_numbers(model: " + type + ", numbers: collections.abc.Sequence[float]) -> " + type)),
@@ -353,6 +357,7 @@ void bind_drives(nb::module_& core) {
     const Output<double> output{};
     Output<double>::fields(
         output, [&](const double&, const Field& field) { outputs.append(nb::make_tuple(field.name, field.unit, field.doc)); });
+    core.attr("lanes") = lanes;
     core.attr("outputs") = nb::tuple(outputs);
 
 #define SW_COURSE "instants: " SW_ARRAY ", inputs: " SW_ARRAY ", keep: numpy.typing.NDArray[numpy.uint8]"

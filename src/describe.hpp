@@ -93,6 +93,23 @@ std::vector<Parameter> parameters_of(const M& model) {
     return list;
 }
 
+/// What is wrong with how the numbers of a model, or of one of its parts, relate to each other; empty if nothing is.
+template <class M>
+std::string problem_of(const M& model) {
+    std::string found;
+    if constexpr (requires { model.problem(); })
+        if (const char* problem = model.problem()) found = std::string(M::name) + ": " + problem;
+    const auto look = [&]<class T>(const T& member, const Field&) {
+        if (!found.empty()) return;
+        if constexpr (is_choice<T>)
+            found = member.visit([](const auto& law) { return problem_of(law); });
+        else if constexpr (Described<T>)
+            found = problem_of(member);
+    };
+    M::fields(model, look);
+    return found;
+}
+
 /// Puts a model together: next() gives its numbers in order, shape its whole numbers.
 template <class S, class Next>
 struct Assemble {

@@ -2,6 +2,7 @@
 #include "run.hpp"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 /// The ways to run a course, compiled once for every instruction set.
@@ -19,6 +20,9 @@ inline constexpr int channels = [] {
 /// How many numbers flow continuously, and how many drive a drive from outside.
 inline constexpr int motions = size_of<double, Drive::Motion>, driving = size_of<double, Input<double>>;
 
+/// How many members of a crowd take every step together.
+inline constexpr int lanes = 8;
+
 /// Drives that differ from one in some of its numbers: number `numbers[p]` of member m is values[p * members + m].
 struct Variation {
     std::vector<int> numbers;
@@ -32,6 +36,7 @@ struct Verdict {
     double vibration = 0.0;                ///< the fastest of the gear up to that twist, rad/s
     double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
+    std::string problem{};                 ///< why it did not begin, if it did not
 };
 
 /// How steps are taken.

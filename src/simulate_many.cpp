@@ -13,7 +13,6 @@ namespace strainwave::host {
 
 namespace {
 
-constexpr int lanes = 8;
 using Lanes = Pack<lanes>;
 
 /// Thrown in a thread whose work nobody wants any more.
@@ -55,11 +54,8 @@ public:
     void work() {
         for (std::size_t pack; (pack = next++) < packs();) {
             const std::size_t first = pack * lanes, count = std::min<std::size_t>(lanes, variation.members - first);
-            try {
-                run_members<Lanes>(first, count);
-            } catch (const OutOfBounds&) {  // of one member: the others of its pack go on by themselves
+            if (!run_together(first, count))
                 for (std::size_t member = first; member < first + count; ++member) run_alone(member);
-            }
             done += count * course.steps;
         }
     }
@@ -84,6 +80,18 @@ private:
         });
     }
 
+    /// Runs members as a pack; false where one of them cannot go all the way.
+    bool run_together(std::size_t first, std::size_t count) {
+        for (std::size_t member = first; member < first + count; ++member)
+            if (!problem_of(assembled_from<double>(member, 1)).empty()) return false;
+        try {
+            run_members<Lanes>(first, count);
+        } catch (const OutOfBounds&) {
+            return false;
+        }
+        return true;
+    }
+
     template <class S>
     void run_members(std::size_t first, std::size_t count) {
         const auto drive = assembled_from<S>(first, count);
@@ -99,7 +107,7 @@ private:
         });
         const S vibration = drive.vibration(twist), on_bristles = drive.bristle_vibration();
         for (std::size_t i = 0; i < count; ++i)
-            verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), {}};
+            verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), {}, {}};
     }
 
     void run_alone(std::size_t member) {
@@ -107,6 +115,8 @@ private:
             double* const row = out + (c * variation.members + member) * samples;
             std::fill(row, row + samples, std::numeric_limits<double>::quiet_NaN());
         }
+        verdicts[member].problem = problem_of(assembled_from<double>(member, 1));
+        if (!verdicts[member].problem.empty()) return;
         try {
             run_members<double>(member, 1);
         } catch (const OutOfBounds& error) {

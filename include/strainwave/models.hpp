@@ -29,7 +29,7 @@
 #include <strainwave/stiffness/piecewise.hpp>
 #include <strainwave/stiffness/three_segment.hpp>
 
-/// The closed lists of models. A new model is one header, and one line here. The first of a family is its default.
+/// The closed lists of models. A new model is one header, and here its include and its name. The first of a family is its default.
 namespace strainwave {
 
 template <template <class...> class... Law>

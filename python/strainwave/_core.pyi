@@ -299,6 +299,8 @@ class State:
 
     fields: tuple[dict[str, Any], ...]
 
+lanes: int = 8
+
 outputs: tuple[tuple[str, str, str], ...]
 
 def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State]:

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 OUTPUTS = [name for name, _, _ in _core.outputs]
-LANES = 8  # members that share a vector register
 SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 PART = 64 << 20  # bytes of output that a part of the files holds at most, where one pack does not need more
 
@@ -362,7 +361,7 @@ def _meant(path: str, known: list[str]) -> str:
 def _parts(plan: _Plan) -> Iterator[tuple[int, int]]:
     """Members from and to, by parts that fit into memory."""
     size = PART // (8 * len(plan.recorded) * len(plan.time))
-    pack = LANES * plan.threads
+    pack = _core.lanes * plan.threads
     size = max(pack, size - size % pack)
     for first in range(0, plan.members, size):
         yield first, min(first + size, plan.members)

@@ -6,6 +6,7 @@ would do alone, and dual numbers add derivatives and change no value.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -47,10 +48,17 @@ def columns(run: sw.Recording) -> Array:
 def neighbours(drive: PositionDrive, seed: int) -> list[PositionDrive]:
     """Eight with other numbers, but for whole ones: orders of errors are summed up otherwise if all of a pack are whole."""
     _, numbers, _, _, low, high = (np.array(column) for column in zip(*_core.parameters(drive), strict=True))
-    factors = 1.0 + np.random.default_rng(seed).uniform(-0.1, 0.1, (8, numbers.size))
-    others = np.clip(numbers * factors, low, high)
-    others = np.where((numbers == np.rint(numbers)) | (others == np.rint(others)), numbers, others)
-    return [_core.with_numbers(drive, other) for other in others]
+    random = np.random.default_rng(seed)
+    found: list[PositionDrive] = []
+    for _ in range(200):
+        other = np.clip(numbers * (1.0 + random.uniform(-0.1, 0.1, numbers.size)), low, high)
+        other = np.where((numbers == np.rint(numbers)) | (other == np.rint(other)), numbers, other)
+        with suppress(ValueError):  # the numbers of a model may not relate to each other so
+            found.append(_core.with_numbers(drive, other))
+        if len(found) == 8:
+            return found
+    assume(False)
+    return []
 
 
 def differentiable(drive: PositionDrive) -> list[int]:

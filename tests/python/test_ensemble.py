@@ -282,6 +282,13 @@ RISE = command(0.1)
 FAILING = {  # drive, path, a value that works, one that does not, how its reason begins
     "beyond its domain": (OUT_OF_DOMAIN, "gear.friction_input.domain_end", 50.0, 3.0, "gear.friction_input: angle = 3"),
     "too coarse a step": (DRIVE, "gear.stiffness.a1", 1.2e4, 2e6, "dt = 0.0005 s is too coarse for this drive: "),
+    "relation": (
+        DRIVE.replace(gear=DRIVE.gear.replace(stiffness=sw.stiffness.ThreeSegment(t1=1.0, t2=20.0))),
+        "gear.stiffness.t1",
+        1.0,
+        100.0,
+        "three_segment: ",
+    ),
     "not a number": (DRIVE, "gear.stiffness.a1", 1.2e4, 1e15, "the simulation left the finite numbers at t = "),
 }
 failing = pytest.mark.parametrize(("drive", "path", "good", "bad", "reason"), FAILING.values(), ids=FAILING)
