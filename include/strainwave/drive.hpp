@@ -526,7 +526,7 @@ private:
     /// Torque per angle [N.m/rad] of a friction that is about to slip.
     template <class Law>
     static constexpr S presliding_stiffness(const Law& law) {
-        const S little(1e-9), soon(1e-9);  // rad/s, s: less than any bristle's reach
+        const S little(1e-9), soon(1e-3);  // rad/s, s: less than any bristle's reach, and more than rounding
         const Contact still = Contact{}.pushed(S(0.0));
         const auto bent = friction::advance(law, typename Law::State{}, still.moving(little), soon);
         return (friction::torque(law, bent, still) - friction::torque(law, typename Law::State{}, still)) / (little * soon);

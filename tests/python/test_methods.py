@@ -129,6 +129,9 @@ def on_stiff_bristles() -> sw.drives.PositionDrive:
 def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
     stiff = on_stiff_bristles()
     assert _core.bristle_vibration(stiff) == pytest.approx(np.sqrt(1e5 / 1e-4), rel=1e-4)
+    for stiffness in (0.5, 50.0, 1e7):
+        soft = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=stiffness)))
+        assert _core.bristle_vibration(soft) == pytest.approx(np.sqrt(stiffness / 1e-4), rel=1e-4)
     assert _core.bristle_vibration(STICKING) == 0.0
     assert sw.simulate(stiff, command(0.01)).method.startswith("exponential Runge-Kutta, adaptive, rtol 1e-06")
     run = sw.simulate(stiff, command(0.01), method="rosenbrock")
