@@ -55,7 +55,7 @@ nb::tuple run_one(const Drive& drive, const Drive::State& start, const Numbers& 
 }
 
 nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
-                         double relative, double absolute, const Numbers& samples, const nb::object& progress) {
+                         double relative, double absolute, long most_steps, const Numbers& samples, const nb::object& progress) {
     const std::vector<std::uint8_t> none(instants.size() - 1);
     const Course course{instants.data(), inputs.data(), none.data(), none.size()};
     if (inputs.size() != 12 * course.steps) throw nb::value_error("a course of n steps has inputs of shape (n, 3, 4)");
@@ -66,7 +66,8 @@ nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Nu
     const auto simulate = kernels().simulate_adaptively;
     {
         nb::gil_scoped_release free;
-        end = simulate(drive, start, course, {relative, absolute}, samples.data(), samples.size(), out.data(), steps, pause);
+        end = simulate(drive, start, course, {relative, absolute}, most_steps, samples.data(), samples.size(), out.data(), steps,
+                       pause);
     }
     return nb::make_tuple(out, end, steps.accepted, steps.rejected);
 }
@@ -74,6 +75,15 @@ nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Nu
 /// What went wrong, in words.
 std::string text_of(const OutOfBounds& error) {
     return std::string(error.part) + ": " + outside(error.domain) + "; first at t = " + with_unit(error.time, "s");
+}
+
+std::string text_of(const StepsSpent& error) {
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "all steps that most_steps allows lead to t = %.6g s only; loosen rtol, give simulate_adaptively more steps, or "
+                  "check the parameters: the gear vibrates at %.4g rad/s at rest, a shaft on its bristles at %.4g rad/s",
+                  error.at, error.vibration, error.bristle_vibration);
+    return text;
 }
 
 nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Numbers& values, const Numbers& instants,
@@ -333,6 +343,8 @@ void bind_drives(nb::module_& core) {
                             ("no step is short enough to keep the tolerance between t = " + shortest(error.from) + " s and " +
                              with_unit(error.to, "s") + "; loosen rtol, or check the parameters")
                                 .c_str());
+        } catch (const StepsSpent& error) {
+            PyErr_SetString(PyExc_FloatingPointError, text_of(error).c_str());
         }
     });
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
@@ -368,9 +380,10 @@ void bind_drives(nb::module_& core) {
                      ") -> tuple[" SW_ARRAY ", State]"),
              "Outputs, shape (channels, kept), and the state at the end. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.");
     core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"),
-             nb::arg("relative"), nb::arg("absolute"), nb::arg("samples"), nb::arg("progress").none() = nb::none(),
+             nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"), nb::arg("samples"),
+             nb::arg("progress").none() = nb::none(),
              nb::sig("def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: " SW_ARRAY
-                     ", inputs: " SW_ARRAY ", relative: float, absolute: float, samples: " SW_ARRAY SW_PROGRESS
+                     ", inputs: " SW_ARRAY ", relative: float, absolute: float, most_steps: int, samples: " SW_ARRAY SW_PROGRESS
                      ") -> tuple[" SW_ARRAY ", State, int, int]"),
              "Outputs at `samples` [s], shape (channels, samples), the state at the end, steps taken and steps given up.");
     core.def(

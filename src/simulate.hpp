@@ -51,16 +51,22 @@ struct ToleranceMissed {
     double from, to;
 };
 
+/// All steps that were allowed led no further than to an instant [s]; the vibrations that steps must follow [rad/s]: of the gear at
+/// rest, and of a shaft on its bristles.
+struct StepsSpent {
+    double at, vibration, bristle_vibration;
+};
+
 /// How many steps were taken, and how many given up for shorter ones.
 struct Steps {
     long accepted = 0, rejected = 0;
 };
 
-/// One trajectory in steps as long as a tolerance allows, none longer than those of its course. Writes channel c at samples[k] [s]
-/// to out[c * count + k]. Throws OutOfBounds, ToleranceMissed.
+/// One trajectory in at most `most` steps, as long as a tolerance allows, none longer than those of its course. Writes channel c at
+/// samples[k] [s] to out[c * count + k]. Throws OutOfBounds, ToleranceMissed, StepsSpent.
 Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
-                                 const integrate::Tolerance& tolerance, const double* samples, std::size_t count, double* out,
-                                 Steps& steps, const Pause& pause);
+                                 const integrate::Tolerance& tolerance, long most, const double* samples, std::size_t count,
+                                 double* out, Steps& steps, const Pause& pause);
 
 /// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves

@@ -50,8 +50,8 @@ namespace {
 /// A run whose samples lie anywhere within its steps.
 template <class Compiled>
 typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled::State x, const Course& course,
-                                        const integrate::Tolerance& tolerance, const double* samples, Writer& record, Steps& steps,
-                                        const Pause& pause) {
+                                        const integrate::Tolerance& tolerance, long most, const double* samples, Writer& record,
+                                        Steps& steps, const Pause& pause) {
     using State = typename Compiled::State;
     const bool has_bounds = drive.has_bounds();
     const auto advance = [](const Compiled& moved, const State& from, const Interval<double>& u, double dt) {
@@ -60,12 +60,14 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     x = drive.consistent(x);
     integrate::Adaptive<double, Compiled, decltype(advance)> adaptive(drive, advance, tolerance,
                                                                       1e-2 * (course.instants[1] - course.instants[0]));
-    for (std::size_t i = 0, taken = 0; i < course.steps; ++i) {
+    long taken = 0;
+    for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % 256 == 0) pause(i);
         const Interval<double> u = interval<double>(course.inputs + 12 * i);
         const double begin = course.instants[i], dt = course.instants[i + 1] - begin;
         if (has_bounds) check_bounds(drive, x, u.start, begin);
         const auto within = [&](const State& from, const State& half, const State& end, double done, double middle, double to) {
+            if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
             if (++taken % steps_between_pauses == 0) pause(i);
             if (has_bounds) check_bounds(drive, end, u.at(to, dt), begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
@@ -87,11 +89,11 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
 }  // namespace
 
 Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
-                                 const integrate::Tolerance& tolerance, const double* samples, std::size_t count, double* out,
-                                 Steps& steps, const Pause& pause) {
+                                 const integrate::Tolerance& tolerance, long most, const double* samples, std::size_t count,
+                                 double* out, Steps& steps, const Pause& pause) {
     Writer record{out, count};
     const auto runner = [&]<bool, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        return run_adaptively(compiled, from, course, tolerance, samples, record, steps, pause);
+        return run_adaptively(compiled, from, course, tolerance, most, samples, record, steps, pause);
     };
     return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
 }

@@ -308,7 +308,7 @@ def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: num
     Outputs, shape (channels, kept), and the state at the end. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.
     """
 
-def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, samples: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State, int, int]:
+def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State, int, int]:
     """
     Outputs at `samples` [s], shape (channels, samples), the state at the end, steps taken and steps given up.
     """

@@ -268,6 +268,7 @@ def simulate_adaptively(
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
     start: _core.State | None = None,
+    most_steps: int = 10_000_000,
     progress: bool = False,
 ) -> Run:
     """Runs a drive through a command in steps as long as a tolerance allows.
@@ -281,14 +282,16 @@ def simulate_adaptively(
             been so far
         atol: error tolerated besides, in the unit of each
         sample: distance of samples in the recording [s]
+        most_steps: after how many the run gives up. One takes some microseconds
 
     Returns:
         as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
 
     Raises:
         TypeError: as `simulate`
-        ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, and as `simulate`
-        FloatingPointError: the trajectory left the finite numbers, or no step keeps the tolerance; says when
+        ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `most_steps` lies below 1, and as `simulate`
+        FloatingPointError: the trajectory left the finite numbers, no step keeps the tolerance, or only more than `most_steps`
+            would; says when
 
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
@@ -300,6 +303,7 @@ def simulate_adaptively(
     rtol = arguments.number("rtol", rtol, brackets="[]", low=1e-11, high=1e-2)
     atol = arguments.number("atol", atol, low=0.0)
     sample = arguments.seconds("sample", sample)
+    most_steps = arguments.whole("most_steps", most_steps, 1)
     state = drive.rest() if start is None else arguments.state("start", start)
     excitation = Excitation(command, load_torque, temperature)
     samples = _grid(sample, command.duration, 1e-9 * sample)
@@ -311,7 +315,7 @@ def simulate_adaptively(
             report = None if shown is None else lambda done, begun=first, show=shown: show(begun + done)
             within = samples[(samples > chunk.instants[0]) & (samples <= chunk.instants[-1])]
             outputs, state, taken, given_up = _core.simulate_adaptively(
-                drive, state, chunk.instants, excitation.over(chunk), rtol, atol, within, report
+                drive, state, chunk.instants, excitation.over(chunk), rtol, atol, most_steps - accepted, within, report
             )
             pieces.append(outputs)
             accepted, rejected = accepted + taken, rejected + given_up

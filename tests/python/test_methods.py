@@ -233,6 +233,22 @@ def test_what_cannot_be_a_tolerance_is_refused() -> None:
         sw.simulate_adaptively(DRIVE, command(0.1), atol=0.0)
 
 
+def test_a_run_that_needs_more_steps_than_allowed_says_how_far_they_led_and_what_is_fast() -> None:
+    """The gear at rest: 1.2e4 + 3e3 N.m/rad between 0.5 kg.m2 and 1e-4 kg.m2 times 100 squared; bristles of 50 N.m/rad."""
+    run = sw.simulate_adaptively(DRIVE, command(0.1))
+    taken = int(run.method.rpartition(": ")[2].split()[0])
+    assert sw.simulate_adaptively(DRIVE, command(0.1), most_steps=taken) == run
+    words = (
+        r"^all steps that most_steps allows lead to t = 0\.09\d* s only; .*"
+        rf" the gear vibrates at {np.sqrt(1.5e4 * 3.0):.4g} rad/s at rest,"
+        rf" a shaft on its bristles at {np.sqrt(50.0 / 1e-4):.4g} rad/s$"
+    )
+    with pytest.raises(FloatingPointError, match=words):
+        sw.simulate_adaptively(DRIVE, command(0.1), most_steps=taken - 1)
+    with pytest.raises(ValueError, match=r"^most_steps = 0 must be 1 or more$"):
+        sw.simulate_adaptively(DRIVE, command(0.1), most_steps=0)
+
+
 # Sticking
 
 
