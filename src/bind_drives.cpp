@@ -87,7 +87,7 @@ std::string text_of(const StepsSpent& error) {
 }
 
 nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Numbers& values, const Numbers& instants,
-                   const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded, int threads,
+                   const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded, double fastest, int threads,
                    const nb::object& progress) {
     const Request request(instants, inputs, keep);
     if (values.ndim() != 2 || values.shape(0) != numbers.size())
@@ -99,7 +99,7 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
     std::vector<Verdict> verdicts;
     {
         nb::gil_scoped_release free;
-        verdicts = simulate_many(drive, variation, request.course, recorded, threads, out.data(), request.kept, pause);
+        verdicts = simulate_many(drive, variation, request.course, recorded, fastest, threads, out.data(), request.kept, pause);
     }
     Values twists = array({variation.members}), vibrations = array({variation.members}), on_bristles = array({variation.members});
     nb::dict refusals;
@@ -388,15 +388,15 @@ void bind_drives(nb::module_& core) {
              "Outputs at `samples` [s], shape (channels, samples), the state at the end, steps taken and steps given up.");
     core.def(
         "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("instants"), nb::arg("inputs"),
-        nb::arg("keep"), nb::arg("recorded"), nb::arg("threads"), nb::arg("progress").none() = nb::none(),
+        nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("threads"), nb::arg("progress").none() = nb::none(),
         nb::sig(
             "def simulate_many(drive: strainwave.drives.PositionDrive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
-            ", " SW_COURSE ", recorded: collections.abc.Sequence[int], threads: int" SW_PROGRESS ") -> tuple[" SW_ARRAY
-            ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
+            ", " SW_COURSE ", recorded: collections.abc.Sequence[int], fastest: float, threads: int" SW_PROGRESS
+            ") -> tuple[" SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
         "Outputs of members from rest, shape (recorded, members, 1 + kept); the largest twist of each [rad], the fastest vibration "
         "of its gear up to there and of a shaft on its bristles [rad/s], and why members ended early, if any did. `values`, shape "
-        "(numbers, members), takes the "
-        "place of the numbered parameters.");
+        "(numbers, members), takes the place of the numbered parameters. Members whose gear vibrates faster than `fastest` at rest "
+        "are not run.");
     core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
              nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
              "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");

@@ -70,9 +70,10 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
 
 /// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
-/// not-a-number behind. `pause` is called with the number of steps done, on this thread.
+/// not-a-number behind. Of a member whose gear vibrates faster than `fastest` [rad/s] at rest only that is told, with a twist of
+/// 0. `pause` is called with the number of steps done, on this thread.
 std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
-                                   const std::vector<int>& recorded, int threads, double* out, std::size_t kept,
+                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
                                    const Pause& pause);
 
 /// The outputs of a drive in state `x`.

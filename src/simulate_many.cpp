@@ -24,6 +24,7 @@ class Crowd {
     const Variation& variation;
     const Course& course;
     const std::vector<int>& recorded;
+    const double fastest;
     double* const out;
     const std::size_t samples;
     std::vector<int> place_of;  // of each number in the variation, or -1
@@ -32,12 +33,13 @@ class Crowd {
     std::atomic<bool> stopping{false};
 
 public:
-    Crowd(const Drive& drive, const Variation& variation_, const Course& course_, const std::vector<int>& recorded_, double* out_,
-          std::size_t kept)
+    Crowd(const Drive& drive, const Variation& variation_, const Course& course_, const std::vector<int>& recorded_,
+          double fastest_, double* out_, std::size_t kept)
         : parts(parts_of(drive)),
           variation(variation_),
           course(course_),
           recorded(recorded_),
+          fastest(fastest_),
           out(out_),
           samples(kept + 1),
           place_of(parts.numbers.size(), -1),
@@ -95,6 +97,16 @@ private:
     template <class S>
     void run_members(std::size_t first, std::size_t count) {
         const auto drive = assembled_from<S>(first, count);
+        const S at_rest = drive.vibration(S(0.0)), on_bristles = drive.bristle_vibration();
+        const auto too_fast = at_rest > S(fastest);
+        const auto tell = [&](const S& twist, const S& vibration) {
+            for (std::size_t i = 0; i < count; ++i)
+                verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), {}, {}};
+        };
+        if (all(too_fast)) {
+            clear(first, count);
+            return tell(S(0.0), at_rest);
+        }
         std::size_t k = 0;
         S twist{0.0};
         const auto record = [&](const Output<S>& output) {
@@ -105,16 +117,19 @@ private:
         run<S>(drive, drive.rest(), course, record, [this](std::size_t) {
             if (stopping) throw Stopped{};
         });
-        const S vibration = drive.vibration(twist), on_bristles = drive.bristle_vibration();
-        for (std::size_t i = 0; i < count; ++i)
-            verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), {}, {}};
+        tell(select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.vibration(twist)));
+    }
+
+    /// Leaves not-a-number in the rows of members.
+    void clear(std::size_t first, std::size_t count) {
+        for (std::size_t c = 0; c < recorded.size(); ++c) {
+            double* const rows = out + (c * variation.members + first) * samples;
+            std::fill(rows, rows + count * samples, std::numeric_limits<double>::quiet_NaN());
+        }
     }
 
     void run_alone(std::size_t member) {
-        for (std::size_t c = 0; c < recorded.size(); ++c) {
-            double* const row = out + (c * variation.members + member) * samples;
-            std::fill(row, row + samples, std::numeric_limits<double>::quiet_NaN());
-        }
+        clear(member, 1);
         verdicts[member].problem = problem_of(assembled_from<double>(member, 1));
         if (!verdicts[member].problem.empty()) return;
         try {
@@ -137,9 +152,9 @@ private:
 }  // namespace
 
 std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
-                                   const std::vector<int>& recorded, int threads, double* out, std::size_t kept,
+                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
                                    const Pause& pause) {
-    Crowd crowd(drive, variation, course, recorded, out, kept);
+    Crowd crowd(drive, variation, course, recorded, fastest, out, kept);
     std::mutex lock;
     std::condition_variable ended;
     std::exception_ptr failure;

@@ -23,7 +23,8 @@ from strainwave.simulation import (
     ROOM_TEMPERATURE,
     Course,
     Excitation,
-    left_finite,
+    diverged,
+    meaningful,
     output_units,
     progressing,
     remedy,
@@ -161,6 +162,7 @@ class _Plan:
             self.inputs,
             self.course.samples[1:],
             channels,
+            COARSEST / self.dt,
             self.threads,
             shown,  # type: ignore[arg-type]
         )
@@ -179,10 +181,11 @@ class _Plan:
     def failures(self, outputs: Array, twists: Array, vibrations: Array, refusals: dict[int, str]) -> dict[int, str]:
         """Why members have no result, as `simulate` would say it of each alone."""
         found = dict(refusals)
-        finite = np.isfinite(outputs).all(axis=(0, 2)) & np.isfinite(twists)
-        for member in np.flatnonzero(~finite | (self.dt * vibrations > COARSEST)).tolist():
-            if member not in found and not finite[member]:
-                found[member] = left_finite(self.time, self.recorded, outputs[:, member], remedy(self.dt))
+        at_rest = (self.dt * vibrations > COARSEST) & (twists == 0.0)  # such members are not run
+        sound = at_rest | (meaningful(outputs).all(axis=(0, 2)) & meaningful(twists))
+        for member in np.flatnonzero(~sound | (self.dt * vibrations > COARSEST)).tolist():
+            if member not in found and not sound[member]:
+                found[member] = diverged(self.time, self.recorded, outputs[:, member], remedy(self.dt))
             elif member not in found:
                 found[member] = too_coarse(self.dt, float(twists[member]), float(vibrations[member]))
         return dict(sorted(found.items()))

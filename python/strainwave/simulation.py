@@ -20,6 +20,7 @@ from strainwave.scenario import Scenario
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of the gear's vibration
 ROOM_TEMPERATURE = 293.15  # K
+LARGEST = 1e15  # of all that is recorded: no angle beyond is told to within a radian
 _TWIST = [name for name, _, _ in _core.outputs].index("twist")
 LONGEST, SHORTEST = 5e-3, 1e-6  # s, of the stretches over which inputs are known at start, middle and end
 CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
@@ -200,8 +201,7 @@ def simulate(
         ValueError: `dt`, `sample` or `temperature` is not positive, `load_torque` or `temperature` lasts another time than
             `command`, `method` is not known, or the drive leaves the range in which one of its parts is valid; says which,
             where and when
-        FloatingPointError: the trajectory left the finite numbers, or `dt` cannot follow the gear's vibration; says when,
-            and what would do
+        FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration; says when, and what would do
 
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
@@ -227,6 +227,8 @@ def simulate(
             start=start,
             progress=progress,
         )
+    if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
+        _check_resolution(drive, dt, 0.0)  # at rest: else many a step may be spent on events that mean nothing
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, interval)
     taken = method or "exponential"
@@ -239,9 +241,9 @@ def simulate(
             pieces.append(outputs)
     whole = np.concatenate(pieces, axis=1)
     time = course.instants[course.samples.astype(bool)]
-    _check_finite(time, whole, remedy(dt))
-    if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
-        _check_resolution(drive, dt, whole)
+    _check_meaning(time, whole, remedy(dt))
+    if method != "rosenbrock":
+        _check_resolution(drive, dt, _largest_twist(whole))
     named = _NAMED[taken] + (", cut at events" if taken != "moreau_jean" and _sticks(drive) else "")
     return Run(_columns(time, whole), output_units(drive), state, f"{named}, steps of {dt:g} s")
 
@@ -290,8 +292,7 @@ def simulate_adaptively(
     Raises:
         TypeError: as `simulate`
         ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `most_steps` lies below 1, and as `simulate`
-        FloatingPointError: the trajectory left the finite numbers, no step keeps the tolerance, or only more than `most_steps`
-            would; says when
+        FloatingPointError: the trajectory diverged, no step keeps the tolerance, or only more than `most_steps` do; says when
 
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
@@ -320,7 +321,7 @@ def simulate_adaptively(
             pieces.append(outputs)
             accepted, rejected = accepted + taken, rejected + given_up
     whole = np.concatenate(pieces, axis=1)
-    _check_finite(samples, whole, "check the parameters")
+    _check_meaning(samples, whole, "check the parameters")
     said = f"exponential Runge-Kutta, adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
     return Run(_columns(samples, whole), output_units(drive), state, said)
 
@@ -384,8 +385,8 @@ def _grid(step: float, duration: float, tolerance: float) -> Array:
 def recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -> Recording:
     """What a run recorded, shape (channels, samples), if its numbers mean anything."""
     time = course.instants[course.samples.astype(bool)]
-    _check_finite(time, outputs, remedy(dt))
-    _check_resolution(drive, dt, outputs)
+    _check_meaning(time, outputs, remedy(dt))
+    _check_resolution(drive, dt, _largest_twist(outputs))
     return Recording(_columns(time, outputs), output_units(drive), title="simulation")
 
 
@@ -396,22 +397,38 @@ def _columns(time: Array, outputs: Array) -> dict[str, Array]:
     return {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
 
 
-def _check_finite(time: Array, outputs: Array, what_to_do: str) -> None:
-    if not np.isfinite(outputs).all():
-        raise FloatingPointError(left_finite(time, [name for name, _, _ in _core.outputs], outputs, what_to_do))
+def meaningful(outputs: Array) -> NDArray[np.bool_]:
+    """Which numbers of a run mean anything: neither what is not a number nor what is out of all bounds."""
+    return np.abs(outputs) <= LARGEST
 
 
-def left_finite(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
-    """Says when outputs, shape (names, samples), first are not finite, and which; not when, where something else is not."""
-    finite = np.isfinite(outputs)
-    where = int(np.argmin(finite.all(axis=0)))
-    wrong = [name for name, is_finite in zip(names, finite[:, where], strict=True) if not is_finite]
+def _check_meaning(time: Array, outputs: Array, what_to_do: str) -> None:
+    if not meaningful(outputs).all():
+        raise FloatingPointError(diverged(time, [name for name, _, _ in _core.outputs], outputs, what_to_do))
+
+
+def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
+    """Says when outputs, shape (names, samples), first mean nothing, and which; not when, where something else does."""
+    sound = meaningful(outputs)
+    where = int(np.argmin(sound.all(axis=0)))
+    wrong = [name for name, is_sound in zip(names, sound[:, where], strict=True) if not is_sound]
     place = f" at t = {time[where]:.6g} s ({', '.join(wrong)})" if wrong else ""
-    return f"the simulation left the finite numbers{place}; {what_to_do}"
+    return f"the simulation diverged{place}; {what_to_do}"
 
 
-def _check_resolution(drive: PositionDrive, dt: float, outputs: Array) -> None:
-    twist = float(np.abs(outputs[_TWIST]).max())
+def _check_meaning(time: Array, outputs: Array, what_to_do: str) -> None:
+    sound = meaningful(outputs)
+    if not sound.all():
+        where = int(np.argmin(sound.all(axis=0)))
+        names = [name for (name, _, _), ok in zip(_core.outputs, sound[:, where], strict=True) if not ok]
+        raise FloatingPointError(f"the simulation diverged at t = {time[where]:.6g} s ({', '.join(names)}); {what_to_do}")
+
+
+def _largest_twist(outputs: Array) -> float:
+    return float(np.abs(outputs[_TWIST]).max())
+
+
+def _check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
     vibration = _core.vibration(drive, twist)
     if dt * vibration > COARSEST:
         raise FloatingPointError(too_coarse(dt, twist, vibration))
@@ -450,7 +467,7 @@ def warn_of_bristles(drive: PositionDrive, dt: float) -> None:
 
 
 def remedy(dt: float) -> str:
-    """What to do about a run that left the finite numbers."""
+    """What to do about a run that diverged."""
     return f"take a smaller dt (now {dt:g} s) or check the parameters"
 
 

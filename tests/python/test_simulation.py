@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import signal
@@ -324,8 +325,36 @@ def test_a_temperature_below_absolute_zero_is_refused(temperature: sw.scenario.S
         sw.simulate(DRIVE, command(0.1), temperature=temperature)
 
 
+def test_a_run_that_leaves_all_bounds_is_no_result_though_its_numbers_are_finite() -> None:
+    """A motor that its friction slows down at 1e4 /s: steps of fourth order multiply its speed by (-5)^4/24 + ... = 13.7."""
+    gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e-6), friction_input=sw.friction.Viscous(viscous=1.0))
+    braked = sw.drives.PositionDrive(gear=gear, motor=sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=1e-4))
+    rest = braked.rest()
+    start = rest.replace(motion=rest.motion.replace(input_speed=1.0))
+    grown = 1.0 - 5.0 + 5.0**2 / 2.0 - 5.0**3 / 6.0 + 5.0**4 / 24.0
+
+    def after(steps: int) -> sw.Recording:
+        return sw.simulate(braked, sw.scenario.constant(0.0, 5e-4 * steps), dt=5e-4, start=start)
+
+    largest = math.floor(math.log(1e15) / math.log(grown))
+    assert after(largest)["input_speed"][-1] == pytest.approx(grown**largest, rel=1e-6)
+    with pytest.raises(
+        FloatingPointError, match=rf"^the simulation diverged at t = {5e-4 * (largest + 1):.6g} s \(input_speed"
+    ):
+        after(largest + 1)
+
+
+def test_a_step_too_coarse_at_rest_is_refused_before_any_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The gear of 1.5e4 N.m/rad at rest, between 0.5 kg.m2 and 1e-4 kg.m2 times 100 squared."""
+    monkeypatch.setattr(_core, "simulate", None)
+    vibration = math.sqrt(1.5e4 * 3.0)
+    words = rf"its gear vibrates at {vibration:.4g} rad/s at a twist of 0 rad; take dt = {1.0 / vibration:.2g} s or less$"
+    with pytest.raises(FloatingPointError, match=words):
+        sw.simulate(DRIVE, command(0.1), dt=1.01 / vibration, method="exponential")
+
+
 DIVERGED = (
-    r"left the finite numbers at t = [\d.]+ s \(.*\); take a smaller dt \(now 0\.05 s\)"
+    r"the simulation diverged at t = [\d.]+ s \(.*\); take a smaller dt \(now 0\.05 s\)"
     r"|dt = 0\.05 s is too coarse for this drive: its gear vibrates at .* rad/s"
 )
 
