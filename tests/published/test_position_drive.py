@@ -5,6 +5,7 @@ Its friction is the simplified model, of the motor side unless a test says other
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -177,3 +178,59 @@ def test_the_coulomb_oscillator_turns_at_its_peaks_and_sticks() -> None:
     assert peaks == pytest.approx([-0.712, 0.424, -0.136], rel=1e-10)
     assert first(lambda time: after(time)["input_speed"][-1] == 0.0, 0.45, 0.47) == pytest.approx(stuck, rel=1e-10)
     assert after(1.0)["input_angle"][-1] == pytest.approx(-0.136, rel=1e-10)
+
+
+class Slider:
+    """An output with dry friction, drawn at constant speed through a gear: the mass on a belt of every textbook.
+
+    It sets off when the spring carries `breakaway`. With u = twist - coulomb / k, then u'' = -w² u, from u = a with u' = speed,
+    a = (breakaway - coulomb) / k, until the output rests, where u' = speed again: at u = -a, after half a period and
+    2 arctan(speed / (w a)) / w.
+    """
+
+    inertia, k, coulomb, breakaway, speed = 0.05, 800.0, 2.0, 3.2, 0.6
+    w = math.sqrt(k / inertia)
+    a = (breakaway - coulomb) / k
+    first_breakaway = breakaway / (k * speed)
+    slipping = (math.pi + 2.0 * math.atan2(speed, w * a)) / w
+    sticking = 2.0 * a / speed
+    period = slipping + sticking
+    restick_torque = 2.0 * coulomb - breakaway
+
+    def after(self, duration: float, method: str) -> sw.Recording:
+        stiction = sw.friction.Coulomb(coulomb=self.coulomb, breakaway=self.breakaway)
+        gear = GEAR.replace(
+            stiffness=sw.stiffness.Linear(k=self.k), friction_input=sw.friction.Viscous(), friction_output=stiction
+        )
+        drive = sw.drives.PositionDrive(
+            gear=gear,
+            motor=sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=1e30),
+            load=sw.loads.Inertia(inertia=self.inertia),
+        )
+        rest = drive.rest()
+        start = rest.replace(motion=rest.motion.replace(input_speed=100.0 * self.speed))
+        still = sw.scenario.constant(0.0, duration)
+        if method == "adaptive":
+            return sw.simulate_adaptively(drive, still, rtol=1e-10, sample=duration, start=start)
+        return sw.simulate(drive, still, dt=1e-4, sample=duration, start=start)
+
+
+@pytest.mark.parametrize("cycles", [0, 1, 4])
+@pytest.mark.parametrize("method", ["fixed steps", "adaptive"])
+def test_the_limit_cycle_of_stick_and_slip_has_its_closed_form(method: str, cycles: int) -> None:
+    """When it sets off, when it sticks again, and what the spring carries there, in the first period and in later ones."""
+    slider = Slider()
+    breakaway = slider.first_breakaway + cycles * slider.period
+    restick = breakaway + slider.slipping
+
+    def moves(time: float) -> bool:
+        return slider.after(time, method)["output_speed"][-1] != 0.0
+
+    set_off = first(moves, breakaway - 0.2 * slider.sticking, breakaway + 0.5 * slider.slipping)
+    assert set_off == pytest.approx(breakaway, rel=1e-9)
+    stuck = first(lambda time: not moves(time), breakaway + 0.5 * slider.slipping, restick + 0.2 * slider.sticking)
+    assert stuck == pytest.approx(restick, rel=1e-9)
+    held = slider.after(stuck, method)
+    assert held["torque"][-1] == pytest.approx(slider.restick_torque, rel=1e-9)
+    assert held["friction_output"][-1] == pytest.approx(slider.restick_torque, rel=1e-9)
+    assert held["output_angle"][-1] == pytest.approx(slider.speed * restick - slider.restick_torque / slider.k, rel=1e-9)
