@@ -9,6 +9,7 @@ single       one trajectory of the reference drive: error and time of all solver
 ensemble     many reference drives at once: trajectories a second
 stick_slip   the same drive with friction that really sticks: error over step, and what events cost
 scaling      time over steps, members and Maxwell elements
+files        ever more members run to files: time, memory and files
 overhead     what a call, storing and derivatives cost
 
 The peers come with `pip install strainwave[bench]`. Figures and tables of each part go to build/benchmarks/, as SVG and JSON.
@@ -21,6 +22,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 import ensemble
+import files
 import overhead
 import scaling
 import single
@@ -33,6 +35,7 @@ PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "ensemble": ensemble.run,
     "stick_slip": lambda console, peers, quick: stick_slip.run(console),
     "scaling": lambda console, peers, quick: scaling.run(console),
+    "files": lambda console, peers, quick: files.run(console),
     "overhead": lambda console, peers, quick: overhead.run(console),
 }
 
