@@ -121,17 +121,15 @@ def test_bristles_of_any_stiffness_are_followed_as_chosen(stiffer: float) -> Non
     assert difference(sw.simulate(drive, to_and_fro, 2e-4, sample=1e-3), exact) < 1e-3
 
 
-def on_stiff_bristles() -> sw.drives.PositionDrive:
+def on_bristles(stiffness: float) -> sw.drives.PositionDrive:
     law = DRIVE.gear.friction_input
-    return DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=1e5)))
+    return DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=stiffness)))
 
 
 def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
-    stiff = on_stiff_bristles()
-    assert _core.bristle_vibration(stiff) == pytest.approx(np.sqrt(1e5 / 1e-4), rel=1e-4)
-    for stiffness in (0.5, 50.0, 1e7):
-        soft = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=stiffness)))
-        assert _core.bristle_vibration(soft) == pytest.approx(np.sqrt(stiffness / 1e-4), rel=1e-4)
+    stiff = on_bristles(1e5)
+    for stiffness in (0.5, 50.0, 1e5, 1e7):
+        assert _core.bristle_vibration(on_bristles(stiffness)) == pytest.approx(np.sqrt(stiffness / 1e-4), rel=1e-4)
     assert _core.bristle_vibration(STICKING) == 0.0
     assert sw.simulate(stiff, command(0.01)).method.startswith("exponential Runge-Kutta, adaptive, rtol 1e-06")
     run = sw.simulate(stiff, command(0.01), method="rosenbrock")
@@ -149,7 +147,7 @@ TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than step
 
 
 def test_a_response_in_steps_too_long_for_the_bristles_is_warned_of() -> None:
-    stiff, loose = on_stiff_bristles(), {"tolerance": 1e9, "most_periods": 2}  # whatever comes of it
+    stiff, loose = on_bristles(1e5), {"tolerance": 1e9, "most_periods": 2}  # whatever comes of it
     with pytest.warns(RuntimeWarning, match=TOO_STIFF) as told:
         sw.frequency_response(stiff, [500.0, 50.0], 1e-3, **loose)
     assert [warning.filename for warning in told] == [__file__]
@@ -157,7 +155,7 @@ def test_a_response_in_steps_too_long_for_the_bristles_is_warned_of() -> None:
 
 
 def test_a_fit_in_steps_too_long_for_the_bristles_is_warned_of() -> None:
-    stiff = on_stiff_bristles()
+    stiff = on_bristles(1e5)
     log = sw.simulate(stiff, command(0.02)).select(["time", "command", "input_angle", "torque"])
     with pytest.warns(RuntimeWarning, match=TOO_STIFF) as told:
         sw.fit(stiff, log, ["gear.damping"])
