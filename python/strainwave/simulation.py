@@ -416,14 +416,6 @@ def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str)
     return f"the simulation diverged{place}; {what_to_do}"
 
 
-def _check_meaning(time: Array, outputs: Array, what_to_do: str) -> None:
-    sound = meaningful(outputs)
-    if not sound.all():
-        where = int(np.argmin(sound.all(axis=0)))
-        names = [name for (name, _, _), ok in zip(_core.outputs, sound[:, where], strict=True) if not ok]
-        raise FloatingPointError(f"the simulation diverged at t = {time[where]:.6g} s ({', '.join(names)}); {what_to_do}")
-
-
 def _largest_twist(outputs: Array) -> float:
     return float(np.abs(outputs[_TWIST]).max())
 
