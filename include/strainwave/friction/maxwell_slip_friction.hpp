@@ -88,15 +88,16 @@ struct MaxwellSlipFriction {
         return sum + contact.viscous * viscous * contact.speed;
     }
 
-    /// Rate of the elements [N.m/s], each as it sticks or slips. One that slips goes on in the sense of what it carries until
-    /// `renewed` finds that the motion has turned round.
+    /// Rate of the elements [N.m/s], each as it sticks or slips. One that slips sticks as soon as the motion turns round, also
+    /// before `renewed` says so: else a step in which it does would seem as exact as any other.
     constexpr State rate(const State& x, const Contact<S>& contact) const {
         const S level = this->level(contact), relaxation = this->relaxation(contact);
         State rates{};
         for (int i = 0; i < stiffness.count; ++i) {
             const S sense = select(x.torque[i] == S(0.0), sign(contact.speed), sign(x.torque[i]));
             const S drawn = (sense * share[i] * level - x.torque[i]) * relaxation;
-            rates.torque[i] = select(slipping(x, i), drawn, stiffness[i] * contact.speed);
+            const auto turned = contact.speed * x.torque[i] < S(0.0);
+            rates.torque[i] = select(slipping(x, i) & !turned, drawn, stiffness[i] * contact.speed);
         }
         return rates;
     }
