@@ -101,6 +101,26 @@ def gears(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> 
     print("\n".join(name for name in catalogue() if part.lower() in name))
 
 
+@app.command()
+def models(name: Annotated[str, typer.Argument(help="A model, to be described in full.")] = "") -> None:
+    """List the models that a gear file may name, or describe one."""
+    from inspect import cleandoc
+
+    from strainwave import _core
+
+    kinds = {model: kind for family in _core.families.values() for model, kind in family.items()}
+    if name and name not in kinds:
+        raise ValueError(f"there is no model {name}; there are {', '.join(kinds)}")
+    if name:
+        print(cleandoc(str(kinds[name].__doc__)))
+        return
+    width = max(map(len, kinds))
+    for family, members in _core.families.items():
+        print(family)
+        for model, kind in members.items():
+            print(f"  {model:{width}}  {cleandoc(str(kind.__doc__)).splitlines()[0]}")
+
+
 def _pairs(option: str, values: list[str] | None, known: set[str]) -> dict[str, str]:
     pairs = {}
     for value in values or []:

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave import _core
 from strainwave.cli import main
 
 GOOD_TABLE = "speed [rad/s],torque [N.m]\n1,0.021\n5,0.024\n10,0.026\n20,0.031\n50,0.046\n100,0.07\n"
@@ -194,3 +195,27 @@ def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: 
     result = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert (result.returncode, result.stdout) == (2, "")
     assert "nowhere.toml" in result.stderr
+
+
+# Models
+
+
+def test_every_model_is_listed_with_its_family_and_what_it_is(tmp_path: Path) -> None:
+    families = strainwave("models", folder=tmp_path).stdout.split("\n")
+    for family, members in _core.families.items():
+        start = families.index(family) + 1
+        listed = [line.split(maxsplit=1) for line in families[start : start + len(members)]]
+        assert [name for name, _ in listed] == list(members)
+        assert all(
+            said == kind.__doc__.strip().splitlines()[0] for (_, said), kind in zip(listed, members.values(), strict=True)
+        )
+
+
+def test_a_model_is_described_in_full(tmp_path: Path) -> None:
+    said = strainwave("models", "lugre", folder=tmp_path).stdout
+    for field in sw.friction.LuGre.fields:
+        assert f"{field['name']}: {field['doc']}" in said
+
+
+def test_a_model_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Path) -> None:
+    refused(tmp_path, ["models", "lugree"], "there is no model lugree", "lugre", "three_segment")
