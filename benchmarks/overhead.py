@@ -13,7 +13,7 @@ from reference_drive import DURATION, OUTPUT_INERTIA, SAMPLE
 from report import Column, figure, save, save_figure, table, three_digits
 from rich.console import Console
 from strainwave import _core
-from strainwave.simulation import derivatives
+from strainwave.simulation import differentiate
 
 STEP = 2e-4  # s
 FEW = 3  # steps
@@ -64,7 +64,7 @@ def with_derivatives() -> Extra:
     numbers = [places.index(path) for path in FREE]
     runs = {
         "without": lambda: sw.simulate(drive, command, STEP, sample=SAMPLE),
-        "with": lambda: derivatives(drive, command, numbers, STEP, SAMPLE),
+        "with": lambda: differentiate(drive, command, numbers, STEP, SAMPLE),
     }
     return Extra(f"{len(FREE)} derivatives", *shortest(runs, ROUNDS).values())
 

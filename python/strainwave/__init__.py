@@ -34,11 +34,13 @@ if TYPE_CHECKING:
     from strainwave.linear import LinearView, linearise
     from strainwave.recording import Recording
     from strainwave.response import FrequencyResponse, frequency_response
+    from strainwave.sensitivity import Derivatives, derivatives
     from strainwave.simulation import Run, simulate, simulate_adaptively
     from strainwave.steady import equilibrium
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
+    "Derivatives": "sensitivity",
     "Ensemble": "ensemble",
     "EnsembleWarning": "ensemble",
     "Fit": "identify.fit",
@@ -49,6 +51,7 @@ _LAZY = {
     "Run": "simulation",
     "Twin": "identify.twin",
     "catalogue": "gear_set",
+    "derivatives": "sensitivity",
     "equilibrium": "steady",
     "fit": "identify.fit",
     "frequency_response": "response",
@@ -64,6 +67,7 @@ _LAZY = {
 }
 
 __all__ = [
+    "Derivatives",
     "Ensemble",
     "EnsembleWarning",
     "Fit",
@@ -77,6 +81,7 @@ __all__ = [
     "Twin",
     "catalogue",
     "control",
+    "derivatives",
     "drives",
     "equilibrium",
     "fit",

@@ -326,7 +326,7 @@ def simulate_adaptively(
     return Run(_columns(samples, whole), output_units(drive), state, said)
 
 
-def derivatives(
+def differentiate(
     drive: PositionDrive,
     command: Scenario,
     numbers: Sequence[int],

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.drives import PositionDrive
-from strainwave.simulation import derivatives
+from strainwave.simulation import differentiate
 
 from tests.laws.test_gear import DRIVE, EVERY_PART, cannot_create_energy, laws, reduced_gears
 from tests.side_by_side import side_by_side
@@ -77,7 +77,7 @@ def check(drive: PositionDrive, seed: int, dt: float) -> None:
     for number, single in enumerate(singles):
         assert [name for name in COLUMNS if not np.array_equal(packed[name][number], single[name])] == []
     chosen = np.random.default_rng(seed).choice(differentiable(drive), 3, replace=False)
-    dual, _ = derivatives(drive, COMMAND, chosen, dt, SAMPLE, **COURSE)
+    dual, _ = differentiate(drive, COMMAND, chosen, dt, SAMPLE, **COURSE)
     assert [name for name in COLUMNS if not np.array_equal(dual[name], singles[0][name])] == []
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.drives import PositionDrive
-from strainwave.simulation import derivatives
+from strainwave.simulation import differentiate
 
 from tests.reference_drive import DRIVE, command
 from tests.side_by_side import side_by_side
@@ -82,7 +82,7 @@ def test_double_pack_and_dual_run_one_trajectory(drive: PositionDrive, seed: int
     for member, each in enumerate(drives):
         single = sw.simulate(each, course, DT, sample=SAMPLE)
         assert columns(packed.member(member)).tolist() == columns(single).tolist()
-    dual, _ = derivatives(each, course, chosen, DT, SAMPLE)
+    dual, _ = differentiate(each, course, chosen, DT, SAMPLE)
     assert np.all(np.abs(columns(dual) - columns(single)) <= 1e-12 * scales(each, single))
 
 
@@ -102,7 +102,7 @@ def test_derivatives_are_what_differences_show(drive: PositionDrive) -> None:
     where a Maxwell element starts to slip within h at one sample and beyond it at the next, they disagree.
     """
     base = numbers(drive)
-    run, slopes = derivatives(drive, SWING, range(base.size), DT, SAMPLE)
+    run, slopes = differentiate(drive, SWING, range(base.size), DT, SAMPLE)
 
     def difference(i: int, h: float) -> Array:
         up, down = base.copy(), base.copy()

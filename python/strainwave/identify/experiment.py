@@ -14,7 +14,7 @@ from strainwave import _core, arguments, loads, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.recording import Recording
-from strainwave.simulation import derivatives
+from strainwave.simulation import differentiate
 
 Array = NDArray[np.float64]
 ENCODERS = ("input_angle", "output_angle")
@@ -251,7 +251,7 @@ class DriveLog:
     def predict(self, model: PositionDrive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         command = scenario.table(self.time, self.command)
         names = [name for name, _, _ in _core.outputs]
-        run, slopes = derivatives(model, command, numbers, self.dt, self.time)
+        run, slopes = differentiate(model, command, numbers, self.dt, self.time)
         predicted = np.stack([run[name] for name in self.channels])
         by_zero = np.zeros((len(nuisances), *predicted.shape))
         encoders = [row for row, name in enumerate(self.channels) if name in ENCODERS]

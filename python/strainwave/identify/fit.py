@@ -10,10 +10,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments
+from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
+from strainwave.parameters import Parameter, parameters
 from strainwave.recording import Recording
 from strainwave.simulation import warn_of_bristles
 
@@ -153,7 +154,7 @@ def fit(
     """
     _check_kinds(model, recording, loss)
     experiment = experiment_of(model, recording, channels, dt) if isinstance(recording, Recording) else recording
-    problem = _Problem(model, experiment, _numbers(model, free), training)
+    problem = _Problem(model, experiment, parameters("free", model, free), training)
     start = problem.start()
     weights = 1.0 / _scale(experiment.measured[:, problem.training])
     passes = 1 if len(experiment.channels) == 1 else 2
@@ -197,35 +198,6 @@ def experiment_of(
     )
 
 
-@dataclass(frozen=True)
-class _Place:
-    """A free parameter: its place among the numbers of the model, and what is known of it."""
-
-    number: int
-    path: str
-    unit: str
-    value: float
-    low: float
-    high: float
-
-
-def _numbers(model: Gear | PositionDrive, free: Sequence[str]) -> list[_Place]:
-    free, parameters = arguments.names("free", free), _core.parameters(model)
-    places = [
-        _Place(number, path, unit, value, low, high)
-        for number, (path, value, unit, _, low, high) in enumerate(parameters)
-        if path in free or path.split("[")[0] in free
-    ]
-    found = {place.path for place in places} | {place.path.split("[")[0] for place in places}
-    for path in free:
-        if path not in found:
-            import difflib
-
-            near = difflib.get_close_matches(path, [p[0] for p in parameters], n=3, cutoff=0.0)
-            raise ValueError(f'the model has no parameter "{path}"; near it are {", ".join(near)}')
-    return places
-
-
 def _scale(measured: Array) -> Array:
     """How large each channel is, shape (channels, 1)."""
     spread = np.std(measured, axis=1, keepdims=True)
@@ -240,7 +212,7 @@ class _Problem:
         self,
         model: Gear | PositionDrive,
         experiment: Experiment,
-        places: list[_Place],
+        places: list[Parameter],
         training: NDArray[np.bool_] | None,
     ) -> None:
         self.model, self.experiment, self.places = model, experiment, places
