@@ -13,13 +13,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from measure import Effort, Failure, Result, measure_all
-from peers import Crowd, casadi_cvodes, diffrax_tsit5, numba_exponential, strainwave_drive
+from peers import Crowd, casadi_cvodes, diffrax_tsit5, jax_exponential, numba_exponential, strainwave_drive
 from reference import reference_solution
 from reference_drive import DURATION
 from report import Column, figure, save, save_figure, table, three_digits
 from rich.console import Console
 
-MODULES = (strainwave_drive, numba_exponential, casadi_cvodes, diffrax_tsit5)
+MODULES = (strainwave_drive, numba_exponential, jax_exponential, casadi_cvodes, diffrax_tsit5)
 CROWDS: tuple[Crowd, ...] = tuple(crowd for module in MODULES for crowd in module.CROWDS)
 BASELINE = "strainwave"
 

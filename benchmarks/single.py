@@ -9,13 +9,23 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from measure import WANTED_OUTPUT_ANGLE, WANTED_TORQUE, Effort, Failure, Result, measure_all
-from peers import Peer, casadi_cvodes, cvode, diffrax_tsit5, numba_exponential, numba_rk4, scipy_lsoda, strainwave_drive
+from peers import (
+    Peer,
+    casadi_cvodes,
+    cvode,
+    diffrax_tsit5,
+    jax_exponential,
+    numba_exponential,
+    numba_rk4,
+    scipy_lsoda,
+    strainwave_drive,
+)
 from reference import reference_solution
 from reference_drive import DURATION
 from report import Column, figure, save, save_figure, table, three_digits
 from rich.console import Console
 
-MODULES = (strainwave_drive, numba_exponential, numba_rk4, casadi_cvodes, cvode, diffrax_tsit5, scipy_lsoda)
+MODULES = (strainwave_drive, numba_exponential, jax_exponential, numba_rk4, casadi_cvodes, cvode, diffrax_tsit5, scipy_lsoda)
 PEERS: tuple[Peer, ...] = tuple(peer for module in MODULES for peer in module.PEERS)
 BASELINE = "strainwave"
 

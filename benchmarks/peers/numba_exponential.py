@@ -56,13 +56,13 @@ def phi(maths: Maths) -> Function:
     return phi
 
 
-def weights(maths: Maths) -> Function:
+def weights(maths: Maths, phi_functions: Function) -> Function:
     """(x) -> exp(x/2), half-step weight, and the weights of the first, middle and last stage, for x = -decay step."""
-    phi_functions = phi(maths)
+    exp = maths.exp
 
     @maths.compile
     def weights(x: float) -> Any:
-        decayed = math.exp(0.5 * x)
+        decayed = exp(0.5 * x)
         half, _, _ = phi_functions(0.5 * x, decayed)
         first, second, third = phi_functions(x, decayed * decayed)
         return (
@@ -76,10 +76,10 @@ def weights(maths: Maths) -> Function:
     return weights
 
 
-def exponential(maths: Maths) -> Function:
+def exponential(maths: Maths, phi: Callable[[Maths], Function] = phi) -> Function:
     """(time, step, state, memory) -> state one step later."""
     first, later, plus = stage(maths, advance(maths)), stage(maths, trial(maths)), ahead(maths)
-    decay_at, weights_at, limit = bristle_decay(maths), weights(maths), clip(maths)
+    decay_at, weights_at, limit = bristle_decay(maths), weights(maths, phi(maths)), clip(maths)
 
     @maths.compile
     def with_bristle(state: Any, bristle: float) -> Any:
