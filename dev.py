@@ -3,7 +3,7 @@
     python3 dev.py demo         run the demonstration; its report is out/demo/report.html
     python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
     python3 dev.py lint         check style, formatting and types
-    python3 dev.py sanitize     run the tests of the compiled core with addresses and undefined behaviour checked
+    python3 dev.py sanitize     run tests of the compiled core with addresses, undefined behaviour and threads checked
     python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
     python3 dev.py docs         build the documentation; it begins at out/docs/index.html
     python3 dev.py stubs        write the type stubs of the compiled modules anew
@@ -141,20 +141,40 @@ def lint(options: Sequence[str]) -> int:
     return max(attempt(*check, *options) for check in checks)
 
 
+# What each check needs: the compiler's libraries, what it is told, and the tests that are worth its time.
+CHECKS: dict[str, tuple[Sequence[str], dict[str, str], Sequence[str]]] = {
+    "address": (
+        ["libasan.so", "libubsan.so"],
+        {"ASAN_OPTIONS": "detect_leaks=0"},  # the interpreter's own
+        ["tests/laws", "tests/agreement", "tests/published"],
+    ),
+    "thread": (
+        ["libtsan.so"],
+        {"TSAN_OPTIONS": "ignore_noninstrumented_modules=1:halt_on_error=1"},  # interpreter and numpy are not compiled for it
+        ["tests/python/test_ensemble.py", "-k", "not instruction_set and not stopped and not memory"],  # those in this process
+    ),
+}
+
+
 def sanitize(options: Sequence[str]) -> int:
     prepare(["test"])
-    call(BIN / "cmake", "--preset", "sanitize")
-    call(BIN / "cmake", "--build", "--preset", "sanitize")
-    site = BUILD / "sanitize" / "site"
+    return max(sanitized(check, options) for check in CHECKS)
+
+
+def sanitized(check: str, tests: Sequence[str]) -> int:
+    """Compiles with a check, whose name is that of a CMake preset, and runs its tests or these."""
+    call(BIN / "cmake", "--preset", check)
+    call(BIN / "cmake", "--build", "--preset", check)
+    site = BUILD / f"sanitize-{check}" / "site"
     shutil.copytree(ROOT / "python" / "strainwave", site / "strainwave", dirs_exist_ok=True)
     packages = next(BIN.parent.glob("lib/python*/site-packages"))
-    tests = options or ("tests/laws", "tests/agreement", "tests/published")
+    libraries, told, worthwhile = CHECKS[check]
     return attempt(
         *(PYTHON, "-S", "-m", "pytest"),  # without -S the interpreter would find the editable package first
-        *tests,
-        LD_PRELOAD=f"{library('libasan.so')}:{library('libubsan.so')}",
-        ASAN_OPTIONS="detect_leaks=0",  # the interpreter's own
+        *(tests or worthwhile),
+        LD_PRELOAD=":".join(library(name) for name in libraries),
         PYTHONPATH=f"{site}:{packages}",
+        **told,
     )
 
 
