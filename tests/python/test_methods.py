@@ -16,6 +16,7 @@ from strainwave.simulation import METHODS
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, command
+from tests.tolerance import verdict
 
 MOVING = ("input_angle", "input_speed", "output_angle", "transmission_error", "output_speed", "torque")
 NO_HYSTERESIS = sw.hysteresis.MaxwellSlip(stiffness=[], breakaway=[])
@@ -203,6 +204,14 @@ def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, 
     assume(getattr(innermost(law), "stribeck_speed", 1.0) >= 1.0)
     assume(getattr(innermost(law), "presliding", 1.0) > 1e-4)
     check_tolerance(EVERYTHING.replace(gear=EVERYTHING.gear.replace(**{part: law})))
+
+
+@pytest.mark.parametrize("first", range(0, 40, 8))
+def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> None:
+    """Of forty drives; `python -m tests.tolerance` takes more, and says what is set aside and why."""
+    verdicts = [verdict(number) for number in range(first, first + 8)]
+    assert [one for one in verdicts if one.missed] == []
+    assert sum(not one.aside for one in verdicts) >= 2
 
 
 @pytest.mark.parametrize("sample", [1e-3, 7e-5, 0.03])
