@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from pyarrow import dataset
 from strainwave import _core, ensemble
 from strainwave.ensemble import EnsembleWarning
-from strainwave.simulation import derivatives
+from strainwave.simulation import differentiate
 
 from tests.reference_drive import DRIVE, command
 
@@ -150,7 +150,7 @@ def digests() -> dict[str, str]:
     found = {}
     for kind, drive in DRIVES.items():
         run = sw.simulate(drive, SWING, 5e-4)
-        _, slopes = derivatives(drive, SWING, range(12), 5e-4, 1e-3)
+        _, slopes = differentiate(drive, SWING, range(12), 5e-4, 1e-3)
         many = sw.simulate_many(drive, SWING, varied(), 5e-4, record=OUTPUTS)
         arrays = {"one": [run[name] for name in OUTPUTS], "derivatives": [slopes], "many": list(many.columns.values())}
         for name, values in arrays.items():

@@ -16,7 +16,7 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core, simulation
-from strainwave.simulation import ROOM_TEMPERATURE, Course, Excitation, derivatives
+from strainwave.simulation import ROOM_TEMPERATURE, Course, Excitation, differentiate
 
 from tests.reference_drive import DRIVE, command
 from tests.side_by_side import side_by_side
@@ -250,7 +250,7 @@ def test_drives_side_by_side_and_derivatives_see_mesh_and_temperature_too() -> N
     voltage = sw.scenario.sine(24.0, 5.0, 0.3)
     alone = sw.simulate(drive, voltage, dt=1e-4, sample=1e-3, **arguments)
     packed = side_by_side([drive], voltage, dt=1e-4, sample=1e-3, **arguments).member(0)
-    dual, _ = derivatives(drive, voltage, [0], 1e-4, 1e-3, **arguments)
+    dual, _ = differentiate(drive, voltage, [0], 1e-4, 1e-3, **arguments)
     for name in ("input_speed", "friction_mesh", "temperature"):
         size = np.abs(alone[name]).max()
         assert size > 0.0
@@ -278,7 +278,7 @@ def test_a_drive_that_leaves_the_domain_of_a_part_is_refused_with_part_numbers_a
     drive = open_loop(friction_input=law)
     for run in (
         lambda: sw.simulate(drive, voltage),
-        lambda: derivatives(drive, voltage, [0], 2e-4, 1e-2),
+        lambda: differentiate(drive, voltage, [0], 2e-4, 1e-2),
     ):
         with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = ") as refusal:
             run()
@@ -362,7 +362,7 @@ DIVERGED = (
 def diverging(drive: sw.drives.PositionDrive) -> Iterator[Callable[[], object]]:
     """The same too coarse run, each way there is."""
     yield lambda: sw.simulate(drive, command(5.0), dt=0.05, method="exponential")
-    yield lambda: derivatives(drive, command(5.0), [0], 0.05, 0.05)
+    yield lambda: differentiate(drive, command(5.0), [0], 0.05, 0.05)
 
 
 @drives
