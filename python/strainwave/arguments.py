@@ -25,7 +25,10 @@ def number(name: str, value: object, unit: str = "", brackets: str = "()", low: 
     """
     if not isinstance(value, Real) or isinstance(value, bool):
         raise TypeError(f"{name} must be a number, not {shortened(value)}")
-    given = float(value)
+    try:
+        given = float(value)
+    except OverflowError:
+        raise ValueError(f"{name} = {shortened(value)} is too large a number") from None
     above = low <= given if brackets[0] == "[" else low < given
     below = given <= high if brackets[1] == "]" else given < high
     if not (above and below):

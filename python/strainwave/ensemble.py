@@ -181,9 +181,10 @@ class _Plan:
     def failures(self, outputs: Array, twists: Array, vibrations: Array, refusals: dict[int, str]) -> dict[int, str]:
         """Why members have no result, as `simulate` would say it of each alone."""
         found = dict(refusals)
-        at_rest = (self.dt * vibrations > COARSEST) & (twists == 0.0)  # such members are not run
+        coarse = vibrations > COARSEST / self.dt
+        at_rest = coarse & (twists == 0.0)  # such members are not run
         sound = at_rest | (meaningful(outputs).all(axis=(0, 2)) & meaningful(twists))
-        for member in np.flatnonzero(~sound | (self.dt * vibrations > COARSEST)).tolist():
+        for member in np.flatnonzero(~sound | coarse).tolist():
             if member not in found and not sound[member]:
                 found[member] = diverged(self.time, self.recorded, outputs[:, member], remedy(self.dt))
             elif member not in found:

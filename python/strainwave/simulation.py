@@ -422,7 +422,7 @@ def _largest_twist(outputs: Array) -> float:
 
 def _check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
     vibration = _core.vibration(drive, twist)
-    if dt * vibration > COARSEST:
+    if vibration > COARSEST / dt:
         raise FloatingPointError(too_coarse(dt, twist, vibration))
 
 

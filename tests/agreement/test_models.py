@@ -82,8 +82,7 @@ def check(drive: PositionDrive, seed: int, dt: float) -> None:
 
 
 def agree(drive: PositionDrive, seed: int) -> None:
-    """At a step that resolves the drives, if a small one does, where all parts are valid and none runs away: packs count turns
-    up to 2^51."""
+    """At a step that resolves the drives, if a small one does, and where all parts are valid."""
     assume(cannot_create_energy(drive.gear))
     for dt in (1e-4, 1.25e-5):
         try:

@@ -175,3 +175,8 @@ def test_steps_that_no_clock_could_tell_apart_are_refused() -> None:
     for call in (*functions(dt=1e-300), *functions(sample=1e-300)):
         with pytest.raises(ValueError, match=r"^steps of 1e-300 s cannot be told apart within [\d.]+ s$"):
             call()
+
+
+def test_a_whole_number_beyond_all_others_is_refused_by_its_name() -> None:
+    with pytest.raises(ValueError, match=r"^dt = 1000.* is too large a number$"):
+        sw.simulate(sw.drives.PositionDrive(), sw.scenario.constant(0.0, 0.1), 10**400)

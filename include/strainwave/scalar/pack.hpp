@@ -107,9 +107,16 @@ struct Pack {
     friend constexpr Pack abs(const Pack& x) {
         return each([](const Lanes& lanes) { return (Lanes)((Bits)lanes & 0x7fffffffffffffffLL); }, x);
     }
-    /// Nearest whole number, ties to even; exact for |x| < 2^51.
+    /// Nearest whole number, ties to even, with the sign of x.
     friend constexpr Pack rint(const Pack& x) {
-        return each([](const Lanes& lanes) { return (lanes + elementary::rounder) - elementary::rounder; }, x);
+        constexpr double whole_from = 4503599627370496.0;  // 2^52: no halves from there on
+        return each(
+            [](const Lanes& lanes) {
+                const Bits sign = (Bits)lanes & (-0x7fffffffffffffffLL - 1);
+                const Lanes size = (Lanes)((Bits)lanes & 0x7fffffffffffffffLL), whole = (size + whole_from) - whole_from;
+                return (Lanes)((Bits)elementary::blend<Lanes>(size < whole_from, whole, size) | sign);
+            },
+            x);
     }
     friend Pack exp(const Pack& x) {
         return each([](const Lanes& lanes) { return elementary::exp(lanes); }, x);
