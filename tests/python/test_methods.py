@@ -16,17 +16,11 @@ from strainwave.simulation import METHODS
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, command
-from tests.tolerance import verdict
+from tests.tolerance import COLUMNS, difference, verdict
 
-MOVING = ("input_angle", "input_speed", "output_angle", "transmission_error", "output_speed", "torque")
 NO_HYSTERESIS = sw.hysteresis.MaxwellSlip(stiffness=[], breakaway=[])
 SMOOTH = DRIVE.replace(gear=DRIVE.gear.replace(hysteresis=NO_HYSTERESIS, friction_input=sw.friction.Viscous(viscous=1e-4)))
 STICKING = SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=sw.friction.Coulomb(coulomb=0.03, breakaway=0.045)))
-
-
-def difference(run: sw.Recording, exact: sw.Recording) -> float:
-    """The largest in any column, relative to the largest value in it."""
-    return max(float(np.abs(run[name] - exact[name]).max() / max(np.abs(exact[name]).max(), 1e-300)) for name in MOVING)
 
 
 # Orders
@@ -268,6 +262,6 @@ def test_below_breakaway_every_state_is_constant_to_the_last_bit(method: Any) ->
         run = sw.simulate_adaptively(drive, still, **arguments)
     else:
         run = sw.simulate(drive, still, method=method, **arguments)
-    for name in (*MOVING, "twist"):
+    for name in (*COLUMNS, "twist"):
         assert len(set(run[name].tolist())) == 1, name
     assert run["friction_output"][-1] == pytest.approx(-2.9, rel=1e-12)
