@@ -5,6 +5,7 @@ using namespace strainwave;
 
 namespace strainwave::host {
 
+void bind_course(nb::module_& core);
 void bind_drives(nb::module_& core);
 
 namespace {
@@ -62,5 +63,6 @@ NB_MODULE(_core, core) {
     bind_family(core, "motor", "Motors on the input shaft.", motor::Models{});
     bind_family(core, "control", "What turns the command into the motor's voltage.", control::Models{});
     bind_family(core, "loads", "What the output shaft carries.", load::Models{});
+    bind_course(core);
     bind_drives(core);
 }

@@ -17,6 +17,18 @@ namespace nb = nanobind;
 /// How Python's type checkers see an array.
 #define SW_ARRAY "numpy.typing.NDArray[numpy.float64]"
 using Values = nb::ndarray<nb::numpy, double, nb::c_contig>;
+using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// An array that Python owns, not yet filled.
+template <class T = double>
+nb::ndarray<nb::numpy, T, nb::c_contig> array(const std::vector<std::size_t>& shape) {
+    std::size_t size = 1;
+    for (std::size_t n : shape) size *= n;
+    auto* data = new T[size + 1];
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+    return {data, shape.size(), shape.data(), owner};
+}
 
 inline std::string shortest(double x) {
     const std::unique_ptr<char, void (*)(void*)> text(PyOS_double_to_string(x, 'r', 0, 0, nullptr), PyMem_Free);

@@ -7,24 +7,13 @@ namespace strainwave::host {
 
 namespace {
 
-using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-using Flags = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-
-Values array(std::vector<std::size_t> shape) {
-    std::size_t size = 1;
-    for (std::size_t n : shape) size *= n;
-    auto* data = new double[size + 1];
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    return Values(data, shape.size(), shape.data(), owner);
-}
-
 struct Request {
     Course course;
     std::size_t kept = 0;
 
     Request(const Numbers& instants, const Numbers& inputs, const Flags& keep)
         : course{instants.data(), inputs.data(), keep.data(), keep.size()} {
-        if (instants.size() != course.steps + 1 || inputs.size() != 12 * course.steps)
+        if (instants.size() != course.steps + 1 || inputs.size() != 3 * driving * course.steps)
             throw nb::value_error("a course of n steps has n + 1 instants, inputs of shape (n, 3, 4) and n flags");
         for (std::size_t i = 0; i < course.steps; ++i) kept += keep.data()[i] != 0;
     }
@@ -39,37 +28,43 @@ Pause pausing(const nb::object& progress) {
     };
 }
 
-nb::tuple run_one(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs, const Flags& keep,
-                  int method, const nb::object& progress) {
+using Outputs = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+/// Where the sample `first` of the outputs goes, and `count` from there on.
+double* place_in(const Outputs& out, std::size_t first, std::size_t count) {
+    if (out.shape(0) != std::size_t(channels) || first > out.shape(1) || count > out.shape(1) - first)
+        throw nb::value_error("outputs of n samples have shape (channels, n), and samples are written within");
+    return out.data() + first;
+}
+
+Drive::State run_one(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
+                     const Flags& keep, int method, const Outputs& out, std::size_t first, const nb::object& progress) {
     const Request request(instants, inputs, keep);
     if (method < 0 || method > int(Method::rosenbrock)) throw nb::value_error("no such method");
-    Values out = array({std::size_t(channels), request.kept});
+    double* const place = place_in(out, first, request.kept);
     const Pause pause = pausing(progress);
-    Drive::State end;
     const auto simulate = kernels().simulate;
-    {
-        nb::gil_scoped_release free;
-        end = simulate(drive, start, request.course, Method(method), out.data(), request.kept, pause);
-    }
-    return nb::make_tuple(out, end);
+    nb::gil_scoped_release free;
+    return simulate(drive, start, request.course, Method(method), place, out.shape(1), pause);
 }
 
 nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
-                         double relative, double absolute, long most_steps, const Numbers& samples, const nb::object& progress) {
+                         double relative, double absolute, long most_steps, const Numbers& samples, const Outputs& out,
+                         std::size_t first, const nb::object& progress) {
     const std::vector<std::uint8_t> none(instants.size() - 1);
     const Course course{instants.data(), inputs.data(), none.data(), none.size()};
-    if (inputs.size() != 12 * course.steps) throw nb::value_error("a course of n steps has inputs of shape (n, 3, 4)");
-    Values out = array({std::size_t(channels), samples.size()});
+    if (inputs.size() != 3 * driving * course.steps) throw nb::value_error("a course of n steps has inputs of shape (n, 3, 4)");
+    double* const place = place_in(out, first, samples.size());
     const Pause pause = pausing(progress);
     Drive::State end;
     Steps steps;
     const auto simulate = kernels().simulate_adaptively;
     {
         nb::gil_scoped_release free;
-        end = simulate(drive, start, course, {relative, absolute}, most_steps, samples.data(), samples.size(), out.data(), steps,
-                       pause);
+        end = simulate(drive, start, course, {relative, absolute}, most_steps, {samples.data(), samples.size()}, place,
+                       out.shape(1), steps, pause);
     }
-    return nb::make_tuple(out, end, steps.accepted, steps.rejected);
+    return nb::make_tuple(end, steps.accepted, steps.rejected);
 }
 
 /// What went wrong, in words.
@@ -373,19 +368,22 @@ void bind_drives(nb::module_& core) {
     core.attr("outputs") = nb::tuple(outputs);
 
 #define SW_COURSE "instants: " SW_ARRAY ", inputs: " SW_ARRAY ", keep: numpy.typing.NDArray[numpy.uint8]"
+#define SW_OUTPUTS "out: " SW_ARRAY ", first: int"
 #define SW_PROGRESS ", progress: collections.abc.Callable[[int], None] | None = None"
     core.def("simulate", &run_one, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
-             nb::arg("method"), nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE ", method: int" SW_PROGRESS
-                     ") -> tuple[" SW_ARRAY ", State]"),
-             "Outputs, shape (channels, kept), and the state at the end. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.");
+             nb::arg("method"), nb::arg("out").noconvert(), nb::arg("first"), nb::arg("progress").none() = nb::none(),
+             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE
+                     ", method: int, " SW_OUTPUTS SW_PROGRESS ") -> State"),
+             "The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on. Methods: "
+             "0 exponential, 1 Moreau-Jean, 2 Rosenbrock.");
     core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"),
-             nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"), nb::arg("samples"),
-             nb::arg("progress").none() = nb::none(),
+             nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"), nb::arg("samples"), nb::arg("out").noconvert(),
+             nb::arg("first"), nb::arg("progress").none() = nb::none(),
              nb::sig("def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: " SW_ARRAY
-                     ", inputs: " SW_ARRAY ", relative: float, absolute: float, most_steps: int, samples: " SW_ARRAY SW_PROGRESS
-                     ") -> tuple[" SW_ARRAY ", State, int, int]"),
-             "Outputs at `samples` [s], shape (channels, samples), the state at the end, steps taken and steps given up.");
+                     ", inputs: " SW_ARRAY ", relative: float, absolute: float, most_steps: int, samples: " SW_ARRAY
+                     ", " SW_OUTPUTS SW_PROGRESS ") -> tuple[State, int, int]"),
+             "The state at the end, steps taken and steps given up; the outputs at `samples` [s] go to `out`, shape (channels, "
+             "samples), from sample `first` on.");
     core.def(
         "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("instants"), nb::arg("inputs"),
         nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("threads"), nb::arg("progress").none() = nb::none(),

@@ -1,5 +1,6 @@
 #pragma once
 #include "run.hpp"
+#include "signal.hpp"
 
 #include <optional>
 #include <string>
@@ -42,9 +43,9 @@ struct Verdict {
 /// How steps are taken.
 enum class Method { exponential, moreau_jean, rosenbrock };
 
-/// One trajectory in the steps of its course. Writes channel c of kept sample k to out[c * kept + k].
+/// One trajectory in the steps of its course. Writes channel c of kept sample k to out[c * samples + k].
 Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
-                      std::size_t kept, const Pause& pause);
+                      std::size_t samples, const Pause& pause);
 
 /// No step was short enough to keep the tolerance, between two instants [s].
 struct ToleranceMissed {
@@ -62,11 +63,17 @@ struct Steps {
     long accepted = 0, rejected = 0;
 };
 
+/// Instants [s], in order.
+struct Instants {
+    const double* at;
+    std::size_t count;
+};
+
 /// One trajectory in at most `most` steps, as long as a tolerance allows, none longer than those of its course. Writes channel c at
-/// samples[k] [s] to out[c * count + k]. Throws OutOfBounds, ToleranceMissed, StepsSpent.
+/// wanted.at[k] to out[c * samples + k]. Throws OutOfBounds, ToleranceMissed, StepsSpent.
 Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
-                                 const integrate::Tolerance& tolerance, long most, const double* samples, std::size_t count,
-                                 double* out, Steps& steps, const Pause& pause);
+                                 const integrate::Tolerance& tolerance, long most, const Instants& wanted, double* out,
+                                 std::size_t samples, Steps& steps, const Pause& pause);
 
 /// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
@@ -103,6 +110,8 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
 
 /// All of them, as one module holds them.
 struct Kernels {
+    decltype(&host::evaluate) evaluate;
+    void (*lay_out)(const Signals&, const double*, std::size_t, double*);
     decltype(&host::simulate) simulate;
     decltype(&host::simulate_adaptively) simulate_adaptively;
     decltype(&host::simulate_many) simulate_many;

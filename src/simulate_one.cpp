@@ -4,15 +4,15 @@ namespace strainwave::host {
 
 namespace {
 
-/// Writes outputs one after the other to their place among `count`.
+/// Writes outputs one after the other to their place among `samples`.
 struct Writer {
     double* out;
-    std::size_t count;
+    std::size_t samples;
     std::size_t k = 0;
 
     void operator()(const Output<double>& output) {
         const auto values = flattened<double>(output);
-        for (int c = 0; c < channels; ++c) out[c * count + k] = values[c];
+        for (int c = 0; c < channels; ++c) out[c * samples + k] = values[c];
         ++k;
     }
 };
@@ -30,8 +30,8 @@ Drive::State run_by(const Drive& drive, const Drive::State& start, const Course&
 }  // namespace
 
 Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
-                      std::size_t kept, const Pause& pause) {
-    Writer record{out, kept};
+                      std::size_t samples, const Pause& pause) {
+    Writer record{out, samples};
     if (method == Method::moreau_jean)
         return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& x, const auto& u, double dt) {
             return integrate::moreau_jean_step(moved, x, u, dt);
@@ -50,7 +50,7 @@ namespace {
 /// A run whose samples lie anywhere within its steps.
 template <class Compiled>
 typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled::State x, const Course& course,
-                                        const integrate::Tolerance& tolerance, long most, const double* samples, Writer& record,
+                                        const integrate::Tolerance& tolerance, long most, const Instants& wanted, Writer& record,
                                         Steps& steps, const Pause& pause) {
     using State = typename Compiled::State;
     const bool has_bounds = drive.has_bounds();
@@ -71,8 +71,8 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
             if (++taken % steps_between_pauses == 0) pause(i);
             if (has_bounds) check_bounds(drive, end, u.at(to, dt), begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
-            for (; record.k < record.count && samples[record.k] <= until;) {
-                const double at = clip((samples[record.k] - begin) / dt, done, to);
+            while (record.k < wanted.count && wanted.at[record.k] <= until) {
+                const double at = clip((wanted.at[record.k] - begin) / dt, done, to);
                 const State there = at == to      ? end
                                     : at < middle ? advance(drive, from, u.part(done, at, dt), (at - done) * dt)
                                                   : advance(drive, half, u.part(middle, at, dt), (at - middle) * dt);
@@ -89,11 +89,11 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
 }  // namespace
 
 Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
-                                 const integrate::Tolerance& tolerance, long most, const double* samples, std::size_t count,
-                                 double* out, Steps& steps, const Pause& pause) {
-    Writer record{out, count};
+                                 const integrate::Tolerance& tolerance, long most, const Instants& wanted, double* out,
+                                 std::size_t samples, Steps& steps, const Pause& pause) {
+    Writer record{out, samples};
     const auto runner = [&]<bool, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        return run_adaptively(compiled, from, course, tolerance, most, samples, record, steps, pause);
+        return run_adaptively(compiled, from, course, tolerance, most, wanted, record, steps, pause);
     };
     return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
 }

@@ -41,9 +41,8 @@ inline Argument steps_of(nb::handle values, const char* name, const char* unit) 
 inline std::pair<Values, double*> like(const Argument& model) {
     std::vector<std::size_t> shape;
     for (std::size_t i = 0; i < model.ndim(); ++i) shape.push_back(model.shape(i));
-    auto* data = new double[model.size() + 1];
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    return {Values(data, shape.size(), shape.data(), owner), data};
+    Values out = array(shape);
+    return {out, out.data()};
 }
 
 /// A function of one number, for a number or an array of any shape.

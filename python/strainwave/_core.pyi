@@ -31,6 +31,34 @@ families: dict[str, dict[str, type[Any]]]
 class PassivityWarning(UserWarning):
     """A set of parameters lets its model create energy."""
 
+class Signal:
+    """
+    A command or another input over time, as the compiled loops know it: a line in pieces, and waves.
+    """
+
+    def __init__(self, start: numpy.typing.NDArray[numpy.float64], level: numpy.typing.NDArray[numpy.float64], slope: numpy.typing.NDArray[numpy.float64], waves: numpy.typing.NDArray[numpy.float64]) -> None:
+        """
+        Pieces of a line, shape (n,) each, and amplitude, frequency, sweep and phase of each wave, shape (m, 4).
+        """
+
+    def at(self, instants: numpy.typing.NDArray[numpy.float64], before: bool) -> numpy.typing.NDArray[numpy.float64]:
+        """Values and rates at `instants` [s], or just before them: shape (2, …)."""
+
+def inputs(command: Signal, load_torque: Signal, temperature: Signal, instants: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Command, its rate, load torque and temperature at start, middle and end of each step: shape (n, 3, 4).
+    """
+
+def grid(step: float, duration: float, tolerance: float) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.
+    """
+
+def course(steps: numpy.typing.NDArray[numpy.float64], samples: numpy.typing.NDArray[numpy.float64], breaks: numpy.typing.NDArray[numpy.float64], tolerance: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8]]:
+    """
+    All instants in order, whatever is within `tolerance` of its neighbour being one, and which of them are samples.
+    """
+
 class Gear:
     """
     One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
@@ -303,14 +331,14 @@ lanes: int = 8
 
 outputs: tuple[tuple[str, str, str], ...]
 
-def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State]:
+def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: int, out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> State:
     """
-    Outputs, shape (channels, kept), and the state at the end. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.
+    The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.
     """
 
-def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], State, int, int]:
+def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[State, int, int]:
     """
-    Outputs at `samples` [s], shape (channels, samples), the state at the end, steps taken and steps given up.
+    The state at the end, steps taken and steps given up; the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.
     """
 
 def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, threads: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:

@@ -143,8 +143,7 @@ class _Plan:
 
     @property
     def time(self) -> Array:
-        instants: Array = self.course.instants[self.course.samples.astype(bool)]
-        return instants
+        return self.course.times
 
     @property
     def steps(self) -> int:

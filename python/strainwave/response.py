@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.scenario import Scenario, constant, sine
-from strainwave.simulation import ROOM_TEMPERATURE, Excitation, recording, warn_of_bristles
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, recording, warn_of_bristles
 from strainwave.steady import averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
@@ -181,9 +181,9 @@ class _Sines:
         course = excitation.course(step, None)
         inputs, state = excitation.over(course), self.start
         while True:
-            first = _core.now(self.drive, state, excitation.first())
-            outputs, state = _core.simulate(self.drive, state, course.instants, inputs, course.samples[1:], 0)
-            run = recording(self.drive, course, np.concatenate((first, outputs), axis=1), step)
+            outputs = beginning(self.drive, state, excitation, len(course.times))
+            state = _core.simulate(self.drive, state, course.instants, inputs, course.samples[1:], 0, outputs, 1)
+            run = recording(self.drive, course, outputs, step)
             yield {name: run[name] for name in run.names if name != "time"}
 
 

@@ -17,18 +17,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import pi, tau
 from numbers import Real
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import arguments
+from strainwave import _core, arguments
 from strainwave.recording import Recording
 
 Array = NDArray[np.float64]
-Side = Literal["left", "right"]
 
 
 @dataclass(frozen=True)
@@ -46,26 +43,6 @@ class Wave:
     frequency: float
     sweep: float
     phase: float
-
-    def value(self, time: Array) -> Array:
-        """Value [unit of the command] at `time` [s]."""
-        value = np.sin(self._angle(time))
-        value *= self.amplitude
-        return value
-
-    def rate(self, time: Array) -> Array:
-        """Derivative of the value [unit of the command per s] at `time` [s]."""
-        rate = np.cos(self._angle(time))
-        rate *= tau * self.amplitude * (self.frequency + self.sweep * time)
-        return rate
-
-    # Here and in Scenario arrays are changed in place: a new one for each operation would cost as much as the sine.
-    def _angle(self, time: Array) -> Array:
-        angle = pi * self.sweep * time
-        angle += tau * self.frequency
-        angle *= time
-        angle += self.phase
-        return angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,27 +86,26 @@ class Scenario:
 
     def value(self, time: ArrayLike) -> Array:
         """The command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
-        return self._value(self._inside(time), "right")
+        return self._at(time, before=False)[0]
 
     def rate(self, time: ArrayLike) -> Array:
         """Derivative of the command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
-        return self._rate(self._inside(time), "right")
+        return self._at(time, before=False)[1]
 
     def value_before(self, time: ArrayLike) -> Array:
         """Left limit of the command at `time` [s]; at 0 the value there."""
-        return self._value(self._inside(time), "left")
+        return self._at(time, before=True)[0]
 
     def rate_before(self, time: ArrayLike) -> Array:
         """Left limit of the rate at `time` [s]; at 0 the rate there."""
-        return self._rate(self._inside(time), "left")
+        return self._at(time, before=True)[1]
 
     @cached_property
     def breaks(self) -> Array:
         """The times [s] in (0, duration) at which the command or its rate jumps, increasing."""
         inner = self.start[1:]
-        jumps = self._line(inner, "left") != self._line(inner, "right")
-        kinks = self.slope[1:] != self.slope[:-1]
-        breaks: Array = inner[jumps | kinks]
+        differs = self._line.at(inner, before=True) != self._line.at(inner, before=False)
+        breaks: Array = inner[differs.any(axis=0)]
         breaks.setflags(write=False)
         return breaks
 
@@ -148,6 +124,9 @@ class Scenario:
         time = np.minimum(dt * np.arange(intervals + 1), self.duration)
         return Recording({"time": time, "command": self.value(time)}, {"time": "s", "command": unit})
 
+    def __reduce__(self) -> tuple[type[Scenario], tuple[object, ...]]:
+        return Scenario, (self.duration, self.start, self.level, self.slope, self.waves)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
             return NotImplemented
@@ -162,8 +141,7 @@ class Scenario:
         if self.duration != other.duration:
             raise ValueError(f"durations differ, {self.duration} s and {other.duration} s; a sum needs one duration")
         start = np.append(0.0, np.union1d(self.breaks, other.breaks))
-        level = self._line(start, "right") + other._line(start, "right")
-        slope = self._slope(start, "right") + other._slope(start, "right")
+        level, slope = self._line.at(start, before=False) + other._line.at(start, before=False)
         return Scenario(self.duration, start, level, slope, self.waves + other.waves)
 
     def __mul__(self, factor: float) -> Scenario:
@@ -183,40 +161,24 @@ class Scenario:
         """The difference of two commands of the same duration."""
         return self + -other
 
-    def _inside(self, time: ArrayLike) -> Array:
+    @cached_property
+    def signal(self) -> _core.Signal:
+        """The same for the compiled loops."""
+        waves = [(wave.amplitude, wave.frequency, wave.sweep, wave.phase) for wave in self.waves]
+        return _core.Signal(self.start, self.level, self.slope, np.array(waves, dtype=np.float64))
+
+    @cached_property
+    def _line(self) -> _core.Signal:
+        return _core.Signal(self.start, self.level, self.slope, np.empty(0))
+
+    def _at(self, time: ArrayLike, before: bool) -> tuple[Array, Array]:
+        """Values and rates at `time` [s], or just before it."""
         times = arguments.numbers("time", time)
         if times.size and not (times.min() >= 0.0 and times.max() <= self.duration):
             outside = times[~((times >= 0.0) & (times <= self.duration))]
             raise ValueError(f"time = {outside[0]} s lies outside the scenario, [0, {self.duration}] s")
-        return times
-
-    def _piece(self, time: Array, side: Side) -> NDArray[np.intp]:
-        """The piece that holds at each time, or just before it."""
-        if self.start.size == 1:
-            return np.zeros((), dtype=np.intp)
-        return np.maximum(np.searchsorted(self.start, time, side) - 1, 0)
-
-    def _line(self, time: Array, side: Side) -> Array:
-        piece = self._piece(time, side)
-        line = time - self.start[piece]
-        line *= self.slope[piece]
-        line += self.level[piece]
-        return line
-
-    def _slope(self, time: Array, side: Side) -> Array:
-        return np.zeros_like(time) + self.slope[self._piece(time, side)]
-
-    def _value(self, time: Array, side: Side) -> Array:
-        value = self._line(time, side)
-        for wave in self.waves:
-            value += wave.value(time)
-        return value
-
-    def _rate(self, time: Array, side: Side) -> Array:
-        rate = self._slope(time, side)
-        for wave in self.waves:
-            rate += wave.rate(time)
-        return rate
+        values, rates = self.signal.at(times, before)
+        return values, rates
 
 
 def constant(value: float, duration: float) -> Scenario:

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from numbers import Real
 from typing import Literal
 
@@ -39,20 +40,16 @@ class Course:
 
         Where neither asks for more, steps are exactly `dt`; the last may be shorter.
         """
+        nearest = 1e-9 * min(dt, float(np.min(np.diff(samples))) if isinstance(samples, np.ndarray) else samples)
         if not isinstance(samples, np.ndarray):
-            samples = _grid(samples, duration, 1e-9 * min(dt, samples))
-        tolerance = 1e-9 * min(dt, float(np.min(np.diff(samples))))
-        sampled = samples
-        instants = np.concatenate((_grid(dt, duration, tolerance), sampled, breaks))
-        order = np.argsort(instants, kind="stable")
-        instants = instants[order]
-        is_sample = np.isin(order, np.arange(len(order) - len(breaks) - len(sampled), len(order) - len(breaks)))
-        first = np.concatenate(([True], np.diff(instants) > tolerance))
-        merged = np.logical_or.reduceat(is_sample, np.flatnonzero(first))
-        steps = instants[first]
-        is_break = order >= len(order) - len(breaks)  # a step that ends there ends exactly there: the inputs jump
-        steps[(np.cumsum(first) - 1)[is_break]] = instants[is_break]
-        return cls(steps, merged.astype(np.uint8))
+            samples = grid(samples, duration, nearest)
+        return cls(*_core.course(grid(dt, duration, nearest), samples, np.sort(breaks), nearest))
+
+    @property
+    def times(self) -> Array:
+        """The samples [s]."""
+        times: Array = self.instants[self.samples.view(np.bool_)]
+        return times
 
     def chunks(self) -> Iterator[Course]:
         """The same course in pieces that follow each other."""
@@ -94,7 +91,7 @@ class Excitation:
         """Ends of stretches over which what a step knows of the inputs between start, middle and end is within `rtol`."""
         signals = [signal for signal in (self.command, self.load_torque, self.temperature) if isinstance(signal, Scenario)]
         breaks = np.unique(np.concatenate([[0.0, self.command.duration], *(signal.breaks for signal in signals)]))
-        ends = np.unique(np.concatenate((breaks, _grid(LONGEST, self.command.duration, 1e-9 * LONGEST))))
+        ends = np.unique(np.concatenate((breaks, grid(LONGEST, self.command.duration, 1e-9 * LONGEST))))
         ends = ends[np.append(True, np.diff(ends) > 1e-12 * self.command.duration)]
         while len(coarse := self._coarse(ends, rtol)):
             ends = np.sort(np.append(ends, 0.5 * (ends[coarse] + ends[coarse + 1])))
@@ -118,23 +115,27 @@ class Excitation:
             missed |= np.abs(values - known).max(axis=0) > max(rtol, 1e-13) * max(np.abs(values).max(), np.abs(begin).max())
         return np.flatnonzero(missed & (span > SHORTEST))
 
+    @cached_property
+    def signals(self) -> tuple[_core.Signal, _core.Signal, _core.Signal]:
+        """Command, load torque and temperature."""
+        return _signal(self.command), _signal(self.load_torque), _signal(self.temperature)
+
     def first(self) -> Array:
         """Command, its rate, load torque and temperature at t = 0."""
-        others = (float(s.value(0.0)) if isinstance(s, Scenario) else s for s in (self.load_torque, self.temperature))
-        return np.array([float(self.command.value(0.0)), float(self.command.rate(0.0)), *others])
+        command, load_torque, temperature = (signal.at(np.zeros(()), before=False) for signal in self.signals)
+        return np.array([*command, load_torque[0], temperature[0]])
 
     def over(self, course: Course) -> Array:
         """The same at the start, middle and end of each step, shape (n, 3, 4)."""
-        inputs = np.empty((len(course.instants) - 1, 3, 4))
-        start, end = course.instants[:-1], course.instants[1:]
-        for column, signal in ((0, self.command), (2, self.load_torque), (3, self.temperature)):
-            if isinstance(signal, Scenario):
-                _lay_out(inputs[:, :, column], start, end, signal.breaks, signal.value, signal.value_before)
-            else:
-                inputs[:, :, column] = signal
+        inputs = _core.inputs(*self.signals, course.instants)
         check_temperature(float(inputs[:, :, 3].min()))
-        _lay_out(inputs[:, :, 1], start, end, self.command.breaks, self.command.rate, self.command.rate_before)
         return inputs
+
+
+def _signal(given: Scenario | float) -> _core.Signal:
+    if isinstance(given, Scenario):
+        return given.signal
+    return _core.Signal(np.zeros(1), np.array([given], dtype=np.float64), np.zeros(1), np.empty(0))
 
 
 METHODS = ("exponential", "moreau_jean", "rosenbrock")
@@ -232,20 +233,26 @@ def simulate(
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, interval)
     taken = method or "exponential"
-    pieces = [_core.now(drive, state, excitation.first())]
+    time = course.times
+    outputs, first = beginning(drive, state, excitation, len(time)), 1
     with progressing(progress, len(course.instants) - 1) as shown:
         for number, chunk in enumerate(course.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
             inputs, keep = excitation.over(chunk), chunk.samples[1:]
-            outputs, state = _core.simulate(drive, state, chunk.instants, inputs, keep, METHODS.index(taken), report)
-            pieces.append(outputs)
-    whole = np.concatenate(pieces, axis=1)
-    time = course.instants[course.samples.astype(bool)]
-    _check_meaning(time, whole, remedy(dt))
+            state = _core.simulate(drive, state, chunk.instants, inputs, keep, METHODS.index(taken), outputs, first, report)
+            first += int(np.count_nonzero(keep))
+    _check_meaning(time, outputs, remedy(dt))
     if method != "rosenbrock":
-        _check_resolution(drive, dt, _largest_twist(whole))
+        _check_resolution(drive, dt, _largest_twist(outputs))
     named = _NAMED[taken] + (", cut at events" if taken != "moreau_jean" and _sticks(drive) else "")
-    return Run(_columns(time, whole), output_units(drive), state, f"{named}, steps of {dt:g} s")
+    return Run(_columns(time, outputs), output_units(drive), state, f"{named}, steps of {dt:g} s")
+
+
+def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, samples: int) -> Array:
+    """Room for the outputs of a run, shape (channels, samples), that of the start filled in."""
+    outputs = np.empty((len(_core.outputs), samples))
+    outputs[:, :1] = _core.now(drive, state, excitation.first())
+    return outputs
 
 
 def _sticks(drive: PositionDrive) -> bool:
@@ -307,23 +314,22 @@ def simulate_adaptively(
     most_steps = arguments.whole("most_steps", most_steps, 1)
     state = drive.rest() if start is None else arguments.state("start", start)
     excitation = Excitation(command, load_torque, temperature)
-    samples = _grid(sample, command.duration, 1e-9 * sample)
+    samples = grid(sample, command.duration, 1e-9 * sample)
     instants = excitation.instants(rtol)
-    pieces, accepted, rejected = [_core.now(drive, state, excitation.first())], 0, 0
+    outputs, done, accepted, rejected = beginning(drive, state, excitation, len(samples)), 1, 0, 0
     with progressing(progress, len(instants) - 1) as shown:
         for first in range(0, len(instants) - 1, CHUNK):
             chunk = Course(instants[first : first + CHUNK + 1], np.empty(0, np.uint8))
             report = None if shown is None else lambda done, begun=first, show=shown: show(begun + done)
             within = samples[(samples > chunk.instants[0]) & (samples <= chunk.instants[-1])]
-            outputs, state, taken, given_up = _core.simulate_adaptively(
-                drive, state, chunk.instants, excitation.over(chunk), rtol, atol, most_steps - accepted, within, report
+            inputs, left = excitation.over(chunk), most_steps - accepted
+            state, taken, given_up = _core.simulate_adaptively(
+                drive, state, chunk.instants, inputs, rtol, atol, left, within, outputs, done, report
             )
-            pieces.append(outputs)
-            accepted, rejected = accepted + taken, rejected + given_up
-    whole = np.concatenate(pieces, axis=1)
-    _check_meaning(samples, whole, "check the parameters")
+            done, accepted, rejected = done + len(within), accepted + taken, rejected + given_up
+    _check_meaning(samples, outputs, "check the parameters")
     said = f"exponential Runge-Kutta, adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
-    return Run(_columns(samples, whole), output_units(drive), state, said)
+    return Run(_columns(samples, outputs), output_units(drive), state, said)
 
 
 def differentiate(
@@ -352,39 +358,21 @@ def differentiate(
     return run, np.concatenate((first_slopes, slopes), axis=2)
 
 
-def _lay_out(
-    columns: Array,
-    start: Array,
-    end: Array,
-    breaks: Array,
-    after: Callable[[Array], Array],
-    before: Callable[[Array], Array],
-) -> None:
-    """A signal at the start, middle and end of each step, shape (n, 3): what ends one step begins the next, but for jumps."""
-    columns[:, 0] = after(start)
-    columns[:, 1] = after(0.5 * (start + end))
-    columns[:-1, 2] = columns[1:, 0]
-    jumps = np.flatnonzero(np.isin(end, breaks)) if len(breaks) else np.empty(0, np.intp)
-    ends = np.append(jumps[jumps < len(end) - 1], len(end) - 1)
-    columns[ends, 2] = before(end[ends])
-
-
 def check_temperature(lowest: float) -> None:
     if lowest <= 0.0:
         raise ValueError(f"temperature = {lowest:g} K must lie in (0, inf); 20 degC are 293.15 K")
 
 
-def _grid(step: float, duration: float, tolerance: float) -> Array:
+def grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
     if step < np.spacing(duration):
         raise ValueError(f"steps of {step:g} s cannot be told apart within {duration:g} s")
-    grid = step * np.arange(int(duration / step) + 2)
-    return np.append(grid[grid < duration - tolerance], duration)
+    return _core.grid(step, duration, tolerance)
 
 
 def recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -> Recording:
     """What a run recorded, shape (channels, samples), if its numbers mean anything."""
-    time = course.instants[course.samples.astype(bool)]
+    time = course.times
     _check_meaning(time, outputs, remedy(dt))
     _check_resolution(drive, dt, _largest_twist(outputs))
     return Recording(_columns(time, outputs), output_units(drive), title="simulation")

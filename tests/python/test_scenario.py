@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import re
 from collections.abc import Callable
 
@@ -110,6 +112,14 @@ def test_scenarios_are_values(scenario: Scenario) -> None:
     assert scenario != scenario + constant(1.0, DURATION)
     with pytest.raises(ValueError, match="read-only"):
         scenario.start[0] = 1.0
+
+
+@given(scenarios)
+def test_a_copy_is_equal_also_of_a_scenario_that_was_used(scenario: Scenario) -> None:
+    scenario.value(0.0)
+    for copied in (pickle.loads(pickle.dumps(scenario)), copy.deepcopy(scenario)):
+        assert copied == scenario
+        assert not copied.start.flags.writeable
 
 
 @given(scenarios, st.integers(1, 3))

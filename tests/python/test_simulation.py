@@ -378,7 +378,8 @@ def test_a_run_that_diverges_says_when_and_returns_nothing(drive: sw.drives.Posi
 def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
     excitation = Excitation(command(10.0))
     course = excitation.course(DT, 1.0)
-    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:], 0)
+    outputs = np.empty((len(COLUMNS), len(course.times)))
+    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:], 0, outputs, 1)
     counted: list[int] = []
     _core.simulate(*arguments, counted.append)
     assert counted == sorted(set(counted))
@@ -392,6 +393,17 @@ def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
         _core.simulate(*arguments, stop)
 
 
+@pytest.mark.parametrize(("channels", "samples", "first"), [(15, 11, 1), (16, 10, 1), (16, 11, 2), (16, 11, 12)])
+def test_outputs_are_written_within_the_array_given_only(channels: int, samples: int, first: int) -> None:
+    excitation = Excitation(command(0.01))
+    course = excitation.course(1e-3, None)
+    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:], 0)
+    with pytest.raises(ValueError, match="are written within"):
+        _core.simulate(*arguments, np.empty((channels, samples)), first)
+    with pytest.raises(TypeError, match="incompatible"):
+        _core.simulate(*arguments, np.empty((16, 11), np.float32), 1)  # type: ignore[arg-type]
+
+
 def test_a_progress_bar_changes_nothing() -> None:
     assert same(sw.simulate(DRIVE, command(0.1), progress=True), sw.simulate(DRIVE, command(0.1)))
 
@@ -400,7 +412,7 @@ def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     excitation = Excitation(sw.scenario.constant(0.1, 300.0))
     course = excitation.course(DT, 10.0)
-    inputs = excitation.over(course)
+    inputs, outputs = excitation.over(course), np.empty((len(COLUMNS), len(course.times)))
     pressed: list[float] = []
 
     def press() -> None:
@@ -411,7 +423,7 @@ def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
         key = threading.Timer(0.1, press)
         key.start()
         with pytest.raises(KeyboardInterrupt):
-            _core.simulate(DRIVE, DRIVE.rest(), course.instants, inputs, course.samples[1:], 0)
+            _core.simulate(DRIVE, DRIVE.rest(), course.instants, inputs, course.samples[1:], 0, outputs, 1)
         assert time.monotonic() - pressed[0] < 1.0
     finally:
         key.join()

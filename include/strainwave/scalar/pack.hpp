@@ -68,6 +68,16 @@ struct Pack {
         return *this;
     }
 
+    /// Lane after lane from memory, and back: many at once, where `set` takes them one by one.
+    static Pack read(const double* from) {
+        Pack y;
+        for (int i = 0; i < count; ++i) __builtin_memcpy(&y.part[i], from + i * width, sizeof y.part[i]);
+        return y;
+    }
+    void write(double* to) const {
+        for (int i = 0; i < count; ++i) __builtin_memcpy(to + i * width, &part[i], sizeof part[i]);
+    }
+
     double operator[](int i) const { return part[i / width][i % width]; }
     void set(int i, double x) { part[i / width][i % width] = x; }
 

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+/// What acts on a drive from outside, over time.
+namespace strainwave::host {
+
+/// A sine whose frequency may rise linearly.
+struct Wave {
+    double amplitude, frequency, sweep, phase;  ///< unit of the signal, Hz, Hz/s, rad
+};
+
+/// A line in pieces, which may jump, and waves.
+struct Signal {
+    std::vector<double> start, level, slope;
+    std::vector<Wave> waves;
+};
+
+/// Which of two limits is taken where a signal jumps.
+enum class Side { before, after };
+
+/// The signal, and its rate, at each of some instants [s], in any order.
+void evaluate(const Signal& signal, const double* instants, std::size_t count, Side side, double* values, double* rates);
+
+/// What drives a drive, one signal each.
+struct Signals {
+    const Signal &command, &load_torque, &temperature;
+};
+
+/// The inputs of a course through instants[0..steps], as `Course` holds them: the right limits at the start of a step, the left at
+/// its end.
+void lay_out(const Signals& signals, const double* instants, std::size_t steps, double* inputs);
+
+}  // namespace strainwave::host
