@@ -29,6 +29,7 @@ Pause pausing(const nb::object& progress) {
 }
 
 using Outputs = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Series = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
 /// Where the sample `first` of the outputs goes, and `count` from there on.
 double* place_in(const Outputs& out, std::size_t first, std::size_t count) {
@@ -82,30 +83,34 @@ std::string text_of(const StepsSpent& error) {
 }
 
 nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Numbers& values, const Numbers& instants,
-                   const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded, double fastest, int threads,
-                   const nb::object& progress) {
+                   const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded, double fastest, double largest,
+                   int threads, const Series& out, const nb::object& progress) {
     const Request request(instants, inputs, keep);
     if (values.ndim() != 2 || values.shape(0) != numbers.size())
         throw nb::value_error("values of n numbers and m members have shape (n, m)");
     const Variation variation{numbers, values.data(), values.shape(1)};
-    Values out = array({recorded.size(), variation.members, request.kept + 1});
+    if (out.shape(0) != recorded.size() || out.shape(1) != variation.members || out.shape(2) != request.kept + 1)
+        throw nb::value_error("outputs of m members have shape (recorded, m, 1 + kept)");
     const Pause pause = pausing(progress);
     const auto simulate_many = kernels().simulate_many;
     std::vector<Verdict> verdicts;
     {
         nb::gil_scoped_release free;
-        verdicts = simulate_many(drive, variation, request.course, recorded, fastest, threads, out.data(), request.kept, pause);
+        verdicts =
+            simulate_many(drive, variation, request.course, recorded, fastest, largest, threads, out.data(), request.kept, pause);
     }
+    auto sound = array<bool>({variation.members});
     Values twists = array({variation.members}), vibrations = array({variation.members}), on_bristles = array({variation.members});
     nb::dict refusals;
     for (std::size_t m = 0; m < verdicts.size(); ++m) {
+        sound.data()[m] = verdicts[m].sound;
         twists.data()[m] = verdicts[m].twist;
         vibrations.data()[m] = verdicts[m].vibration;
         on_bristles.data()[m] = verdicts[m].bristle_vibration;
         if (verdicts[m].refusal) refusals[nb::int_(m)] = text_of(*verdicts[m].refusal);
         if (!verdicts[m].problem.empty()) refusals[nb::int_(m)] = verdicts[m].problem;
     }
-    return nb::make_tuple(out, twists, vibrations, on_bristles, refusals);
+    return nb::make_tuple(sound, twists, vibrations, on_bristles, refusals);
 }
 
 nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Numbers& inputs, const Flags& keep,
@@ -354,7 +359,8 @@ void bind_drives(nb::module_& core) {
             const auto at = [&](double share) {
                 return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
             };
-            return step<double>(self, self.consistent(state), Interval<double>{at(0.0), at(0.5), at(1.0)}, dt);
+            const Interval<double> u{at(0.0), at(0.5), at(1.0)};
+            return step<double>(self, self.consistent(state), u, dt);
         },
         nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
         nb::arg("temperature") = friction::room_temperature, nb::arg("dt"),
@@ -386,15 +392,19 @@ void bind_drives(nb::module_& core) {
              "samples), from sample `first` on.");
     core.def(
         "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("instants"), nb::arg("inputs"),
-        nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("threads"), nb::arg("progress").none() = nb::none(),
+        nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("largest"), nb::arg("threads"),
+        nb::arg("out").noconvert(), nb::arg("progress").none() = nb::none(),
         nb::sig(
             "def simulate_many(drive: strainwave.drives.PositionDrive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
-            ", " SW_COURSE ", recorded: collections.abc.Sequence[int], fastest: float, threads: int" SW_PROGRESS
-            ") -> tuple[" SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
-        "Outputs of members from rest, shape (recorded, members, 1 + kept); the largest twist of each [rad], the fastest vibration "
-        "of its gear up to there and of a shaft on its bristles [rad/s], and why members ended early, if any did. `values`, shape "
-        "(numbers, members), takes the place of the numbered parameters. Members whose gear vibrates faster than `fastest` at rest "
-        "are not run.");
+            ", " SW_COURSE ", recorded: collections.abc.Sequence[int], fastest: float, largest: float, threads: int, "
+            "out: " SW_ARRAY SW_PROGRESS ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY
+            ", dict[int, str]]"),
+        "Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether all of them are "
+        "at "
+        "most `largest`, its largest twist [rad], the fastest vibration of its gear up to there and of a shaft on its bristles "
+        "[rad/s], and why it ended early, if it did. `values`, shape (numbers, members), takes the place of the numbered "
+        "parameters. "
+        "Members whose gear vibrates faster than `fastest` at rest are not run.");
     core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
              nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
              "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
@@ -446,7 +456,9 @@ void bind_drives(nb::module_& core) {
         "`state` with each side's sense of sliding as its speed and its law have it.");
     core.def(
         "released",
-        [](const Drive& drive, const Drive::State& state, const Numbers& u) { return drive.released(state, input_of(u)); },
+        [](const Drive& drive, const Drive::State& state, const Numbers& u) {
+            return drive.released(drive.standing(state, input_of(u)), input_of(u)).state;
+        },
         nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def released(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> State"),
         "`state` with the sides set off that stick and are driven beyond what their friction holds.");

@@ -64,8 +64,8 @@ void observe_derivatives(const Drive& drive, const Input<double>& u, const std::
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
-        write(dual.output(dual.rest(), {Slope(u.command), Slope(u.command_rate), Slope(u.load_torque), Slope(u.temperature)}),
-              first, parameters.size(), 0, 1, out, slopes);
+        const Input<Slope> input{Slope(u.command), Slope(u.command_rate), Slope(u.load_torque), Slope(u.temperature)};
+        write(dual.output(dual.standing(dual.rest(), input), input), first, parameters.size(), 0, 1, out, slopes);
     }
 }
 
@@ -83,7 +83,7 @@ void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<d
             }
         };
         write(flattened<Slope>(dual.flow(state, state.motion, input).rate), 0);
-        write(flattened<Slope>(dual.output(state, input)), motions);
+        write(flattened<Slope>(dual.output(dual.standing(state, input), input)), motions);
     }
 }
 

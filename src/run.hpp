@@ -5,16 +5,20 @@
 
 #include "narrow.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 
 /// A drive run through time, for any scalar: the loop that Python's `simulate` and `fit` stand on.
 namespace strainwave::host {
 
+/// How many numbers drive a drive from outside.
+inline constexpr int driving = size_of<double, Input<double>>;
+
 /// The command over `steps` steps: instants[0..steps], and per step the inputs at its start, middle and end.
 struct Course {
     const double* instants;
-    const double* inputs;      ///< (steps, 3, 4): command, command_rate, load_torque, temperature
+    const double* inputs;      ///< (steps, 3, driving): what `Input` holds
     const std::uint8_t* keep;  ///< (steps): whether to record the end of the step
     std::size_t steps;
 };
@@ -36,7 +40,7 @@ void each_lane(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c, F&& f) {
 template <class S>
 Interval<S> interval(const double* inputs) {
     const auto at = [](const double* u) { return Input<S>{S(u[0]), S(u[1]), S(u[2]), S(u[3])}; };
-    return {at(inputs), at(inputs + 4), at(inputs + 8)};
+    return {at(inputs), at(inputs + driving), at(inputs + 2 * driving)};
 }
 
 /// Called now and then with the number of steps done; may throw.
@@ -51,8 +55,8 @@ struct OutOfBounds {
 
 /// Throws OutOfBounds if a part is not valid where the drive stands, in any lane.
 template <class S, class Drive>
-void check_bounds(const Drive& drive, const typename Drive::State& x, const Input<S>& u, double time) {
-    drive.bounds(x, u, [&](const char* part, const Domain<S>& domain) {
+void check_bounds(const Drive& drive, const typename Drive::Standing& at, double time) {
+    drive.bounds(at.flow, [&](const char* part, const Domain<S>& domain) {
         if (all(domain.holds())) return;
         each_lane(domain.value, domain.low, domain.high, [&](double value, double low, double high) {
             const Domain<double> of_lane{domain.name, value, low, high, domain.unit, domain.remedy};
@@ -66,32 +70,41 @@ inline constexpr std::size_t steps_between_pauses = 1 << 14;
 
 /// A step without events, every call on the way inlined: worth its size where few models are left to choose from.
 template <class S, class Drive>
-[[gnu::flatten, gnu::noinline]] typename Drive::State inlined_step(const Drive& drive, const typename Drive::State& x,
-                                                                   const Interval<S>& u, const S& dt) {
-    return integrate::exponential_step(drive, x, u, dt);
+[[gnu::flatten, gnu::noinline]] typename Drive::Standing inlined_step(const Drive& drive, const typename Drive::Standing& from,
+                                                                      const Interval<S>& u, const S& dt) {
+    return drive.standing(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 template <class S, class Drive>
-[[gnu::noinline]] typename Drive::State called_step(const Drive& drive, const typename Drive::State& x, const Interval<S>& u,
-                                                    const S& dt) {
-    return integrate::exponential_step(drive, x, u, dt);
+[[gnu::noinline]] typename Drive::Standing called_step(const Drive& drive, const typename Drive::Standing& from,
+                                                       const Interval<S>& u, const S& dt) {
+    return drive.standing(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 
-/// Runs a compiled drive from `x` and calls record(output) at the end of each step to be kept. `advance` takes a step. Returns the
-/// state at the end.
+/// Runs a compiled drive from `start` and calls record(output) at the end of each step to be kept. `advance` takes a step. Returns
+/// the state at the end. What a step returns is made where it stays: to copy it would take a twentieth of the step.
 template <class S, class Drive, class Record, class Advance>
-typename Drive::State run_compiled(const Drive& drive, typename Drive::State x, const Course& course, Record& record,
+typename Drive::State run_compiled(const Drive& drive, const typename Drive::State& start, const Course& course, Record& record,
                                    const Pause& pause, const Advance& advance) {
+    if (course.steps == 0) return drive.consistent(start);
     const bool has_bounds = drive.has_bounds();
-    x = drive.consistent(x);
-    if (has_bounds && course.steps > 0) check_bounds(drive, x, interval<S>(course.inputs).start, course.instants[0]);
+    Interval<S> u = interval<S>(course.inputs);
+    using Standing = typename Drive::Standing;
+    Standing places[2]{drive.standing(drive.consistent(start), u.start), {}}, *here = places, *there = places + 1;
+    if (has_bounds) check_bounds<S>(drive, *here, course.instants[0]);
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % steps_between_pauses == 0) pause(i);
-        const Interval<S> u = interval<S>(course.inputs + 12 * i);
-        x = advance(drive, x, u, S(course.instants[i + 1] - course.instants[i]));
-        if (has_bounds) check_bounds(drive, x, u.end, course.instants[i + 1]);
-        if (course.keep[i]) record(drive.output(x, u.end));
+        if (i > 0) {
+            const double *const inputs = course.inputs + 3 * driving * i, *const before = inputs - driving;
+            u = interval<S>(inputs);
+            const bool jump = !std::equal(inputs, inputs + driving, before);
+            if (jump) *here = drive.standing(here->state, u.start);
+        }
+        new (there) Standing(advance(drive, *here, u, S(course.instants[i + 1] - course.instants[i])));
+        std::swap(here, there);
+        if (has_bounds) check_bounds<S>(drive, *here, course.instants[i + 1]);
+        if (course.keep[i]) record(drive.output(*here, u.end));
     }
-    return x;
+    return here->state;
 }
 
 /// The state at the end of a run, which `runner` does in the code of the first of some lists of models that hold the drive; in that
@@ -116,11 +129,11 @@ template <class S, class Record>
 typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
                                         const Course& course, Record&& record, const Pause& pause) {
     const auto runner = [&]<bool few, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        const auto advance = [](const Compiled& moved, const typename Compiled::State& x, const Interval<S>& u, const S& dt) {
+        const auto advance = [](const Compiled& moved, const typename Compiled::Standing& at, const Interval<S>& u, const S& dt) {
             if constexpr (few)
-                return step(moved, x, u, dt, inlined_step<S, Compiled>);
+                return step(moved, at, u, dt, inlined_step<S, Compiled>);
             else
-                return step(moved, x, u, dt, called_step<S, Compiled>);
+                return step(moved, at, u, dt, called_step<S, Compiled>);
         };
         return run_compiled<S>(compiled, from, course, record, pause, advance);
     };

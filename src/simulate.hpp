@@ -18,8 +18,8 @@ inline constexpr int channels = [] {
     return counter.count;
 }();
 
-/// How many numbers flow continuously, and how many drive a drive from outside.
-inline constexpr int motions = size_of<double, Drive::Motion>, driving = size_of<double, Input<double>>;
+/// How many numbers flow continuously.
+inline constexpr int motions = size_of<double, Drive::Motion>;
 
 /// How many members of a crowd take every step together.
 inline constexpr int lanes = 8;
@@ -36,6 +36,7 @@ struct Verdict {
     double twist = 0.0;                    ///< largest recorded, rad
     double vibration = 0.0;                ///< the fastest of the gear up to that twist, rad/s
     double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
+    bool sound = false;                    ///< whether all that was recorded, and the twist, means anything
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
     std::string problem{};                 ///< why it did not begin, if it did not
 };
@@ -78,10 +79,10 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
 /// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
 /// not-a-number behind. Of a member whose gear vibrates faster than `fastest` [rad/s] at rest only that is told, with a twist of
-/// 0. `pause` is called with the number of steps done, on this thread.
+/// 0; what is beyond `largest` means nothing. `pause` is called with the number of steps done, on this thread.
 std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
-                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
-                                   const Pause& pause);
+                                   const std::vector<int>& recorded, double fastest, double largest, int threads, double* out,
+                                   std::size_t kept, const Pause& pause);
 
 /// The outputs of a drive in state `x`.
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);

@@ -18,13 +18,54 @@ using Lanes = Pack<lanes>;
 /// Thrown in a thread whose work nobody wants any more.
 struct Stopped {};
 
+double lane_of(double x, std::size_t) { return x; }
+double lane_of(const Lanes& x, std::size_t i) { return x[int(i)]; }
+void write(double x, double* to) { *to = x; }
+void write(const Lanes& x, double* to) { x.write(to); }
+
+/// Rows of samples, one for each output recorded of each of some members, filled column by column. They lie far apart, so a stretch
+/// of columns is gathered before it is written.
+template <class S>
+class Rows {
+    static constexpr std::size_t stretch = 16, width = sizeof(S) / sizeof(double);
+    const std::vector<int>& recorded;
+    double* const out;
+    const std::size_t members, samples, count;
+    std::vector<double> held;
+    std::size_t written = 0, gathered = 0;
+
+public:
+    /// `count` rows of each output from `out_` on, those of an output `members_` rows from those of the one before.
+    Rows(const std::vector<int>& recorded_, double* out_, std::size_t members_, std::size_t samples_, std::size_t count_)
+        : recorded(recorded_),
+          out(out_),
+          members(members_),
+          samples(samples_),
+          count(count_),
+          held(recorded_.size() * stretch * width) {}
+
+    void add(const Array<S, channels>& values) {
+        for (std::size_t c = 0; c < recorded.size(); ++c) write(values[recorded[c]], &held[(c * stretch + gathered) * width]);
+        if (++gathered == stretch) flush();
+    }
+    void flush() {
+        for (std::size_t c = 0; c < recorded.size(); ++c)
+            for (std::size_t i = 0; i < count; ++i) {
+                double* const row = out + (c * members + i) * samples + written;
+                for (std::size_t k = 0; k < gathered; ++k) row[k] = held[(c * stretch + k) * width + i];
+            }
+        written += gathered;
+        gathered = 0;
+    }
+};
+
 /// A run of many members: what all threads share.
 class Crowd {
     const Parts parts;
     const Variation& variation;
     const Course& course;
     const std::vector<int>& recorded;
-    const double fastest;
+    const double fastest, largest;
     double* const out;
     const std::size_t samples;
     std::vector<int> place_of;  // of each number in the variation, or -1
@@ -34,12 +75,13 @@ class Crowd {
 
 public:
     Crowd(const Drive& drive, const Variation& variation_, const Course& course_, const std::vector<int>& recorded_,
-          double fastest_, double* out_, std::size_t kept)
+          double fastest_, double largest_, double* out_, std::size_t kept)
         : parts(parts_of(drive)),
           variation(variation_),
           course(course_),
           recorded(recorded_),
           fastest(fastest_),
+          largest(largest_),
           out(out_),
           samples(kept + 1),
           place_of(parts.numbers.size(), -1),
@@ -99,25 +141,31 @@ private:
         const auto drive = assembled_from<S>(first, count);
         const S at_rest = drive.vibration(S(0.0)), on_bristles = drive.bristle_vibration();
         const auto too_fast = at_rest > S(fastest);
-        const auto tell = [&](const S& twist, const S& vibration) {
+        const auto tell = [&](const S& twist, const S& vibration, const S& sound) {
             for (std::size_t i = 0; i < count; ++i)
-                verdicts[first + i] = {lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), {}, {}};
+                verdicts[first + i] = {
+                    lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), lane_of(sound, i) > 0.0, {}, {}};
         };
         if (all(too_fast)) {
             clear(first, count);
-            return tell(S(0.0), at_rest);
+            return tell(S(0.0), at_rest, S(0.0));
         }
-        std::size_t k = 0;
-        S twist{0.0};
+        Rows<S> rows(recorded, out + first * samples, variation.members, samples, count);
+        S twist{0.0}, sound{1.0};
         const auto record = [&](const Output<S>& output) {
-            write(flattened<S>(output), first, count, k++);
+            const auto values = flattened<S>(output);
+            rows.add(values);
+            for (const int channel : recorded) sound = select(S(largest) >= abs(values[channel]), sound, S(0.0));
             twist = select(abs(output.twist) < twist, twist, abs(output.twist));  // keeps what is not a number
         };
-        record(drive.output(drive.rest(), interval<S>(course.inputs).start));
+        const Input<S> at_start = interval<S>(course.inputs).start;
+        record(drive.output(drive.standing(drive.rest(), at_start), at_start));
         run<S>(drive, drive.rest(), course, record, [this](std::size_t) {
             if (stopping) throw Stopped{};
         });
-        tell(select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.vibration(twist)));
+        rows.flush();
+        sound = select(S(largest) >= twist, sound, S(0.0));
+        tell(select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.vibration(twist)), sound);
     }
 
     /// Leaves not-a-number in the rows of members.
@@ -138,23 +186,14 @@ private:
             verdicts[member].refusal = error;
         }
     }
-
-    template <class S>
-    void write(const Array<S, channels>& values, std::size_t first, std::size_t count, std::size_t k) {
-        for (std::size_t c = 0; c < recorded.size(); ++c)
-            for (std::size_t i = 0; i < count; ++i)
-                out[(c * variation.members + first + i) * samples + k] = lane_of(values[recorded[c]], i);
-    }
-    static double lane_of(double x, std::size_t) { return x; }
-    static double lane_of(const Lanes& x, std::size_t i) { return x[int(i)]; }
 };
 
 }  // namespace
 
 std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
-                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
-                                   const Pause& pause) {
-    Crowd crowd(drive, variation, course, recorded, fastest, out, kept);
+                                   const std::vector<int>& recorded, double fastest, double largest, int threads, double* out,
+                                   std::size_t kept, const Pause& pause) {
+    Crowd crowd(drive, variation, course, recorded, fastest, largest, out, kept);
     std::mutex lock;
     std::condition_variable ended;
     std::exception_ptr failure;

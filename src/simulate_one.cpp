@@ -33,13 +33,13 @@ Drive::State simulate(const Drive& drive, const Drive::State& start, const Cours
                       std::size_t samples, const Pause& pause) {
     Writer record{out, samples};
     if (method == Method::moreau_jean)
-        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& x, const auto& u, double dt) {
-            return integrate::moreau_jean_step(moved, x, u, dt);
+        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& at, const auto& u, double dt) {
+            return moved.standing(integrate::moreau_jean_step(moved, at, u, dt), u.end);
         });
     if (method == Method::rosenbrock)
-        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& x, const auto& u, double dt) {
-            return step(moved, x, u, dt, [](const auto& m, const auto& from, const auto& over, double h) {
-                return integrate::rosenbrock_step(m, from, over, h);
+        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& at, const auto& u, double dt) {
+            return step(moved, at, u, dt, [](const auto& m, const auto& from, const auto& over, double h) {
+                return m.standing(integrate::rosenbrock_step(m, from, over, h), over.end);
             });
         });
     return run<double>(drive, start, course, record, pause);
@@ -52,9 +52,9 @@ template <class Compiled>
 typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled::State x, const Course& course,
                                         const integrate::Tolerance& tolerance, long most, const Instants& wanted, Writer& record,
                                         Steps& steps, const Pause& pause) {
-    using State = typename Compiled::State;
+    using Standing = typename Compiled::Standing;
     const bool has_bounds = drive.has_bounds();
-    const auto advance = [](const Compiled& moved, const State& from, const Interval<double>& u, double dt) {
+    const auto advance = [](const Compiled& moved, const Standing& from, const Interval<double>& u, double dt) {
         return step(moved, from, u, dt, called_step<double, Compiled>);
     };
     x = drive.consistent(x);
@@ -63,23 +63,25 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     long taken = 0;
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % 256 == 0) pause(i);
-        const Interval<double> u = interval<double>(course.inputs + 12 * i);
+        const Interval<double> u = interval<double>(course.inputs + 3 * driving * i);
         const double begin = course.instants[i], dt = course.instants[i + 1] - begin;
-        if (has_bounds) check_bounds(drive, x, u.start, begin);
-        const auto within = [&](const State& from, const State& half, const State& end, double done, double middle, double to) {
+        const Standing start = drive.standing(x, u.start);
+        if (has_bounds) check_bounds<double>(drive, start, begin);
+        const auto within = [&](const Standing& from, const Standing& half, const Standing& end, double done, double middle,
+                                double to) {
             if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
             if (++taken % steps_between_pauses == 0) pause(i);
-            if (has_bounds) check_bounds(drive, end, u.at(to, dt), begin + to * dt);
+            if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
             while (record.k < wanted.count && wanted.at[record.k] <= until) {
                 const double at = clip((wanted.at[record.k] - begin) / dt, done, to);
-                const State there = at == to      ? end
-                                    : at < middle ? advance(drive, from, u.part(done, at, dt), (at - done) * dt)
-                                                  : advance(drive, half, u.part(middle, at, dt), (at - middle) * dt);
+                const Standing there = at == to      ? end
+                                       : at < middle ? advance(drive, from, u.part(done, at, dt), (at - done) * dt)
+                                                     : advance(drive, half, u.part(middle, at, dt), (at - middle) * dt);
                 record(drive.output(there, u.at(at, dt)));
             }
         };
-        x = adaptive.through(x, u, dt, within);
+        x = adaptive.through(start, u, dt, within).state;
         if (adaptive.gave_up()) throw ToleranceMissed{begin, course.instants[i + 1]};
     }
     steps = {adaptive.accepted, adaptive.rejected};
@@ -98,6 +100,8 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
     return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
 }
 
-void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) { Writer{out, 1}(drive.output(x, u)); }
+void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
+    Writer{out, 1}(drive.output(drive.standing(x, u), u));
+}
 
 }  // namespace strainwave::host

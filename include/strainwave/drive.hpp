@@ -172,13 +172,20 @@ struct PositionDrive {
         Contact input, mesh, output;
     };
 
-    /// Rate of the motion, the torques that friction which can stick must hold, and where that came from.
+    /// Rate of the motion, the torques that friction which can stick must hold, and what they came from.
     struct Flow {
         Motion rate;
         typename Gear::Mesh mesh;
         Contacts contacts;
-        S input_balance;
-        S output_balance;
+        S voltage, current, load_torque;
+        S friction_input, friction_mesh, friction_output;  ///< of places that slide, N.m
+        S input_balance, output_balance;
+    };
+
+    /// Where a drive stands at one instant: its state, brought up to date, and what flows there. A step leads from one to the next.
+    struct Standing {
+        State state;
+        Flow flow;
     };
 
     /// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
@@ -194,36 +201,33 @@ struct PositionDrive {
 
     constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u) const { return flow(x, y, u, mesh(x, y)); }
 
-    /// Brings a state up to date and gives its flow: what a step begins with.
-    constexpr Flow begin(State& x, const Input<S>& u) const {
+    /// Where a drive in this state stands, brought up to date.
+    constexpr Standing standing(State x, const Input<S>& u) const {
         const auto geometry = this->geometry(x, x.motion);
         remember(x, geometry);
-        return flow(x, x.motion, u, gear.loaded(geometry, x.hysteresis, x.held_twist));
+        return {x, flow(x, x.motion, u, gear.loaded(geometry, x.hysteresis, x.held_twist))};
     }
-    /// The flow where a state stands once it is up to date.
-    constexpr Flow standing(State x, const Input<S>& u) const { return begin(x, u); }
 
     constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u, const typename Gear::Mesh& mesh) const {
         const auto reference = this->reference(x, y, u);
-        const S voltage = control.voltage(y.control, reference);
-        const S motor_torque = motor.torque(motor.current(y.motor, voltage, y.input_speed));
+        const S voltage = control.voltage(y.control, reference), current = motor.current(y.motor, voltage, y.input_speed);
+        const S motor_torque = motor.torque(current), load_torque = load.torque(output_angle(x, y)) + u.load_torque;
 
-        Flow flow{{}, mesh, contacts(x, y, mesh, u), S(0.0), S(0.0)};
-        const Contacts& at = flow.contacts;
-        Motion& rate = flow.rate;
+        Motion rate{};
+        const Contacts at = contacts(x, y, mesh, u);
         const Resistance input = resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
         const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
         const Resistance output = resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
-        flow.input_balance = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
-        flow.output_balance = mesh.torque - load.torque(output_angle(x, y)) - u.load_torque - output.always;
+        const S input_balance = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
+        const S output_balance = mesh.torque - load_torque - output.always;
         rate.motor = motor.rate(y.motor, voltage, y.input_speed);
         rate.control = control.rate(y.control, reference);
         rate.input_angle = y.input_speed;
-        rate.input_speed =
-            moving(at.input, flow.input_balance - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
+        rate.input_speed = moving(at.input, input_balance - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
-        rate.output_speed = moving(at.output, flow.output_balance - output.sliding) / inertia_of(load);
-        return flow;
+        rate.output_speed = moving(at.output, output_balance - output.sliding) / inertia_of(load);
+        return {rate,          mesh,          at, voltage, current, load_torque, input.torque(), meshing.torque(), output.torque(),
+                input_balance, output_balance};
     }
 
     /// How fast each member forgets itself [1/s]: what an explicit method could not follow.
@@ -314,24 +318,22 @@ struct PositionDrive {
     constexpr bool set_valued() const { return input_sticks() || output_sticks(); }
 
     /// How far both sides are from changing between sticking and sliding; below zero, one has.
-    constexpr S margin(const State& x, const Input<S>& u) const {
-        if (!sticks(x))
-            return min(gliding(input_sticks(), x.sliding_input, x.motion.input_speed),
-                       gliding(output_sticks(), x.sliding_output, x.motion.output_speed));
-        const Flow now = standing(x, u);
-        return min(margin_input(x, now), margin_output(x, now));
-    }
+    constexpr S margin(const Standing& at) const { return min(margin_input(at.state, at.flow), margin_output(at.state, at.flow)); }
 
     /// Sides that stick and are driven beyond what their friction holds set off.
-    constexpr State released(State x, const Input<S>& u) const {
-        if (!sticks(x)) return x;
-        const Flow now = standing(x, u);
-        const auto set_off = [](const S& sliding, const S& hold, const S& balance) {
-            return select((sliding == S(0.0)) & (hold < abs(balance)), sign(balance), sliding);
+    constexpr Standing released(const Standing& at, const Input<S>& u) const {
+        const auto off = [](const S& sliding, const S& hold, const S& balance) {
+            return (sliding == S(0.0)) & (hold < abs(balance));
         };
-        if (input_sticks()) x.sliding_input = set_off(x.sliding_input, hold_input(now), now.input_balance);
-        if (output_sticks()) x.sliding_output = set_off(x.sliding_output, hold_output(now), now.output_balance);
-        return x;
+        State x = at.state;
+        const Flow& now = at.flow;
+        if (!sticks(x)) return at;
+        const auto input = off(x.sliding_input, hold_input(now), now.input_balance);
+        const auto output = off(x.sliding_output, hold_output(now), now.output_balance);
+        if (!(input_sticks() && any(input)) && !(output_sticks() && any(output))) return at;
+        if (input_sticks()) x.sliding_input = select(input, sign(now.input_balance), x.sliding_input);
+        if (output_sticks()) x.sliding_output = select(output, sign(now.output_balance), x.sliding_output);
+        return standing(x, u);
     }
 
     /// The state `dt` [s] after `x`, at `end` but for what moves: its speeds are those that friction which can stick lets the two
@@ -369,14 +371,15 @@ struct PositionDrive {
 
     /// At an event: the side whose margin is used up stops, or breaks away, or turns round.
     template <class Mask>
-    constexpr State settled(State x, const Input<S>& u, const Mask& lanes) const {
-        const Flow before = standing(x, u);
+    constexpr State settled(const Standing& at, const Input<S>& u, const Mask& lanes) const {
+        State x = at.state;
+        const Flow& before = at.flow;
         const auto at_input = lanes & !(margin_output(x, before) < margin_input(x, before));
         const auto at_output = lanes & (margin_output(x, before) < margin_input(x, before));
         const auto input_stops = at_input & !(x.sliding_input == S(0.0)), output_stops = at_output & !(x.sliding_output == S(0.0));
         x.motion.input_speed = select(input_stops, S(0.0), x.motion.input_speed);
         x.motion.output_speed = select(output_stops, S(0.0), x.motion.output_speed);
-        const Flow now = standing(x, u);
+        const Flow now = standing(x, u).flow;
         x.sliding_input = select(at_input, sense(now.input_balance, hold_input(now), input_stops), x.sliding_input);
         x.sliding_output = select(at_output, sense(now.output_balance, hold_output(now), output_stops), x.sliding_output);
         return x;
@@ -384,8 +387,7 @@ struct PositionDrive {
 
     /// Whether every part is valid where the drive stands; visit(part, Domain) of those that may not be.
     template <class Visit>
-    constexpr void bounds(const State& x, const Input<S>& u, Visit&& visit) const {
-        const Flow now = standing(x, u);
+    constexpr void bounds(const Flow& now, Visit&& visit) const {
         if (bounded<S>(gear.stiffness)) visit("gear.stiffness", domain<S>(gear.stiffness, now.mesh.twist));
         if (bounded<Contact>(gear.friction_input)) visit("gear.friction_input", domain<S>(gear.friction_input, now.contacts.input));
         if (bounded<Contact>(gear.friction_mesh)) visit("gear.friction_mesh", domain<S>(gear.friction_mesh, now.contacts.mesh));
@@ -404,28 +406,27 @@ struct PositionDrive {
         return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist);
     }
 
-    constexpr Output output(State x, const Input<S>& u) const {
-        const Flow now = begin(x, u);
+    constexpr Output output(const Standing& at, const Input<S>& u) const {
+        const State& x = at.state;
+        const Flow& now = at.flow;
         const Motion& y = x.motion;
-        const S voltage = control.voltage(y.control, reference(x, y, u));
-        const S output_angle = this->output_angle(x, y);
-        const S load_torque = load.torque(output_angle) + u.load_torque;
+        const S of_input = input_sticks() ? held(now.input_balance, hold_input(now)) : S(0.0);
+        const S of_output = output_sticks() ? held(now.output_balance, hold_output(now)) : S(0.0);
         return {u.command,
                 input_angle(x, y),
                 y.input_speed,
-                output_angle,
+                output_angle(x, y),
                 y.output_speed,
                 now.mesh.twist,
                 now.mesh.error,
                 y.transmission_error,
                 now.mesh.torque,
-                motor.current(y.motor, voltage, y.input_speed),
-                voltage,
-                reported(gear.friction_input, y.friction_input, now.contacts.input, held(now.input_balance, hold_input(now))),
-                reported(gear.friction_mesh, y.friction_mesh, now.contacts.mesh,
-                         along(now.mesh.per_input, held(now.input_balance, hold_input(now)))),
-                reported(gear.friction_output, y.friction_output, now.contacts.output, held(now.output_balance, hold_output(now))),
-                load_torque,
+                now.current,
+                now.voltage,
+                reported(gear.friction_input, now.contacts.input, now.friction_input, of_input),
+                reported(gear.friction_mesh, now.contacts.mesh, now.friction_mesh, along(now.mesh.per_input, of_input)),
+                reported(gear.friction_output, now.contacts.output, now.friction_output, of_output),
+                now.load_torque,
                 u.temperature};
     }
 
@@ -433,6 +434,7 @@ private:
     /// What a friction opposes: the part that acts at rest too, and the part that can stick.
     struct Resistance {
         S always, sliding;
+        constexpr S torque() const { return always + sliding; }  // one of them is none
     };
     template <class Law>
     static constexpr Resistance resistance(const Law& law, const typename Law::State& x, const Contact& contact,
@@ -507,8 +509,6 @@ private:
     static constexpr S margin(bool sticks, const S& sliding, const S& speed, const S& hold, const S& balance) {
         return sticks ? select(sliding == S(0.0), hold - abs(balance), sliding * speed) : S(unbounded);
     }
-    /// That of a side that slides.
-    static constexpr S gliding(bool sticks, const S& sliding, const S& speed) { return sticks ? sliding * speed : S(unbounded); }
     /// Whether a side sticks, in any lane.
     constexpr bool sticks(const State& x) const {
         return (input_sticks() && any(x.sliding_input == S(0.0))) || (output_sticks() && any(x.sliding_output == S(0.0)));
@@ -549,8 +549,7 @@ private:
     static constexpr S held(const S& balance, const S& hold) { return clip(balance / max(hold, S(smallest)), S(-1.0), S(1.0)); }
     /// A place that sticks balances its share of what drives its side.
     template <class Law>
-    static constexpr S reported(const Law& law, const typename Law::State& x, const Contact& contact, const S& share) {
-        const S sliding = friction::torque(law, x, contact);
+    static constexpr S reported(const Law& law, const Contact& contact, const S& sliding, const S& share) {
         if (!friction::set_valued(law)) return sliding;
         return select(contact.sliding == S(0.0), share * friction::hold(law, contact.pushed(sign(share))), sliding);
     }

@@ -20,11 +20,11 @@ from strainwave.scenario import Scenario
 from strainwave.simulation import (
     COARSEST,
     FASTEST_ON_BRISTLES,
+    LARGEST,
     ROOM_TEMPERATURE,
     Course,
     Excitation,
     diverged,
-    meaningful,
     output_units,
     progressing,
     remedy,
@@ -153,7 +153,8 @@ class _Plan:
         """Members `first` up to `last`, not included."""
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
         channels = [OUTPUTS.index(name) for name in self.recorded]
-        outputs, twists, vibrations, on_bristles, refusals = _core.simulate_many(
+        outputs = np.empty((len(channels), last - first, len(self.time)))
+        sound, twists, vibrations, on_bristles, refusals = _core.simulate_many(
             self.drive,
             self.numbers,
             values,
@@ -162,10 +163,12 @@ class _Plan:
             self.course.samples[1:],
             channels,
             COARSEST / self.dt,
+            LARGEST,
             self.threads,
+            outputs,
             shown,  # type: ignore[arg-type]
         )
-        failures = self.failures(outputs, twists, vibrations, refusals)
+        failures = self.failures(outputs, sound, twists, vibrations, refusals)
         _tell_of_bristles(self.dt, on_bristles)
         outputs[:, list(failures), :] = np.nan
         units = output_units(self.drive)
@@ -177,12 +180,14 @@ class _Plan:
             failures,
         )
 
-    def failures(self, outputs: Array, twists: Array, vibrations: Array, refusals: dict[int, str]) -> dict[int, str]:
+    def failures(
+        self, outputs: Array, ran: NDArray[np.bool_], twists: Array, vibrations: Array, refusals: dict[int, str]
+    ) -> dict[int, str]:
         """Why members have no result, as `simulate` would say it of each alone."""
         found = dict(refusals)
         coarse = vibrations > COARSEST / self.dt
         at_rest = coarse & (twists == 0.0)  # such members are not run
-        sound = at_rest | (meaningful(outputs).all(axis=(0, 2)) & meaningful(twists))
+        sound = at_rest | ran
         for member in np.flatnonzero(~sound | coarse).tolist():
             if member not in found and not sound[member]:
                 found[member] = diverged(self.time, self.recorded, outputs[:, member], remedy(self.dt))

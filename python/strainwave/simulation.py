@@ -385,19 +385,19 @@ def _columns(time: Array, outputs: Array) -> dict[str, Array]:
     return {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
 
 
-def meaningful(outputs: Array) -> NDArray[np.bool_]:
+def _meaningful(outputs: Array) -> NDArray[np.bool_]:
     """Which numbers of a run mean anything: neither what is not a number nor what is out of all bounds."""
     return np.abs(outputs) <= LARGEST
 
 
 def _check_meaning(time: Array, outputs: Array, what_to_do: str) -> None:
-    if not meaningful(outputs).all():
+    if not _meaningful(outputs).all():
         raise FloatingPointError(diverged(time, [name for name, _, _ in _core.outputs], outputs, what_to_do))
 
 
 def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
     """Says when outputs, shape (names, samples), first mean nothing, and which; not when, where something else does."""
-    sound = meaningful(outputs)
+    sound = _meaningful(outputs)
     where = int(np.argmin(sound.all(axis=0)))
     wrong = [name for name, is_sound in zip(names, sound[:, where], strict=True) if not is_sound]
     place = f" at t = {time[where]:.6g} s ({', '.join(wrong)})" if wrong else ""

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.drives import PositionDrive
-from strainwave.friction import LuGre
+from strainwave.friction import LuGre, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
@@ -85,6 +85,13 @@ def changed(part: str, law: Any) -> PositionDrive:
 def innermost(law: Any) -> Any:
     """The law that others modulate."""
     return innermost(law.law) if hasattr(law, "law") else law
+
+
+def widened(law: Any) -> Any:
+    """The same law; but for a curve over the angle that is so narrow that a single step passes it."""
+    if isinstance(law, PositionDependent):
+        return law.replace(domain_end=max(law.domain_end, law.domain_start + 0.1))
+    return law.replace(law=widened(law.law)) if hasattr(law, "law") else law
 
 
 def passive(law: Any) -> bool:
@@ -184,11 +191,16 @@ def test_any_gear_stays_finite_and_no_friction_drives(
 # What goes in is stored or lost
 
 
-def cumulated(power: Array, dt: float) -> tuple[Array, Array]:
-    """Integral of a power [J], at every second sample, and how far the trapezia over one and over two samples differ so far."""
+def cumulated(power: Array, dt: float, kinks: Array) -> tuple[Array, Array]:
+    """Integral of a power [J], at every second sample, and how far the trapezia over one and over two samples differ so far.
+
+    Where a pair of samples holds a kink they may agree by chance: there the power is anything between its samples.
+    """
     fine = 0.5 * dt * (power[:-2:2] + 2.0 * power[1:-1:2] + power[2::2])
     coarse = dt * (power[:-2:2] + power[2::2])
-    return np.append(0.0, np.cumsum(fine)), np.append(0.0, np.cumsum(np.abs(fine - coarse)))
+    spread = dt * np.abs(np.diff(power)).reshape(-1, 2).sum(axis=1)
+    slack = np.where(kinks, spread, np.abs(fine - coarse))
+    return np.append(0.0, np.cumsum(fine)), np.append(0.0, np.cumsum(slack))
 
 
 def balance(drive: PositionDrive, run: sw.Recording) -> tuple[Array, Array, float]:
@@ -201,8 +213,10 @@ def balance(drive: PositionDrive, run: sw.Recording) -> tuple[Array, Array, floa
     inertia = drive.motor.inertia + gear.input_inertia
     kept = 0.5 * (inertia * run["input_speed"] ** 2 + drive.load.inertia * run["output_speed"] ** 2)
     kept += gear.stiffness.energy(run["twist"]) + gear.hysteresis.work(run["twist"])
-    supplied, slack_supplied = cumulated(put_in, step)
-    taken, slack_taken = cumulated(lost, step)
+    turns = np.any([np.diff(np.sign(speed)) != 0.0 for speed in moving.values()], axis=0)
+    kinks = turns.reshape(-1, 2).any(axis=1)  # a place stops, sets off or turns round
+    supplied, slack_supplied = cumulated(put_in, step, kinks)
+    taken, slack_taken = cumulated(lost, step, kinks)
     return supplied - taken - kept[::2] + kept[0], slack_supplied + slack_taken, float(np.abs(put_in).sum() * step)
 
 
@@ -210,15 +224,17 @@ def balance(drive: PositionDrive, run: sw.Recording) -> tuple[Array, Array, floa
 @settings(max_examples=5)
 @given(data=st.data())
 def test_what_goes_into_a_gear_is_stored_or_lost(part: str, model: Any, data: st.DataObject) -> None:
-    law = data.draw(laws(part, model))
+    law = widened(data.draw(laws(part, model)))
     if isinstance(law, Stochastic):
         law = law.replace(amplitude=1e-4, load_sensitivity=0.0, speed_sensitivity=0.0)
-    bristle = innermost(law)
-    if isinstance(bristle, LuGre):  # the damping of one that keeps to no step is followed in first order only
-        assume(bristle.coulomb / bristle.bristle_stiffness > 1e-6)
+    inner = innermost(law)
+    if isinstance(inner, LuGre):  # the damping of one that keeps to no step is followed in first order only
+        assume(inner.coulomb / inner.bristle_stiffness > 1e-6)
     drive = changed(part, law)
     assume(cannot_create_energy(drive.gear))
-    run = resolved(drive, REVERSAL, dt=1e-5, load_torque=3.0)
+    # A curve as steep as 1e5 N.m/rad holds the input as a spring does that swings within 2e-4 s.
+    dt = 2e-6 if isinstance(inner, PositionDependent) else 1e-5
+    run = resolved(drive, REVERSAL, dt=dt, load_torque=3.0)
     missing, slack, turned_over = balance(drive, run)
     assume(slack[-1] < 0.05 * turned_over)  # the samples tell
     assert np.all(np.abs(missing) <= slack + 1e-5 * turned_over)

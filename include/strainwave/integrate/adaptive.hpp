@@ -14,7 +14,7 @@ struct Tolerance {
 /// Between its ends a step is known as exactly as there: by a step of part of its length. For scalars that are plain numbers.
 template <class S, class Drive, class Step>
 class Adaptive {
-    using State = typename Drive::State;
+    using Standing = typename Drive::Standing;
     static constexpr int n = size_of<S, typename Drive::Motion> + 1;
     using Measured = Array<S, n>;
 
@@ -33,19 +33,19 @@ public:
     constexpr Adaptive(const Drive& drive_, const Step& step_, const Tolerance& tolerance_, const S& first)
         : drive(drive_), step(step_), tolerance(tolerance_), next(first) {}
 
-    /// The state after the interval `u` of `dt` [s]. Calls within(from, part, length) for each step taken: the state it began
-    /// in, and the inputs over it [fractions of the interval].
+    /// The drive after the interval `u` of `dt` [s]. Calls within(from, half, end, done, middle, to) for each step taken: where it
+    /// stands at these three fractions of the interval.
     template <class Within>
-    constexpr State through(State x, const Interval<S>& u, const S& dt, const Within& within) {
+    constexpr Standing through(Standing from, const Interval<S>& u, const S& dt, const Within& within) {
         S done{0.0};
         while (done < S(1.0)) {
             // What is left is not cut so that a sliver remains.
             const S left = (S(1.0) - done) * dt, steps = left / next;
             const S length = steps <= S(1.0) ? left : steps < S(2.0) ? S(0.5) * left : next;
             const S to = length < left ? done + length / dt : S(1.0), middle = S(0.5) * (done + to);
-            const State whole = step(drive, x, u.part(done, to, dt), (to - done) * dt);
-            const State half = step(drive, x, u.part(done, middle, dt), (middle - done) * dt);
-            const State end = step(drive, half, u.part(middle, to, dt), (to - middle) * dt);
+            const Standing whole = step(drive, from, u.part(done, to, dt), (to - done) * dt);
+            const Standing half = step(drive, from, u.part(done, middle, dt), (middle - done) * dt);
+            const Standing end = step(drive, half, u.part(middle, to, dt), (to - middle) * dt);
             const S error = this->error(whole, end) * S(forgetting) / (length + S(brief));
             // An error of what is not a number is larger than any; a step must not become nothing.
             const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), S(4.0)) : S(0.2);
@@ -56,14 +56,14 @@ public:
                 continue;
             }
             missed = kept ? 0 : missed + 1;
-            if (missed > most_missed) return x;
+            if (missed > most_missed) return from;
             ++accepted;
-            within(x, half, end, done, middle, to);
+            within(from, half, end, done, middle, to);
             note(end);
-            x = end;
+            from = end;
             done = to;
         }
-        return x;
+        return from;
     }
 
 private:
@@ -76,16 +76,17 @@ private:
     static constexpr double forgetting = 0.1;
 
     /// What is held to the tolerance: the motion, and the torque, which shows what the hysteresis remembers.
-    constexpr Measured measured(const State& x) const {
-        const auto y = flattened<S>(x.motion);
+    constexpr Measured measured(const Standing& at) const {
+        const auto y = flattened<S>(at.state.motion);
         Measured found{};
         for (int i = 0; i < y.size(); ++i) found[i] = y[i];
-        found[n - 1] = drive.mesh(x, x.motion).torque;
+        found[n - 1] = at.flow.mesh.torque;
         return found;
     }
     /// The error of `fine` in units of what is tolerated, the largest of all.
-    constexpr S error(State coarse, const State& fine) const {
-        coarse.motion.input_angle = coarse.motion.input_angle + S(2.0 * pi) * (coarse.turns - fine.turns);
+    constexpr S error(Standing coarse, const Standing& fine) const {
+        S& angle = coarse.state.motion.input_angle;
+        angle = angle + S(2.0 * pi) * (coarse.state.turns - fine.state.turns);
         const Measured a = measured(coarse), b = measured(fine);
         S worst{0.0};
         for (int i = 0; i < n; ++i) {
@@ -95,8 +96,8 @@ private:
         }
         return worst;
     }
-    constexpr void note(const State& x) {
-        const Measured y = measured(x);
+    constexpr void note(const Standing& at) {
+        const Measured y = measured(at);
         for (int i = 0; i < n; ++i) largest[i] = max(largest[i], abs(y[i]));
     }
 };

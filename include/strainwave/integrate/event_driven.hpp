@@ -40,26 +40,30 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
 inline constexpr int most_events = 16;
 
 /// One step with set-valued friction. Each stretch ends where a side stops or breaks away; that side is put exactly at rest or set
-/// sliding, and the next begins. Where events chatter, what is left of the step is one of Moreau and Jean's. `smooth` takes a step
-/// without events.
+/// sliding, and the next begins. Where events chatter, what is left of the step is one of Moreau and Jean's. `smooth` leads
+/// to the end of a step without events.
 template <class S, class Drive, class Smooth>
-constexpr typename Drive::State event_driven_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
-                                                  const S& dt, const Smooth& smooth) {
-    auto x = drive.released(before, u.start);
+constexpr typename Drive::Standing event_driven_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
+                                                     const S& dt, const Smooth& smooth) {
+    auto here = drive.released(from, u.start);
     S done{0.0};
+    const auto reach = [&](const S& fraction) { return smooth(drive, here, u.part(done, fraction, dt), (fraction - done) * dt); };
+    auto there = smooth(drive, here, u, dt);
     for (int events = 0;; ++events) {
-        const auto reach = [&](const S& fraction) { return smooth(drive, x, u.part(done, fraction, dt), (fraction - done) * dt); };
-        auto end = reach(S(1.0));
-        if (events > 0) end = chosen<S>(done < S(1.0), end, x);  // a lane that has arrived takes no further step, not even of 0 s
-        const S margin = drive.margin(end, u.end);
+        const S margin = drive.margin(there);
         const auto crosses = margin < S(0.0);
-        if (!any(crosses)) return end;
-        if (events == most_events)
-            return chosen<S>(crosses, moreau_jean_step(drive, x, u.part(done, S(1.0), dt), (S(1.0) - done) * dt), end);
-        const auto at = [&](const S& fraction) { return drive.margin(reach(fraction), u.part(S(0.0), fraction, dt).end); };
-        const S moment = crossing(at, done, drive.margin(x, u.part(S(0.0), done, dt).end), margin);
-        x = chosen<S>(crosses, drive.settled(reach(moment), u.part(S(0.0), moment, dt).end, crosses), end);
+        if (!any(crosses)) return there;
+        if (events == most_events) {
+            const auto end = moreau_jean_step(drive, here, u.part(done, S(1.0), dt), (S(1.0) - done) * dt);
+            return drive.standing(chosen<S>(crosses, end, there.state), u.end);
+        }
+        const auto at = [&](const S& fraction) { return drive.margin(reach(fraction)); };
+        const S moment = crossing(at, done, drive.margin(here), margin);
+        const auto then = u.part(S(0.0), moment, dt).end;
+        here = drive.standing(chosen<S>(crosses, drive.settled(reach(moment), then, crosses), there.state), then);
         done = moment;
+        // A lane that has arrived takes no further step, not even of 0 s.
+        there = drive.standing(chosen<S>(done < S(1.0), reach(S(1.0)).state, here.state), u.end);
     }
 }
 

@@ -95,11 +95,11 @@ private:
 /// One step without events, of fourth order: the bristles relax exactly, the hysteresis is a return map, the rest is the classical
 /// Runge-Kutta scheme.
 template <class S, class Drive>
-constexpr typename Drive::State exponential_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
+constexpr typename Drive::State exponential_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
                                                  const S& dt) {
-    const auto y1 = before.motion;
-    auto x = before;
-    const auto now = drive.begin(x, u.start);
+    auto x = from.state;
+    const auto y1 = x.motion;
+    const auto& now = from.flow;
     const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
     const auto confined = [&](const auto& y) { return drive.confined(y, now.contacts, now.mesh.per_input); };
     const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y1, now.contacts), dt);

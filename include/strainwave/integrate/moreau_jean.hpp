@@ -7,11 +7,11 @@ namespace strainwave::integrate {
 /// the sides that can stick to rest, or set them off, as part of the step (Acary and Brogliato 2008, section 10.1; the forces taken
 /// at the midpoint). States that relax do so exactly.
 template <class S, class Drive>
-constexpr typename Drive::State moreau_jean_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
+constexpr typename Drive::State moreau_jean_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
                                                  const S& dt) {
-    const auto y = before.motion;
-    auto x = before;
-    const auto now = drive.begin(x, u.start);
+    auto x = from.state;
+    const auto y = x.motion;
+    const auto& now = from.flow;
     const auto confined = [&](const auto& motion) { return drive.confined(motion, now.contacts, now.mesh.per_input); };
     const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y, now.contacts), dt);
     const S half = S(0.5) * dt;

@@ -87,16 +87,16 @@ constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Confined& confi
 /// One step without events of a Rosenbrock W-method, of third order: stable whatever the stiffness of the bristles. For scalars
 /// that are plain numbers.
 template <class S, class Drive>
-constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u,
+constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
                                                 const S& dt) {
     using Motion = typename Drive::Motion;
     using Table = detail::Ros34pw2;
     constexpr int n = size_of<S, Motion>;
     using Vector = Array<S, n>;
-    auto x = before;
-    const auto now = drive.begin(x, u.start);
+    auto x = from.state;
+    const auto& now = from.flow;
     const auto confined = [&](const Vector& y) { return drive.confined(shaped<Motion>(y), now.contacts, now.mesh.per_input); };
-    const Vector y = flattened<S>(before.motion);
+    const Vector y = flattened<S>(x.motion);
     const auto matrix = detail::jacobian<S, n>(
         [&](const Vector& beside) { return flattened<S>(drive.flow(x, shaped<Motion>(beside), u.start).rate); },
         [&](const Vector& beside) { return flattened<S>(confined(beside)); }, y, flattened<S>(now.rate), dt);
