@@ -37,44 +37,49 @@ Values inputs_of(const Signal& command, const Signal& load_torque, const Signal&
 
 /// 0, step, 2 step, … and `duration`, which is always the last.
 Values grid(double step, double duration, double tolerance) {
-    std::vector<double> instants;
-    for (std::size_t k = 0; double(k) * step < duration - tolerance; ++k) instants.push_back(double(k) * step);
-    instants.push_back(duration);
-    Values out = array({instants.size()});
-    std::copy(instants.begin(), instants.end(), out.data());
+    std::vector<double> instants(std::size_t(duration / step) + 2);
+    std::size_t count = 0;
+    for (double next = 0.0; next < duration - tolerance; next = double(count) * step) instants[count++] = next;
+    instants[count++] = duration;
+    Values out = array({count});
+    std::copy_n(instants.begin(), count, out.data());
     return out;
 }
 
-/// Instants from three series, each in order: whatever is within `tolerance` of its neighbour is one.
+/// A series of instants, in order, and how far it has been gone through.
+struct Queue {
+    const double *next, *const end;
+
+    explicit Queue(const Numbers& series) : next(series.data()), end(next + series.size()) {}
+    double first() const { return next < end ? *next : unbounded; }
+};
+
+/// Instants from three series: whatever is within `tolerance` of its neighbour is one.
 nb::tuple course_of(const Numbers& steps, const Numbers& samples, const Numbers& breaks, double tolerance) {
     const std::size_t most = steps.size() + samples.size() + breaks.size();
-    std::vector<double> instants;
-    std::vector<std::uint8_t> sampled;
-    instants.reserve(most);
-    sampled.reserve(most);
-    const Numbers* series[] = {&steps, &samples, &breaks};
-    std::size_t next[3] = {};
+    std::vector<double> instants(most);
+    std::vector<std::uint8_t> sampled(most);
+    Queue step(steps), sample(samples), jump(breaks);
+    std::size_t count = 0;
     double before = -unbounded;
-    for (;;) {
-        int earliest = -1;
-        for (int i = 0; i < 3; ++i)
-            if (next[i] < series[i]->size() &&
-                (earliest < 0 || series[i]->data()[next[i]] < series[earliest]->data()[next[earliest]]))
-                earliest = i;
-        if (earliest < 0) break;
-        const double instant = series[earliest]->data()[next[earliest]++];
-        if (instant - before > tolerance) {
-            instants.push_back(instant);
-            sampled.push_back(0);
-        }
+    for (std::size_t i = 0; i < most; ++i) {
+        const double instant = std::min(std::min(step.first(), sample.first()), jump.first());
+        if (instant - before > tolerance) instants[count++] = instant;
         before = instant;
-        if (earliest == 1) sampled.back() = 1;
-        if (earliest == 2) instants.back() = instant;  // a step that ends at a break does so exactly: the inputs jump
+        if (step.first() == instant) {
+            ++step.next;
+        } else if (sample.first() == instant) {
+            ++sample.next;
+            sampled[count - 1] = 1;
+        } else {
+            ++jump.next;
+            instants[count - 1] = instant;  // a step that ends at a break does so exactly: the inputs jump
+        }
     }
-    Values out = array({instants.size()});
-    auto flags = array<std::uint8_t>({sampled.size()});
-    std::copy(instants.begin(), instants.end(), out.data());
-    std::copy(sampled.begin(), sampled.end(), flags.data());
+    Values out = array({count});
+    auto flags = array<std::uint8_t>({count});
+    std::copy_n(instants.begin(), count, out.data());
+    std::copy_n(sampled.begin(), count, flags.data());
     return nb::make_tuple(out, flags);
 }
 

@@ -47,6 +47,10 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
     if (steps == 0) return;
     constexpr std::size_t most = 256;  // steps at a time, so that what is between stays in the nearest memory
     double t[2 * most + 1], value[2 * most + 1], rate[2 * most + 1];
+    const auto put = [&](std::size_t place, std::size_t from) {
+        values[place * driving] = value[from];
+        if (rates) rates[place * driving] = rate[from];
+    };
     for (std::size_t first = 0; first < steps; first += most) {
         const std::size_t count = std::min(most, steps - first);
         for (std::size_t i = 0; i < count; ++i) {
@@ -55,11 +59,8 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
         }
         t[2 * count] = instants[first + count];
         evaluate(signal, t, 2 * count + 1, Side::after, value, rate);
-        for (std::size_t i = 0; i < 3 * count; ++i) {
-            const std::size_t place = (3 * first + i) * driving, from = i - i / 3;
-            values[place] = value[from];
-            if (rates) rates[place] = rate[from];
-        }
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t k = 0; k < 3; ++k) put(3 * (first + i) + k, 2 * i + k);
     }
     const auto ends = instants + 1, last = ends + steps;
     const auto& starts = signal.start;  // of pieces, at which the left limits are others
@@ -68,9 +69,7 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
         const auto end = std::lower_bound(ends, last, *piece);
         if (*end != *piece) continue;
         evaluate(signal, end, 1, Side::before, value, rate);
-        const std::size_t place = (3 * std::size_t(end - ends) + 2) * driving;
-        values[place] = *value;
-        if (rates) rates[place] = *rate;
+        put(3 * std::size_t(end - ends) + 2, 0);
     }
 }
 
