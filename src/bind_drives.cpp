@@ -356,6 +356,16 @@ void bind_drives(nb::module_& core) {
         "step",
         [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque,
            double temperature, double dt) {
+            const auto require = [](bool holds, const char* name, double value, const char* unit, const char* allowed) {
+                if (!holds)
+                    throw nb::value_error(
+                        (std::string("step.") + name + " = " + with_unit(value, unit) + " must " + allowed).c_str());
+            };
+            require(std::isfinite(command), "command", command, "1", "be finite");
+            require(std::isfinite(command_rate), "command_rate", command_rate, "1/s", "be finite");
+            require(std::isfinite(load_torque), "load_torque", load_torque, "N.m", "be finite");
+            require(temperature > 0.0 && std::isfinite(temperature), "temperature", temperature, "K", "lie in (0, inf)");
+            require(dt > 0.0 && std::isfinite(dt), "dt", dt, "s", "lie in (0, inf)");
             const auto at = [&](double share) {
                 return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
             };
@@ -364,7 +374,8 @@ void bind_drives(nb::module_& core) {
         },
         nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
         nb::arg("temperature") = friction::room_temperature, nb::arg("dt"),
-        "The state `dt` [s] later, the command moving at `command_rate`.");
+        "The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, and for a `dt` or a "
+        "`temperature` that is not positive.");
 
     nb::list outputs;
     const Output<double> output{};

@@ -1,10 +1,11 @@
 #pragma once
 #include <strainwave/any.hpp>
+#include <strainwave/scalar/pack.hpp>
 
 #include <algorithm>
 
 /// Drives chosen from shorter lists. What a step carries along is as large as the largest state among the models it could meet, and
-/// what it calls is inlined only where there is little to choose from; so drives that need few models run in code of their own.
+/// all that it calls is inlined only where there are not too many; so drives that need few models run in code of their own.
 namespace strainwave::host {
 
 /// Which models the parts of a drive are chosen from. A list of one model leaves no choice at run time.
@@ -34,11 +35,6 @@ struct Short<most, List<Found...>, List<First, Rest...>> {
     using type = typename Short<most, std::conditional_t<fits, List<Found..., First>, List<Found...>>, List<Rest...>>::type;
 };
 
-template <class L>
-inline constexpr bool one_model = false;
-template <template <class...> class Law>
-inline constexpr bool one_model<List<Law>> = true;
-
 template <class S, class L>
 struct Narrow {
     using type = AnyOf<S, L>;
@@ -58,16 +54,21 @@ using Small = Models<kinematic_error::Models, stiffness::Models, Short<16, hyste
                      Short<1, friction::Models>, Short<1, friction::Models>>;
 /// The drives of most papers and of most catalogues, each by the friction at its input.
 template <template <class...> class... FrictionInput>
-using Usual = Models<List<kinematic_error::Fourier>, List<stiffness::Linear, stiffness::Cubic>, List<hysteresis::MaxwellSlip>,
-                     List<FrictionInput...>, List<friction::Viscous>, List<friction::Viscous>>;
+using Usual =
+    Models<List<kinematic_error::Fourier>, List<stiffness::Linear, stiffness::Piecewise, stiffness::ThreeSegment, stiffness::Cubic>,
+           List<hysteresis::MaxwellSlip>, List<FrictionInput...>, List<friction::Viscous>, List<friction::Viscous>>;
 
 using DrivesOnBristles = Usual<friction::LuGre>;
 using DrivesWithoutMemory = Usual<friction::Viscous, friction::Coulomb, friction::Stribeck>;
 
-/// Whether so little is left to choose from that all the code of a step may be inlined into one function.
-template <class M>
-inline constexpr bool few_models = detail::one_model<typename M::Error> && detail::one_model<typename M::Hysteresis> &&
-                                   detail::one_model<typename M::FrictionMesh> && detail::one_model<typename M::FrictionOutput>;
+/// Whether all that a step of such a drive calls is inlined into one function. Of scalars of many registers that takes minutes to
+/// compile where there is more to choose from than in the usual drives.
+template <class S, class M>
+inline constexpr bool inlined = true;
+template <class S>
+inline constexpr bool inlined<S, Small> = std::is_same_v<S, double>;
+template <int n>
+inline constexpr bool inlined<Pack<n>, Small> = Pack<n>::count == 1;
 
 /// A drive whose parts are chosen from these lists.
 template <class S, class M>

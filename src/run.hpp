@@ -68,7 +68,7 @@ void check_bounds(const Drive& drive, const typename Drive::Standing& at, double
 /// How many steps pass between two calls of `pause`.
 inline constexpr std::size_t steps_between_pauses = 1 << 14;
 
-/// A step without events, every call on the way inlined: worth its size where few models are left to choose from.
+/// A step without events, every call on the way inlined: worth its size where there is not too much to choose from.
 template <class S, class Drive>
 [[gnu::flatten, gnu::noinline]] typename Drive::Standing inlined_step(const Drive& drive, const typename Drive::Standing& from,
                                                                       const Interval<S>& u, const S& dt) {
@@ -108,7 +108,7 @@ typename Drive::State run_compiled(const Drive& drive, const typename Drive::Sta
 }
 
 /// The state at the end of a run, which `runner` does in the code of the first of some lists of models that hold the drive; in that
-/// of all models if none does. runner.operator()<whether few models are left>(compiled drive, its state).
+/// of all models if none does. runner.operator()<whether its steps are inlined>(compiled drive, its state).
 template <class S, class Runner, class First, class... Rest>
 typename AnyPositionDrive<S>::State run_among(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
                                               const Runner& runner, First*, Rest*... rest) {
@@ -116,7 +116,7 @@ typename AnyPositionDrive<S>::State run_among(const AnyPositionDrive<S>& drive, 
     if (narrowed<S>(narrow, drive)) {
         const auto from = refilled<S, typename decltype(narrow.compile())::State>(start);
         return refilled<S, typename AnyPositionDrive<S>::State>(
-            runner.template operator()<few_models<First>>(narrow.compile(), from));
+            runner.template operator()<inlined<S, First>>(narrow.compile(), from));
     }
     if constexpr (sizeof...(Rest) > 0)
         return run_among<S>(drive, start, runner, rest...);
@@ -128,9 +128,9 @@ typename AnyPositionDrive<S>::State run_among(const AnyPositionDrive<S>& drive, 
 template <class S, class Record>
 typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
                                         const Course& course, Record&& record, const Pause& pause) {
-    const auto runner = [&]<bool few, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
+    const auto runner = [&]<bool inlines, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
         const auto advance = [](const Compiled& moved, const typename Compiled::Standing& at, const Interval<S>& u, const S& dt) {
-            if constexpr (few)
+            if constexpr (inlines)
                 return step(moved, at, u, dt, inlined_step<S, Compiled>);
             else
                 return step(moved, at, u, dt, called_step<S, Compiled>);

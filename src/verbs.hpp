@@ -10,8 +10,8 @@ using Argument = nb::ndarray<const double, nb::c_contig>;
 
 /// Numbers from Python as an array, refused unless all are finite.
 inline Argument numbers(nb::handle values, const char* name) {
-    const auto array = nb::cast<Argument>(
-        nb::module_::import_("numpy").attr("asarray")(values, nb::arg("dtype") = "float64", nb::arg("order") = "C"));
+    const nb::object given = nb::module_::import_("strainwave.arguments").attr("numbers")(name, values);
+    const auto array = nb::cast<Argument>(nb::module_::import_("numpy").attr("asarray")(given, nb::arg("order") = "C"));
     for (std::size_t i = 0; i < array.size(); ++i)
         if (!std::isfinite(array.data()[i]))
             throw nb::value_error(

@@ -58,7 +58,8 @@ ELSEWHERE = {
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {"identify/experiment.py": "a run under gravity starts hanging, so must the log that it is fitted to"},
     "Linear": {"narrow.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
-    "ThreeSegment": {"identify/torsion.py": TORSION_CURVE},
+    "Piecewise": {"narrow.hpp": USUAL},
+    "ThreeSegment": {"narrow.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
     "Cubic": {"narrow.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
     "MaxwellSlip": {"narrow.hpp": USUAL, "identify/torsion.py": "the hysteresis of a measured torsion loop"},
 }

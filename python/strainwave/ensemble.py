@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.files import replacing
+from strainwave.parameters import every, unknown
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
 from strainwave.simulation import (
@@ -323,26 +324,26 @@ def available_threads() -> int:
 
 def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
     """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
-    known = {path: (number, unit, low, high) for number, (path, _, unit, _, low, high) in enumerate(_core.parameters(drive))}
+    known = every(drive)
     arguments.mapping("parameters", parameters, '{"load.inertia": [0.01, 0.02]}')
     if not parameters:
         raise ValueError("parameters must name at least one number that the members differ in")
     values: dict[str, Array] = {}
     for path, column in parameters.items():
         if path not in known:
-            raise ValueError(f'the drive has no parameter "{path}"{_meant(str(path), list(known))}')
+            raise unknown(str(path), known)
         values[path] = arguments.numbers(path, column)
         if values[path].ndim != 1 or len(values[path]) == 0:
             raise ValueError(f"{path} must have one value a member, shape (members,), not {values[path].shape}")
-        _, unit, low, high = known[path]
-        wrong = np.flatnonzero(~(np.isfinite(values[path]) & (values[path] >= low) & (values[path] <= high)))
+        number = known[path]
+        wrong = np.flatnonzero(~(np.isfinite(values[path]) & (values[path] >= number.low) & (values[path] <= number.high)))
         if wrong.size:
-            number = f"{values[path][wrong[0]]:g}" + (f" {unit}" if unit != "1" else "")
-            raise ValueError(f"{path} = {number} of member {wrong[0]} must lie in {_limits(low, high)}")
+            given = f"{values[path][wrong[0]]:g}" + (f" {number.unit}" if number.unit != "1" else "")
+            raise ValueError(f"{path} = {given} of member {wrong[0]} must lie in {_limits(number.low, number.high)}")
     if len({len(column) for column in values.values()}) > 1:
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
         raise ValueError(f"all parameters must have as many values as there are members: {counts}")
-    return [known[path][0] for path in values], values
+    return [known[path].number for path in values], values
 
 
 def _outputs(record: Sequence[str]) -> list[str]:
@@ -357,13 +358,6 @@ def _limits(low: float, high: float) -> str:
     """As the models tell theirs."""
     lowest = "(-inf" if low == -np.inf else "(0" if low == SMALLEST else f"[{low:g}"
     return lowest + (", inf)" if high == np.inf else f", {high:g}]")
-
-
-def _meant(path: str, known: list[str]) -> str:
-    from difflib import get_close_matches
-
-    near = get_close_matches(path, known, n=3)
-    return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
 def _parts(plan: _Plan) -> Iterator[tuple[int, int]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -22,6 +22,20 @@ class Parameter:
     high: float
 
 
+def every(model: Gear | PositionDrive) -> dict[str, Parameter]:
+    """All numbers of a model by their paths, in its order."""
+    return {
+        path: Parameter(number, path, unit, value, low, high)
+        for number, (path, value, unit, _, low, high) in enumerate(_core.parameters(model))
+    }
+
+
+def unknown(path: str, known: Iterable[str]) -> ValueError:
+    """Says of a path that the model does not have it, and what is near."""
+    near = get_close_matches(path, list(known), n=3, cutoff=0.0)
+    return ValueError(f'the model has no parameter "{path}"; near it are {", ".join(near)}')
+
+
 def parameters(name: str, model: Gear | PositionDrive, paths: Sequence[str]) -> list[Parameter]:
     """Those that an argument names, in the order of the model; the path of a sequence names all its elements.
 
@@ -29,15 +43,10 @@ def parameters(name: str, model: Gear | PositionDrive, paths: Sequence[str]) -> 
     >>> [each.path for each in parameters("free", gear, ["damping"])]
     ['damping']
     """
-    wanted, known = arguments.names(name, paths), _core.parameters(model)
-    chosen = [
-        Parameter(number, path, unit, value, low, high)
-        for number, (path, value, unit, _, low, high) in enumerate(known)
-        if path in wanted or path.split("[")[0] in wanted
-    ]
+    wanted, known = arguments.names(name, paths), every(model)
+    chosen = [each for path, each in known.items() if path in wanted or path.split("[")[0] in wanted]
     found = {each.path for each in chosen} | {each.path.split("[")[0] for each in chosen}
     for path in wanted:
         if path not in found:
-            near = get_close_matches(path, [each for each, *_ in known], n=3, cutoff=0.0)
-            raise ValueError(f'the model has no parameter "{path}"; near it are {", ".join(near)}')
+            raise unknown(path, known)
     return chosen

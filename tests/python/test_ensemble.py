@@ -204,9 +204,8 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
     ("parameters", "others", "words"),
     [
         ({}, {}, r"^parameters must name at least one number that the members differ in$"),
-        ({"load.inertai": [0.5]}, {}, r'^the drive has no parameter "load\.inertai"; did you mean .*load\.inertia.*\?$'),
-        ({"zzz": [0.5]}, {}, r'^the drive has no parameter "zzz"$'),
-        ({3: [0.5]}, {}, r'^the drive has no parameter "3"$'),
+        ({"load.inertai": [0.5]}, {}, r'^the model has no parameter "load\.inertai"; near it are load\.inertia,'),
+        ({3: [0.5]}, {}, r'^the model has no parameter "3"; near it are '),
         ({"load.inertia": []}, {}, r"^load\.inertia must have one value a member, shape \(members,\), not \(0,\)$"),
         ({"load.inertia": 0.5}, {}, r"^load\.inertia must have one value a member, shape \(members,\), not \(\)$"),
         ({"load.inertia": [[0.5]]}, {}, r"^load\.inertia must have one value a member, shape \(members,\), not \(1, 1\)$"),

@@ -42,13 +42,13 @@ struct ThreeSegment {
 
     constexpr S torque(const S& twist) const {
         const S x = abs(twist), x1 = first_knee(), x2 = second_knee();
-        const S level = select(x < x1, k1 * x, select(x < x2, t1 + k2 * (x - x1), top() + k3 * (x - x2)));
+        const S level = select(x < x1, k1 * x, select(x < x2, t1 + k2 * (x - x1), t2 + k3 * (x - x2)));
         return along(twist, level);
     }
     constexpr S twist(const S& torque) const {
         const S level = abs(torque);
-        const S x = select(level < t1, level / k1,
-                           select(level < top(), first_knee() + (level - t1) / k2, second_knee() + (level - top()) / k3));
+        const S x =
+            select(level < t1, level / k1, select(level < t2, first_knee() + (level - t1) / k2, second_knee() + (level - t2) / k3));
         return along(torque, x);
     }
     constexpr S tangent(const S& twist) const {
@@ -58,14 +58,12 @@ struct ThreeSegment {
     constexpr S energy(const S& twist) const {
         const S x = abs(twist), a = min(x, first_knee()), b = clip(x - first_knee(), S(0.0), second_knee() - first_knee()),
                 c = max(x - second_knee(), S(0.0));
-        return S(0.5) * k1 * a * a + (t1 + S(0.5) * k2 * b) * b + (top() + S(0.5) * k3 * c) * c;
+        return S(0.5) * k1 * a * a + (t1 + S(0.5) * k2 * b) * b + (t2 + S(0.5) * k3 * c) * c;
     }
 
 private:
     constexpr S first_knee() const { return t1 / k1; }
-    constexpr S second_knee() const { return first_knee() + (top() - t1) / k2; }
-    /// A fit may move t2 below t1 on its way; the second segment is then empty.
-    constexpr S top() const { return max(t1, t2); }
+    constexpr S second_knee() const { return first_knee() + (t2 - t1) / k2; }
 };
 
 }  // namespace strainwave::stiffness
