@@ -197,6 +197,8 @@ def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, 
     # Friction that changes within 0.01 rad/s or a microradian by more than drives the shaft makes every run a matter of chance.
     assume(getattr(innermost(law), "stribeck_speed", 1.0) >= 1.0)
     assume(getattr(innermost(law), "presliding", 1.0) > 1e-4)
+    # Bristles that bear nothing at all at rest, but do in motion, forget faster there than any step: documented.
+    assume(getattr(innermost(law), "breakaway", 1.0) != 0.0)
     check_tolerance(EVERYTHING.replace(gear=EVERYTHING.gear.replace(**{part: law})))
 
 
