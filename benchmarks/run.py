@@ -11,6 +11,7 @@ stick_slip   the same drive with friction that really sticks: error over step, a
 scaling      time over steps, members and Maxwell elements
 files        ever more members run to files: time, memory and files
 overhead     what a call, storing and derivatives cost
+peak         operations a second, beside the most that the processor does
 
 The peers come with `pip install strainwave[bench]`. Figures and tables of each part go to build/benchmarks/, as SVG and JSON.
 """
@@ -24,6 +25,7 @@ from collections.abc import Callable, Sequence
 import ensemble
 import files
 import overhead
+import peak
 import scaling
 import single
 import stick_slip
@@ -37,6 +39,7 @@ PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "scaling": lambda console, peers, quick: scaling.run(console),
     "files": lambda console, peers, quick: files.run(console),
     "overhead": lambda console, peers, quick: overhead.run(console),
+    "peak": lambda console, peers, quick: peak.run(console),
 }
 
 

@@ -116,8 +116,8 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
 nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Numbers& inputs, const Flags& keep,
                           const std::vector<int>& parameters, const nb::object& progress) {
     const Request request(instants, inputs, keep);
-    Values out = array({std::size_t(channels), request.kept}),
-           slopes = array({parameters.size(), std::size_t(channels), request.kept});
+    Values out = array({std::size_t(channels), request.kept + 1}),
+           slopes = array({parameters.size(), std::size_t(channels), request.kept + 1});
     const Pause pause = pausing(progress);
     const auto differentiate = kernels().differentiate;
     {
@@ -140,12 +140,6 @@ Values now(const Drive& drive, const Drive::State& x, const Numbers& u) {
     Values out = array({std::size_t(channels), 1});
     kernels().observe(drive, x, input_of(u), out.data());
     return out;
-}
-
-nb::tuple now_derivatives(const Drive& drive, const Numbers& u, const std::vector<int>& parameters) {
-    Values out = array({std::size_t(channels), 1}), slopes = array({parameters.size(), std::size_t(channels), 1});
-    kernels().observe_derivatives(drive, input_of(u), parameters, out.data(), slopes.data());
-    return nb::make_tuple(out, slopes);
 }
 
 nb::tuple flow_derivatives(const Drive& drive, const Drive::State& x, const Numbers& u) {
@@ -427,14 +421,10 @@ void bind_drives(nb::module_& core) {
              nb::arg("parameters"), nb::arg("progress").none() = nb::none(),
              nb::sig("def differentiate(drive: strainwave.drives.PositionDrive, " SW_COURSE
                      ", parameters: collections.abc.Sequence[int]" SW_PROGRESS ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
-             "Outputs from rest, shape (channels, kept), and derivatives, shape (parameters, channels, kept).");
+             "Outputs from rest, shape (channels, 1 + kept), and derivatives, shape (parameters, channels, 1 + kept).");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
              nb::sig("def now(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> " SW_ARRAY),
              "Outputs in `state`, shape (channels, 1).");
-    core.def("now_derivatives", &now_derivatives, nb::arg("drive"), nb::arg("inputs"), nb::arg("parameters"),
-             nb::sig("def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: " SW_ARRAY
-                     ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
-             "Outputs at rest and their derivatives, as `differentiate` gives them for one sample.");
     core.def(
         "differentiate_flow", &flow_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def differentiate_flow(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY

@@ -34,16 +34,35 @@ X sought(const Array<double, n>& numbers, int from, int count, int first) {
     return shaped<X>(scalars);
 }
 
-/// Writes sample k of `kept`: values, and derivatives by the parameters number `first` and following.
-void write(const Output<Slope>& output, std::size_t first, std::size_t count, std::size_t k, std::size_t kept, double* out,
-           double* slopes) {
-    const auto values = flattened<Slope>(output);
-    for (int c = 0; c < channels; ++c) {
-        out[c * kept + k] = values[c].value;
-        for (std::size_t p = first; p < first + width && p < count; ++p)
-            slopes[(p * channels + c) * kept + k] = values[c].slope[p - first];
+/// Writes samples one after the other: values, and derivatives by the parameters number `first` and following. Rows lie far apart,
+/// so a stretch of samples is gathered before it is written.
+class Writer {
+    static constexpr std::size_t stretch = 16;
+    const std::size_t first, last, samples;
+    double *const out, *const slopes;
+    Array<Slope, channels> held[stretch];
+    std::size_t written = 0, gathered = 0;
+
+public:
+    Writer(std::size_t first_, std::size_t parameters, std::size_t samples_, double* out_, double* slopes_)
+        : first(first_), last(std::min(parameters, first_ + width)), samples(samples_), out(out_), slopes(slopes_) {}
+
+    void operator()(const Output<Slope>& output) {
+        held[gathered] = flattened<Slope>(output);
+        if (++gathered == stretch) flush();
     }
-}
+    void flush() {
+        for (std::size_t c = 0; c < channels; ++c) {
+            for (std::size_t k = 0; k < gathered; ++k) out[c * samples + written + k] = held[k][int(c)].value;
+            for (std::size_t p = first; p < last; ++p) {
+                double* const row = slopes + (p * channels + c) * samples + written;
+                for (std::size_t k = 0; k < gathered; ++k) row[k] = held[k][int(c)].slope[p - first];
+            }
+        }
+        written += gathered;
+        gathered = 0;
+    }
+};
 
 }  // namespace
 
@@ -52,20 +71,12 @@ void differentiate(const Drive& drive, const Course& course, const std::vector<i
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
-        std::size_t k = 0;
-        const auto record = [&](const Output<Slope>& output) { write(output, first, parameters.size(), k++, kept, out, slopes); };
+        Writer record(first, parameters.size(), kept + 1, out, slopes);
+        const Input<Slope> at_start = interval<Slope>(course.inputs).start;
+        record(dual.output(dual.standing(dual.rest(), at_start), at_start));
         const auto paused = [&](std::size_t i) { pause(first * course.steps + width * i); };
         run<Slope>(dual, dual.rest(), course, record, paused);
-    }
-}
-
-void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
-                         double* slopes) {
-    const Parts parts = parts_of(drive);
-    for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
-        const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
-        const Input<Slope> input{Slope(u.command), Slope(u.command_rate), Slope(u.load_torque), Slope(u.temperature)};
-        write(dual.output(dual.standing(dual.rest(), input), input), first, parameters.size(), 0, 1, out, slopes);
+        record.flush();
     }
 }
 

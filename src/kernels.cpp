@@ -8,17 +8,8 @@ namespace {
 
 using namespace strainwave::host;
 
-const Kernels kernels{&evaluate,
-                      &lay_out,
-                      &simulate,
-                      &simulate_adaptively,
-                      &simulate_many,
-                      &observe,
-                      &differentiate,
-                      &observe_derivatives,
-                      &differentiate_flow,
-                      &differentiate_loop,
-                      &differentiate_steady};
+const Kernels kernels{&evaluate, &lay_out,       &simulate,           &simulate_adaptively, &simulate_many,
+                      &observe,  &differentiate, &differentiate_flow, &differentiate_loop,  &differentiate_steady};
 
 PyModuleDef definition{PyModuleDef_HEAD_INIT, SW_MODULE, nullptr, -1, nullptr, nullptr, nullptr, nullptr, nullptr};
 

@@ -88,13 +88,9 @@ std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variatio
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
 
 /// One trajectory from rest and its derivatives with respect to the numbered parameters of the drive.
-/// Writes values to out[c * kept + k], derivatives to slopes[(p * channels + c) * kept + k].
+/// Writes values, beginning with the start, to out[c * (kept + 1) + k], derivatives to slopes[(p * channels + c) * (kept + 1) + k].
 void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
                    std::size_t kept, const Pause& pause);
-
-/// The outputs of a drive at rest, and their derivatives as `differentiate` gives them, for one sample.
-void observe_derivatives(const Drive& drive, const Input<double>& u, const std::vector<int>& parameters, double* out,
-                         double* slopes);
 
 /// The rates of the motion and then the outputs of a drive in state `x`, its history fixed: value i in out[i], its derivative with
 /// respect to number p of the motion, and then of the inputs, in slopes[p * (motions + channels) + i].
@@ -118,7 +114,6 @@ struct Kernels {
     decltype(&host::simulate_many) simulate_many;
     decltype(&host::observe) observe;
     decltype(&host::differentiate) differentiate;
-    decltype(&host::observe_derivatives) observe_derivatives;
     decltype(&host::differentiate_flow) differentiate_flow;
     decltype(&host::differentiate_loop) differentiate_loop;
     decltype(&host::differentiate_steady) differentiate_steady;

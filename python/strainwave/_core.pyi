@@ -361,16 +361,11 @@ def instruction_set() -> str:
 
 def differentiate(drive: strainwave.drives.PositionDrive, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], parameters: Sequence[int], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
-    Outputs from rest, shape (channels, kept), and derivatives, shape (parameters, channels, kept).
+    Outputs from rest, shape (channels, 1 + kept), and derivatives, shape (parameters, channels, 1 + kept).
     """
 
 def now(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """Outputs in `state`, shape (channels, 1)."""
-
-def now_derivatives(drive: strainwave.drives.PositionDrive, inputs: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
-    """
-    Outputs at rest and their derivatives, as `differentiate` gives them for one sample.
-    """
 
 def differentiate_flow(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

@@ -354,9 +354,7 @@ def differentiate(
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, samples)
     outputs, slopes = _core.differentiate(drive, course.instants, excitation.over(course), course.samples[1:], list(numbers))
-    first, first_slopes = _core.now_derivatives(drive, excitation.first(), list(numbers))
-    run = recording(drive, course, np.concatenate((first, outputs), axis=1), dt)
-    return run, np.concatenate((first_slopes, slopes), axis=2)
+    return recording(drive, course, outputs, dt), slopes
 
 
 def check_temperature(lowest: float) -> None:

@@ -1,0 +1,86 @@
+"""How much of what the processor can do at most the steps of the reference drive make use of.
+
+Sums, products and quotients of a step are counted by running it with numbers that count; the most that one core does is
+measured in multiply-adds of its widest registers. Both by a program that is compiled here, so a compiler must be there.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import strainwave as sw
+from measure import shortest
+from peers import strainwave_drive
+from reference_drive import DURATION, OUTPUT_INERTIA
+from report import Column, save, table, three_digits
+from rich.console import Console
+from strainwave import _core
+
+HERE = Path(__file__).resolve().parent
+STEP = 2e-4  # s
+PACKS = 8
+ROUNDS = 15
+
+COLUMNS = (
+    Column("run", words=True),
+    *(Column(heading) for heading in ("operations a step", "step [us]", "1e9 operations/s", "share of the most")),
+)
+
+
+@dataclass(frozen=True)
+class Use:
+    """Operations of a step, its time [s], and the most that one core does in a second."""
+
+    run: str
+    operations: float
+    step: float
+    most: float
+
+    @property
+    def rate(self) -> float:
+        """Operations a second."""
+        return self.operations / self.step
+
+
+def counted(compiler: str) -> tuple[float, float]:
+    """Operations of a step, and the most that one core does in a second."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder, "peak")
+        options = ["-std=c++20", "-O3", "-march=native", "-ffp-contract=fast", "-Wno-psabi", f"-I{HERE.parent / 'include'}"]
+        subprocess.run([compiler, *options, str(HERE / "peak.cpp"), "-o", str(program)], check=True)
+        operations, most = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+    return float(operations), 1e9 * float(most)
+
+
+def run(console: Console) -> None:
+    """Prints, and writes the table."""
+    compiler = shutil.which(os.environ.get("CXX", "c++"))
+    if compiler is None:
+        console.print("peak: there is no C++ compiler")
+        return
+    with console.status("peak"):
+        operations, most = counted(compiler)
+        drive, command = strainwave_drive.drive(), strainwave_drive.command()
+        inertias = {"load.inertia": OUTPUT_INERTIA * np.linspace(0.8, 1.2, PACKS * _core.lanes)}
+        runs = {
+            "one trajectory": lambda: sw.simulate(drive, command, STEP, sample=DURATION),
+            f"packs of {_core.lanes}": lambda: sw.simulate_many(drive, command, inertias, STEP, sample=DURATION, threads=1),
+        }
+        alone, packed = (time * STEP / DURATION for time in shortest(runs, ROUNDS).values())
+        uses = [
+            Use("one trajectory", operations, alone, most),
+            Use(f"packs of {_core.lanes}", _core.lanes * operations, packed / PACKS, most),
+        ]
+    console.print(table(f"Of at most {three_digits(1e-9 * most)}e9 operations a second", COLUMNS, [row(use) for use in uses]))
+    save("peak", uses)
+
+
+def row(use: Use) -> list[str]:
+    numbers = (use.operations, 1e6 * use.step, 1e-9 * use.rate, use.rate / use.most)
+    return [use.run, *map(three_digits, numbers)]
