@@ -329,7 +329,9 @@ def _check_lengths(columns: Mapping[str, Array]) -> None:
 def _first_fault(columns: Mapping[str, Array], units: Mapping[str, str]) -> _Fault | None:
     """The first value that is not finite, else the first time that does not increase."""
     for name, values in columns.items():
-        if isfinite(np.dot(values, values)):  # whose terms then are, all found in one go
+        with np.errstate(all="ignore"):
+            square = np.dot(values, values)
+        if isfinite(square):  # as all its terms then are, found in one go
             continue
         finite = np.isfinite(values)
         if not finite.all():
