@@ -37,9 +37,9 @@ Values inputs_of(const Signal& command, const Signal& load_torque, const Signal&
 
 /// 0, step, 2 step, … and `duration`, which is always the last.
 Values grid(double step, double duration, double tolerance) {
-    std::vector<double> instants(std::size_t(duration / step) + 2);
-    std::size_t count = 0;
-    for (double next = 0.0; next < duration - tolerance; next = double(count) * step) instants[count++] = next;
+    std::vector<double> instants(std::size_t(duration / step) + 3);
+    std::size_t count = 1;  // 0
+    for (double next = step; next < duration - tolerance; next = double(count) * step) instants[count++] = next;
     instants[count++] = duration;
     Values out = array({count});
     std::copy_n(instants.begin(), count, out.data());

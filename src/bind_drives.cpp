@@ -13,8 +13,8 @@ struct Request {
 
     Request(const Numbers& instants, const Numbers& inputs, const Flags& keep)
         : course{instants.data(), inputs.data(), keep.data(), keep.size()} {
-        if (instants.size() != course.steps + 1 || inputs.size() != 3 * driving * course.steps)
-            throw nb::value_error("a course of n steps has n + 1 instants, inputs of shape (n, 3, 4) and n flags");
+        if (course.steps == 0 || instants.size() != course.steps + 1 || inputs.size() != 3 * driving * course.steps)
+            throw nb::value_error("a course of n > 0 steps has n + 1 instants, inputs of shape (n, 3, 4) and n flags");
         for (std::size_t i = 0; i < course.steps; ++i) kept += keep.data()[i] != 0;
     }
 };
@@ -52,9 +52,10 @@ Drive::State run_one(const Drive& drive, const Drive::State& start, const Number
 nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
                          double relative, double absolute, long most_steps, const Numbers& samples, const Outputs& out,
                          std::size_t first, const nb::object& progress) {
+    if (instants.size() < 2 || inputs.size() != 3 * driving * (instants.size() - 1))
+        throw nb::value_error("a course of n > 0 steps has n + 1 instants and inputs of shape (n, 3, 4)");
     const std::vector<std::uint8_t> none(instants.size() - 1);
     const Course course{instants.data(), inputs.data(), none.data(), none.size()};
-    if (inputs.size() != 3 * driving * course.steps) throw nb::value_error("a course of n steps has inputs of shape (n, 3, 4)");
     double* const place = place_in(out, first, samples.size());
     const Pause pause = pausing(progress);
     Drive::State end;
@@ -364,7 +365,7 @@ void bind_drives(nb::module_& core) {
                 return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
             };
             const Interval<double> u{at(0.0), at(0.5), at(1.0)};
-            return step<double>(self, self.consistent(state), u, dt);
+            return self.standing(step<double>(self, self.consistent(state), u, dt), u.end).state;  // as at the end of a run
         },
         nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
         nb::arg("temperature") = friction::room_temperature, nb::arg("dt"),
@@ -404,12 +405,13 @@ void bind_drives(nb::module_& core) {
             ", " SW_COURSE ", recorded: collections.abc.Sequence[int], fastest: float, largest: float, threads: int, "
             "out: " SW_ARRAY SW_PROGRESS ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY
             ", dict[int, str]]"),
-        "Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether all of them are "
-        "at "
-        "most `largest`, its largest twist [rad], the fastest vibration of its gear up to there and of a shaft on its bristles "
-        "[rad/s], and why it ended early, if it did. `values`, shape (numbers, members), takes the place of the numbered "
-        "parameters. "
-        "Members whose gear vibrates faster than `fastest` at rest are not run.");
+        "Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and "
+        "neither "
+        "its outputs nor its twist are larger than `largest`, its largest twist [rad], the fastest vibration of its gear up to "
+        "there "
+        "and of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), "
+        "takes "
+        "the place of the numbered parameters. Members whose gear vibrates faster than `fastest` at rest are not run.");
     core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
              nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
              "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <new>
 
 /// A drive run through time, for any scalar: the loop that Python's `simulate` and `fit` stand on.
 namespace strainwave::host {
@@ -80,12 +81,12 @@ template <class S, class Drive>
     return drive.standing(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 
-/// Runs a compiled drive from `start` and calls record(output) at the end of each step to be kept. `advance` takes a step. Returns
-/// the state at the end. What a step returns is made where it stays: to copy it would take a twentieth of the step.
+/// Runs a compiled drive from `start` through one step or more and calls record(output) at the end of each step to be kept.
+/// `advance` takes a step. Returns the state at the end. What a step returns is made where it stays: to copy it would take a
+/// twentieth of the step.
 template <class S, class Drive, class Record, class Advance>
 typename Drive::State run_compiled(const Drive& drive, const typename Drive::State& start, const Course& course, Record& record,
                                    const Pause& pause, const Advance& advance) {
-    if (course.steps == 0) return drive.consistent(start);
     const bool has_bounds = drive.has_bounds();
     Interval<S> u = interval<S>(course.inputs);
     using Standing = typename Drive::Standing;

@@ -67,8 +67,9 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
     const auto within = std::upper_bound(starts.begin(), starts.end(), *instants);
     for (auto piece = within; piece != starts.end() && *piece <= *(last - 1); ++piece) {
         const auto end = std::lower_bound(ends, last, *piece);
-        if (*end != *piece) continue;
-        evaluate(signal, end, 1, Side::before, value, rate);
+        // A jump of another signal just beside this one may have taken the end of the step.
+        if (*end - *piece > 1e-6 * (*end - *(end - 1))) continue;
+        evaluate(signal, &*piece, 1, Side::before, value, rate);
         put(3 * std::size_t(end - ends) + 2, 0);
     }
 }
@@ -78,6 +79,7 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
 void evaluate(const Signal& signal, const double* instants, std::size_t count, Side side, double* values, double* rates) {
     const std::size_t whole = count / lanes * lanes, rest = count - whole;
     for (std::size_t i = 0; i < whole; i += lanes) evaluate_together(signal, instants + i, side, values + i, rates + i);
+    if (rest == 0) return;
     double last[lanes] = {}, last_values[lanes], last_rates[lanes];
     std::copy(instants + whole, instants + count, last);
     evaluate_together(signal, last, side, last_values, last_rates);

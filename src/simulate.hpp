@@ -36,7 +36,7 @@ struct Verdict {
     double twist = 0.0;                    ///< largest recorded, rad
     double vibration = 0.0;                ///< the fastest of the gear up to that twist, rad/s
     double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
-    bool sound = false;                    ///< whether all that was recorded, and the twist, means anything
+    bool sound = false;                    ///< whether it ran, and all that was recorded and the twist mean something
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
     std::string problem{};                 ///< why it did not begin, if it did not
 };
@@ -108,7 +108,7 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
 /// All of them, as one module holds them.
 struct Kernels {
     decltype(&host::evaluate) evaluate;
-    void (*lay_out)(const Signals&, const double*, std::size_t, double*);
+    decltype(&host::lay_out) lay_out;
     decltype(&host::simulate) simulate;
     decltype(&host::simulate_adaptively) simulate_adaptively;
     decltype(&host::simulate_many) simulate_many;

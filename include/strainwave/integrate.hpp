@@ -15,7 +15,7 @@ constexpr typename Drive::Standing step(const Drive& drive, const typename Drive
     return drive.set_valued() ? integrate::event_driven_step(drive, from, u, dt, smooth) : smooth(drive, from, u, dt);
 }
 
-/// The state after such a step, from a state alone.
+/// The state after such a step, from a state alone. What it remembers may yet have to be brought up to date, as the next step does.
 template <class S, class Drive>
 constexpr typename Drive::State step(const Drive& drive, const typename Drive::State& before, const Interval<S>& u, const S& dt) {
     const auto from = drive.standing(before, u.start);

@@ -40,7 +40,8 @@ class Course:
 
         Where neither asks for more, steps are exactly `dt`; the last may be shorter.
         """
-        nearest = 1e-9 * min(dt, float(np.min(np.diff(samples))) if isinstance(samples, np.ndarray) else samples)
+        apart = float(np.min(np.diff(samples))) if isinstance(samples, np.ndarray) else samples
+        nearest = 1e-9 * min(dt, apart, duration)
         if not isinstance(samples, np.ndarray):
             samples = grid(samples, duration, nearest)
         return cls(*_core.course(grid(dt, duration, nearest), samples, np.sort(breaks), nearest))

@@ -70,6 +70,53 @@ def test_a_jump_between_two_steps_is_seen_by_the_second_alone(dt: float, multipl
     assert inputs.tolist() == multiple * [[0.0] * 3] + 2 * [[1.0] * 3]
 
 
+@pytest.mark.parametrize("others", [0.1 * 3, 0.3 - 1e-16, 0.3])
+def test_jumps_of_two_signals_at_one_instant_but_for_rounding_are_seen_by_the_next_step_alone(others: float) -> None:
+    excitation = Excitation(sw.scenario.step(1.0, duration=0.5, start=0.3), sw.scenario.step(2.0, duration=0.5, start=others))
+    inputs = excitation.over(excitation.course(0.1, None))
+    assert inputs[:, :, 0].tolist() == 3 * [[0.0] * 3] + 2 * [[1.0] * 3]
+    assert inputs[:, :, 2].tolist() == 3 * [[0.0] * 3] + 2 * [[2.0] * 3]
+
+
+@pytest.mark.parametrize("steps", [255, 256, 257, 512])
+def test_a_jump_is_seen_wherever_inputs_are_laid_out_in_pieces(steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    jump = steps * 2.0**-10
+    sticking = sw.scenario.step(0.05, duration=1.0, start=jump)
+    whole = sw.simulate(STICKING, sticking, 2.0**-10)
+    monkeypatch.setattr(simulation, "CHUNK", steps)
+    assert same(sw.simulate(STICKING, sticking, 2.0**-10), whole)
+    before = sw.simulate(STICKING, sw.scenario.constant(0.0, jump), 2.0**-10)
+    after = sw.simulate(STICKING, sw.scenario.constant(0.05, 1.0 - jump), 2.0**-10, start=before.end)
+    assert after.end == whole.end
+    assert whole["output_angle"][-1] > 0.01
+
+
+@pytest.mark.parametrize(("dt", "sample"), [(1e10, None), (1e-3, 1e10), (1e10, 1e10), (1e10, 5e-4)])
+def test_steps_and_samples_longer_than_the_run_end_with_it(dt: float, sample: float | None) -> None:
+    drive = DRIVE.replace(motor=DRIVE.motor.replace(inertia=1e6), load=DRIVE.load.replace(inertia=1e9))
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 2e-3), dt, sample=sample, method="rosenbrock")
+    assert run["time"][[0, -1]].tolist() == [0.0, 2e-3]
+    adaptive = sw.simulate_adaptively(DRIVE, sw.scenario.constant(0.0, 2e-3), sample=1e10)
+    assert adaptive["time"].tolist() == [0.0, 2e-3]
+
+
+@pytest.mark.parametrize(
+    ("inputs", "words"),
+    [
+        ({"dt": 0.0}, "step.dt = 0 s must lie in (0, inf)"),
+        ({"dt": -1e-3}, "step.dt = -0.001 s must lie in (0, inf)"),
+        ({"dt": float("nan")}, "step.dt = nan s must lie in (0, inf)"),
+        ({"command": float("nan")}, "step.command = nan must be finite"),
+        ({"command_rate": float("inf")}, "step.command_rate = inf 1/s must be finite"),
+        ({"load_torque": float("nan")}, "step.load_torque = nan N.m must be finite"),
+        ({"temperature": 0.0}, "step.temperature = 0 K must lie in (0, inf)"),
+    ],
+)
+def test_a_step_by_hand_is_given_numbers_that_mean_something(inputs: dict[str, float], words: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(words)}$"):
+        DRIVE.step(DRIVE.rest(), **{"dt": 1e-3} | inputs)
+
+
 def test_inputs_are_the_left_limits_at_the_end_of_a_step() -> None:
     load = sw.scenario.step(5.0, duration=0.4, start=0.2)
     warming = sw.scenario.step(20.0, duration=0.4, start=0.3) + sw.scenario.constant(290.0, duration=0.4)
