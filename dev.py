@@ -146,7 +146,7 @@ CHECKS: dict[str, tuple[Sequence[str], dict[str, str], Sequence[str]]] = {
     "address": (
         ["libasan.so", "libubsan.so"],
         {"ASAN_OPTIONS": "detect_leaks=0"},  # the interpreter's own
-        ["tests/laws", "tests/agreement", "tests/published"],
+        ["tests/laws", "tests/agreement", "tests/published", "-k", "not compilers and not cuda"],  # not those that only compile
     ),
     "thread": (
         ["libtsan.so"],
@@ -171,6 +171,7 @@ def sanitized(check: str, tests: Sequence[str]) -> int:
     libraries, told, worthwhile = CHECKS[check]
     return attempt(
         *(PYTHON, "-S", "-m", "pytest"),  # without -S the interpreter would find the editable package first
+        *("--numprocesses", "auto", "--dist", "worksteal"),
         *(tests or worthwhile),
         LD_PRELOAD=":".join(library(name) for name in libraries),
         PYTHONPATH=f"{site}:{packages}",

@@ -62,13 +62,18 @@ using DrivesOnBristles = Usual<friction::LuGre>;
 using DrivesWithoutMemory = Usual<friction::Viscous, friction::Coulomb, friction::Stribeck>;
 
 /// Whether all that a step of such a drive calls is inlined into one function. Of scalars of many registers that takes minutes to
-/// compile where there is more to choose from than in the usual drives.
+/// compile where there is more to choose from than in the usual drives; where each access is checked, more than ten for any.
+#ifdef SW_CHECKED
+template <class S, class M>
+inline constexpr bool inlined = false;
+#else
 template <class S, class M>
 inline constexpr bool inlined = true;
 template <class S>
 inline constexpr bool inlined<S, Small> = std::is_same_v<S, double>;
 template <int n>
 inline constexpr bool inlined<Pack<n>, Small> = Pack<n>::count == 1;
+#endif
 
 /// A drive whose parts are chosen from these lists.
 template <class S, class M>
