@@ -39,14 +39,13 @@ double* place_in(const Outputs& out, std::size_t first, std::size_t count) {
 }
 
 Drive::State run_one(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
-                     const Flags& keep, int method, const Outputs& out, std::size_t first, const nb::object& progress) {
+                     const Flags& keep, Method method, const Outputs& out, std::size_t first, const nb::object& progress) {
     const Request request(instants, inputs, keep);
-    if (method < 0 || method > int(Method::rosenbrock)) throw nb::value_error("no such method");
     double* const place = place_in(out, first, request.kept);
     const Pause pause = pausing(progress);
     const auto simulate = kernels().simulate;
     nb::gil_scoped_release free;
-    return simulate(drive, start, request.course, Method(method), place, out.shape(1), pause);
+    return simulate(drive, start, request.course, method, place, out.shape(1), pause);
 }
 
 nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
@@ -378,6 +377,10 @@ void bind_drives(nb::module_& core) {
         output, [&](const double&, const Field& field) { outputs.append(nb::make_tuple(field.name, field.unit, field.doc)); });
     core.attr("lanes") = lanes;
     core.attr("outputs") = nb::tuple(outputs);
+    nb::enum_<Method>(core, "Method", "How steps are taken.")
+        .value("exponential", Method::exponential)
+        .value("moreau_jean", Method::moreau_jean)
+        .value("rosenbrock", Method::rosenbrock);
 
 #define SW_COURSE "instants: " SW_ARRAY ", inputs: " SW_ARRAY ", keep: numpy.typing.NDArray[numpy.uint8]"
 #define SW_OUTPUTS "out: " SW_ARRAY ", first: int"
@@ -385,9 +388,8 @@ void bind_drives(nb::module_& core) {
     core.def("simulate", &run_one, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("method"), nb::arg("out").noconvert(), nb::arg("first"), nb::arg("progress").none() = nb::none(),
              nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE
-                     ", method: int, " SW_OUTPUTS SW_PROGRESS ") -> State"),
-             "The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on. Methods: "
-             "0 exponential, 1 Moreau-Jean, 2 Rosenbrock.");
+                     ", method: Method, " SW_OUTPUTS SW_PROGRESS ") -> State"),
+             "The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on.");
     core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"),
              nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"), nb::arg("samples"), nb::arg("out").noconvert(),
              nb::arg("first"), nb::arg("progress").none() = nb::none(),

@@ -1,6 +1,7 @@
 """The physics, compiled."""
 
 from collections.abc import Callable, Sequence
+import enum
 import pathlib
 from typing import Any, overload
 
@@ -331,9 +332,18 @@ lanes: int = 8
 
 outputs: tuple[tuple[str, str, str], ...]
 
-def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: int, out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> State:
+class Method(enum.Enum):
+    """How steps are taken."""
+
+    exponential = 0
+
+    moreau_jean = 1
+
+    rosenbrock = 2
+
+def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: Method, out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> State:
     """
-    The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on. Methods: 0 exponential, 1 Moreau-Jean, 2 Rosenbrock.
+    The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on.
     """
 
 def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[State, int, int]:

@@ -182,7 +182,9 @@ class _Sines:
         inputs, state = excitation.over(course), self.start
         while True:
             outputs = beginning(self.drive, state, excitation, len(course.times))
-            state = _core.simulate(self.drive, state, course.instants, inputs, course.samples[1:], 0, outputs, 1)
+            state = _core.simulate(
+                self.drive, state, course.instants, inputs, course.samples[1:], _core.Method.exponential, outputs, 1
+            )
             run = recording(self.drive, course, outputs, step)
             yield {name: run[name] for name in run.names if name != "time"}
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,8 +140,8 @@ def _signal(given: Scenario | float) -> _core.Signal:
     return _core.Signal(np.zeros(1), np.array([given], dtype=np.float64), np.zeros(1), np.empty(0))
 
 
-METHODS = ("exponential", "moreau_jean", "rosenbrock")
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
+METHODS: tuple[Method, ...] = get_args(Method)
 FASTEST_ON_BRISTLES = 2.0  # step times angular frequency of a shaft on its bristles, beyond which fixed steps are in doubt
 
 
@@ -177,20 +177,22 @@ def simulate(
     """Runs a drive through a command and records what happens.
 
     Steps end at every jump of the inputs. With set-valued friction they are cut at its events, located to rounding, so that
-    sticking is exact.
+    sticking is exact. Events are told by how a step ends: a side whose speed changes its sign and is back before the end is
+    taken to slide on.
 
     Args:
         drive: what is commanded
         command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
-        dt: largest step [s]
+        dt: largest step [s] where steps are fixed
         sample: distance of samples in the recording [s]; `dt` if not given
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K], for friction that depends on it
         start: where the drive starts, as `end` of another run; at rest, untwisted, if not given
         method: "exponential", a Runge-Kutta method of fourth order that lets bristles relax exactly; "rosenbrock", a W-method
-            of third order for shafts that rest on stiff bristles; "moreau_jean", time-stepping of second order that looks for
-            no events, however many there are. If not given it is the first, unless a shaft vibrates on its bristles faster than
-            steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its tolerances.
+            of third order for shafts that rest on stiff bristles without turning round; "moreau_jean", time-stepping of second
+            order that looks for no events, however many there are. If not given it is the first, unless a shaft vibrates on
+            its bristles faster than steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its
+            tolerances.
         progress: show a progress bar
 
     Returns:
@@ -206,6 +208,9 @@ def simulate(
             where and when
         FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration; says when, and what would do
 
+    Warns:
+        RuntimeWarning: a `method` was asked for whose steps cannot follow a shaft on its bristles
+
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
     >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
@@ -220,7 +225,9 @@ def simulate(
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
     state = drive.rest() if start is None else arguments.state("start", start)
-    if method is None and dt * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
+    excitation = Excitation(command, load_torque, temperature)
+    longest = min(dt, interval, command.duration)
+    if method is None and longest * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
         return simulate_adaptively(
             drive,
             command,
@@ -232,7 +239,6 @@ def simulate(
         )
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
         _check_resolution(drive, dt, 0.0)  # at rest: else many a step may be spent on events that mean nothing
-    excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, interval)
     taken = method or "exponential"
     time = course.times
@@ -241,13 +247,13 @@ def simulate(
         for number, chunk in enumerate(course.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
             inputs, keep = excitation.over(chunk), chunk.samples[1:]
-            state = _core.simulate(drive, state, chunk.instants, inputs, keep, METHODS.index(taken), outputs, first, report)
+            state = _core.simulate(drive, state, chunk.instants, inputs, keep, _core.Method[taken], outputs, first, report)
             first += int(np.count_nonzero(keep))
     _check_meaning(time, outputs, remedy(dt))
     if method != "rosenbrock":
         _check_resolution(drive, dt, _largest_twist(outputs))
-    named = _NAMED[taken] + (", cut at events" if taken != "moreau_jean" and _sticks(drive) else "")
-    return Run(_columns(time, outputs), output_units(drive), state, f"{named}, steps of {dt:g} s")
+    warn_of_bristles(drive, longest)
+    return Run(_columns(time, outputs), output_units(drive), state, f"{_named(taken, drive)}, steps of {dt:g} s")
 
 
 def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, samples: int) -> Array:
@@ -257,16 +263,17 @@ def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, 
     return outputs
 
 
-def _sticks(drive: PositionDrive) -> bool:
-    """Whether a friction of the drive holds its place at rest."""
-    return not drive.rest().sliding_input or not drive.rest().sliding_output
-
-
-_NAMED = {
+_NAMED: dict[Method, str] = {
     "exponential": "exponential Runge-Kutta",
     "moreau_jean": "Moreau-Jean time-stepping",
     "rosenbrock": "Rosenbrock W-method",
 }
+
+
+def _named(method: Method, drive: PositionDrive) -> str:
+    """A method in words, as it is where friction of the drive holds its place at rest or does not."""
+    sticks = not drive.rest().sliding_input or not drive.rest().sliding_output
+    return _NAMED[method] + (", cut at events" if sticks and method != "moreau_jean" else "")
 
 
 def simulate_adaptively(
@@ -289,8 +296,8 @@ def simulate_adaptively(
 
     Args:
         drive, command, load_torque, temperature, start, progress: as for `simulate`
-        rtol: error tolerated in each member of the motion (angles, speeds, current, bristles), relative to the largest it has
-            been so far
+        rtol: error tolerated in each member of the motion (angles, speeds, current, bristles) and in the torque, relative to
+            the largest it has been so far
         atol: error tolerated besides, in the unit of each
         sample: distance of samples in the recording [s]
         most_steps: after how many the run gives up. One takes some microseconds
@@ -330,8 +337,8 @@ def simulate_adaptively(
             )
             done, accepted, rejected = done + len(within), accepted + taken, rejected + given_up
     _check_meaning(samples, outputs, "check the parameters")
-    said = f"exponential Runge-Kutta, adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
-    return Run(_columns(samples, outputs), output_units(drive), state, said)
+    kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
+    return Run(_columns(samples, outputs), output_units(drive), state, f"{_named('exponential', drive)}, {kept}")
 
 
 def differentiate(
@@ -435,7 +442,7 @@ def too_stiff(dt: float, vibration: float) -> str:
     """Says of bristles on which a shaft vibrates [rad/s] that fixed steps of `dt` [s] are in doubt."""
     return (
         f"bristles on which a shaft vibrates faster than steps of {dt:g} s can follow, at {vibration:.3g} rad/s; where it "
-        f"comes to rest results may be wrong: take dt = {FASTEST_ON_BRISTLES / vibration:.2g} s or less"
+        f"comes to rest or turns round results may be wrong: take dt = {FASTEST_ON_BRISTLES / vibration:.2g} s or less"
     )
 
 

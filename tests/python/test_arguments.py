@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -168,6 +169,20 @@ def test_every_function_wants_whole_numbers_where_it_counts(name: str, low: int)
 def test_every_function_wants_a_state_where_it_starts_from_one(name: str) -> None:
     for call in functions(**{name: "rest"}):
         with pytest.raises(TypeError, match=f"^{name} = 'rest' must be a state of a drive, as "):
+            call()
+
+
+@pytest.mark.parametrize("command", [0.1, None, "step", [0.1, 0.2]], ids=repr)
+def test_every_function_that_runs_a_drive_wants_a_scenario_as_command(command: Any, tmp_path: Path) -> None:
+    calls: list[Callable[[], object]] = [
+        lambda: sw.simulate(DRIVE, command),
+        lambda: sw.simulate_adaptively(DRIVE, command),
+        lambda: sw.simulate_many(DRIVE, command, MEMBERS),
+        lambda: sw.simulate_to(tmp_path / "runs", DRIVE, command, MEMBERS),
+        lambda: sw.derivatives(DRIVE, command, ["load.inertia"]),
+    ]
+    for call in calls:
+        with pytest.raises(TypeError, match=f"^{re.escape(f'command = {command!r} must be a Scenario, as ')}"):
             call()
 
 

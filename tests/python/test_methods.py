@@ -121,24 +121,29 @@ def on_bristles(stiffness: float) -> sw.drives.PositionDrive:
     return DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=stiffness)))
 
 
+TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than steps of .* take dt = 6\.3e-05 s or less$"
+
+
 def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
     stiff = on_bristles(1e5)
     for stiffness in (0.5, 50.0, 1e5, 1e7):
         assert _core.bristle_vibration(on_bristles(stiffness)) == pytest.approx(np.sqrt(stiffness / 1e-4), rel=1e-4)
     assert _core.bristle_vibration(STICKING) == 0.0
     assert sw.simulate(stiff, command(0.01)).method.startswith("exponential Runge-Kutta, adaptive, rtol 1e-06")
-    run = sw.simulate(stiff, command(0.01), method="rosenbrock")
+    with pytest.warns(RuntimeWarning, match=TOO_STIFF):
+        run = sw.simulate(stiff, command(0.01), method="rosenbrock")
     assert run.method == "Rosenbrock W-method, steps of 0.0002 s"
     assert run.title == f"simulation: {run.method}"
     assert sw.simulate(DRIVE, command(0.01)).method == "exponential Runge-Kutta, steps of 0.0002 s"
     assert sw.simulate(STICKING, command(0.01)).method == "exponential Runge-Kutta, cut at events, steps of 0.0002 s"
+    assert sw.simulate_adaptively(STICKING, command(0.01)).method.startswith(
+        "exponential Runge-Kutta, cut at events, adaptive, "
+    )
+    assert tuple(_core.Method.__members__) == METHODS
     with pytest.warns(sw.EnsembleWarning, match=r"^1 members have bristles .* take dt = 6\.3e-05 s or less$"):
         sw.simulate_many(stiff, command(0.01), {"load.inertia": [0.5]})
     with pytest.raises(ValueError, match=r'^method = "euler" is not known; there are exponential, moreau_jean, rosenbrock$'):
         sw.simulate(DRIVE, command(0.01), method="euler")  # type: ignore[arg-type]
-
-
-TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than steps of .* take dt = 6\.3e-05 s or less$"
 
 
 def test_a_response_in_steps_too_long_for_the_bristles_is_warned_of() -> None:

@@ -426,7 +426,8 @@ def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
     excitation = Excitation(command(10.0))
     course = excitation.course(DT, 1.0)
     outputs = np.empty((len(COLUMNS), len(course.times)))
-    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:], 0, outputs, 1)
+    course_of = (course.instants, excitation.over(course), course.samples[1:])
+    arguments = (DRIVE, DRIVE.rest(), *course_of, _core.Method.exponential, outputs, 1)
     counted: list[int] = []
     _core.simulate(*arguments, counted.append)
     assert counted == sorted(set(counted))
@@ -444,7 +445,7 @@ def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
 def test_outputs_are_written_within_the_array_given_only(channels: int, samples: int, first: int) -> None:
     excitation = Excitation(command(0.01))
     course = excitation.course(1e-3, None)
-    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:], 0)
+    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:], _core.Method.exponential)
     with pytest.raises(ValueError, match="are written within"):
         _core.simulate(*arguments, np.empty((channels, samples)), first)
     with pytest.raises(TypeError, match="incompatible"):
@@ -470,7 +471,9 @@ def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
         key = threading.Timer(0.1, press)
         key.start()
         with pytest.raises(KeyboardInterrupt):
-            _core.simulate(DRIVE, DRIVE.rest(), course.instants, inputs, course.samples[1:], 0, outputs, 1)
+            _core.simulate(
+                DRIVE, DRIVE.rest(), course.instants, inputs, course.samples[1:], _core.Method.exponential, outputs, 1
+            )
         assert time.monotonic() - pressed[0] < 1.0
     finally:
         key.join()
