@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import sqrt, tau
 
+import control
 import numpy as np
 import pytest
 import strainwave as sw
@@ -252,7 +253,6 @@ def test_a_small_step_is_followed_to_second_order(command: float) -> None:
 
 
 def test_the_matrices_are_those_that_python_control_takes() -> None:
-    control = pytest.importorskip("control")
     linear = sw.linearise(DRIVE)
     system = control.StateSpace(*linear)
     at = tau * 1j * 3.0
