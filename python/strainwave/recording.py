@@ -326,12 +326,11 @@ def _check_lengths(columns: Mapping[str, Array]) -> None:
             raise ValueError(f'column "{name}" has {length} samples, column "{first}" has {wanted}')
 
 
+@np.errstate(all="ignore")
 def _first_fault(columns: Mapping[str, Array], units: Mapping[str, str]) -> _Fault | None:
     """The first value that is not finite, else the first time that does not increase."""
     for name, values in columns.items():
-        with np.errstate(all="ignore"):
-            square = np.dot(values, values)
-        if isfinite(square):  # as all its terms then are, found in one go
+        if isfinite(np.dot(values, values)):  # as all its terms then are, found in one go
             continue
         finite = np.isfinite(values)
         if not finite.all():

@@ -272,7 +272,8 @@ _NAMED: dict[Method, str] = {
 
 def _named(method: Method, drive: PositionDrive) -> str:
     """A method in words, as it is where friction of the drive holds its place at rest or does not."""
-    sticks = not drive.rest().sliding_input or not drive.rest().sliding_output
+    rest = drive.rest()
+    sticks = not rest.sliding_input or not rest.sliding_output
     return _NAMED[method] + (", cut at events" if sticks and method != "moreau_jean" else "")
 
 
