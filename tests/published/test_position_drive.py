@@ -234,3 +234,116 @@ def test_the_limit_cycle_of_stick_and_slip_has_its_closed_form(method: str, cycl
     assert held["torque"][-1] == pytest.approx(slider.restick_torque, rel=1e-9)
     assert held["friction_output"][-1] == pytest.approx(slider.restick_torque, rel=1e-9)
     assert held["output_angle"][-1] == pytest.approx(slider.speed * restick - slider.restick_torque / slider.k, rel=1e-9)
+
+
+class Twins:
+    """An input and an output that are equal but for the ratio, pushed by torques that rise evenly: all events come in pairs.
+
+    Pushed apart, each is a mass on a spring of twice the stiffness whose other end recedes at `speed`: the slider above, with
+    its stick and slip. Pushed the same way, or coasting, they move as one and leave the gear untwisted.
+    """
+
+    inertia, coulomb, breakaway, rate = 0.0012, 0.05, 0.081, 0.4  # at the input; N.m/s
+    set_off = breakaway / rate
+
+    def __init__(self, ratio: float, k: float = 0.5) -> None:
+        self.ratio, self.k = ratio, k
+        self.speed = self.rate / (2.0 * k)
+        self.w = math.sqrt(2.0 * k / self.inertia)
+        self.a = (self.breakaway - self.coulomb) / (2.0 * k)
+        self.slipping = (math.pi + 2.0 * math.atan2(self.speed, self.w * self.a)) / self.w
+        self.period = self.slipping + 2.0 * (self.breakaway - self.coulomb) / self.rate
+        self.drive = sw.drives.PositionDrive(
+            gear=sw.Gear(
+                kinematics=sw.kinematics.PlainRatio(reduction=ratio),
+                stiffness=sw.stiffness.Linear(k=self.k * ratio**2),
+                friction_input=sw.friction.Coulomb(coulomb=self.coulomb, breakaway=self.breakaway),
+                friction_output=sw.friction.Coulomb(coulomb=self.coulomb * ratio, breakaway=self.breakaway * ratio),
+            ),
+            motor=sw.motor.DC(resistance=1.0, torque_constant=1.0, back_emf=0.0, inertia=self.inertia),
+            load=sw.loads.Inertia(inertia=self.inertia * ratio**2),
+        )
+
+    def pushes(self, duration: float, apart: bool) -> tuple[sw.scenario.Scenario, sw.scenario.Scenario]:
+        """The motor's torque and the load's."""
+        torque = sw.scenario.ramp(self.rate, duration)
+        return torque, (self.ratio if apart else -self.ratio) * torque
+
+    def pushed(self, duration: float, apart: bool, method: str, sample: float | None = None) -> sw.Recording:
+        torque, load = self.pushes(duration, apart)
+        if method == "adaptive":
+            return sw.simulate_adaptively(self.drive, torque, rtol=1e-10, sample=sample or duration, load_torque=load)
+        return sw.simulate(self.drive, torque, dt=1e-4, sample=sample or duration, load_torque=load)
+
+    def apart(self, time: float) -> float:
+        """The input angle in closed form; the output's is as far on the other side."""
+        periods, s = divmod(max(time - self.set_off, 0.0), self.period)
+        s = min(s, self.slipping)
+        drawn = self.speed * (periods * self.period + s)
+        return drawn + self.a * (1.0 - math.cos(self.w * s)) - self.speed / self.w * math.sin(self.w * s)
+
+    def along(self, time: float) -> float:
+        s = max(time - self.set_off, 0.0)
+        return (0.5 * (self.breakaway - self.coulomb) * s**2 + self.rate * s**3 / 6.0) / self.inertia
+
+
+twins = pytest.mark.parametrize("ratio", [1.0, 64.0, 100.0, 30.3])
+by_either_method = pytest.mark.parametrize("method", ["fixed steps", "adaptive"])
+
+
+@twins
+@by_either_method
+@pytest.mark.parametrize("apart", [True, False])
+def test_two_sides_that_break_away_and_stop_at_one_instant_have_their_closed_form(
+    ratio: float, method: str, apart: bool
+) -> None:
+    """Over three cycles of stick and slip; to the bit at one instant with a power of two, within rounding with other ratios."""
+    pair = Twins(ratio)
+    run = pair.pushed(pair.set_off + 2.9 * pair.period if apart else 0.5, apart, method, sample=1e-3)
+    angle = np.array([(pair.apart if apart else pair.along)(time) for time in run["time"]])
+    output = (-angle if apart else angle) / ratio
+    within = 1e-8 * np.abs(angle).max()
+    np.testing.assert_allclose(run["input_angle"], angle, rtol=0.0, atol=within)
+    np.testing.assert_allclose(run["output_angle"], output, rtol=0.0, atol=within / abs(ratio))
+    assert np.array_equal(run["input_speed"] == 0.0, run["output_speed"] == 0.0)
+    assert np.count_nonzero(np.diff(run["input_speed"] == 0.0)) == (6 if apart else 1)
+
+
+@twins
+@by_either_method
+@pytest.mark.parametrize("side", ["input", "output"])
+def test_either_of_two_sides_that_break_away_at_one_instant_does_so(ratio: float, method: str, side: str) -> None:
+    pair = Twins(ratio)
+    set_off = first(lambda time: pair.pushed(time, True, method)[f"{side}_speed"][-1] != 0.0, 0.2, 0.205)
+    assert set_off == pytest.approx(pair.set_off, rel=1e-9)
+
+
+def test_pairs_of_events_in_a_pack_have_their_closed_forms() -> None:
+    """Members with springs of their own, so that each stops when others slide."""
+    stiffness = np.linspace(0.4, 0.6, 11)
+    base, pairs = Twins(64.0), [Twins(64.0, k) for k in stiffness]
+    torque, load = base.pushes(1.0, apart=True)
+    springs = {"gear.stiffness.k": stiffness * 64.0**2}
+    runs = sw.simulate_many(base.drive, torque, springs, 1e-4, sample=1e-3, load_torque=load)
+    angles = np.array([[pair.apart(time) for time in runs.time] for pair in pairs])
+    np.testing.assert_allclose(runs["input_angle"], angles, rtol=0.0, atol=1e-8 * angles.max())
+    np.testing.assert_allclose(runs["output_angle"], -angles / 64.0, rtol=0.0, atol=1e-8 * angles.max() / 64.0)
+
+
+@twins
+@pytest.mark.parametrize("side", ["input", "output"])
+def test_two_sides_that_coast_down_together_stop_at_one_instant(ratio: float, side: str) -> None:
+    pair, speed = Twins(ratio), 20.0
+    rest = pair.drive.rest()
+    moving = rest.motion.replace(input_speed=speed, output_speed=speed / ratio)
+    start = rest.replace(motion=moving, sliding_input=1.0, sliding_output=math.copysign(1.0, ratio))
+
+    def after(duration: float) -> sw.Recording:
+        return sw.simulate(pair.drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, start=start)
+
+    stop = first(lambda duration: after(duration)[f"{side}_speed"][-1] == 0.0, 0.4, 0.5)
+    assert stop == pytest.approx(pair.inertia * speed / pair.coulomb, rel=1e-11)
+    end = after(1.0)
+    assert end["input_angle"][-1] == pytest.approx(pair.inertia * speed**2 / (2.0 * pair.coulomb), rel=1e-11)
+    assert ratio * end["output_angle"][-1] == pytest.approx(end["input_angle"][-1], rel=1e-11)
+    assert end["input_speed"][-1] == end["output_speed"][-1] == 0.0
