@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.simulation import METHODS
 
+from tests.cplusplus import STRICT, compilation, compiler
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, command
@@ -433,3 +436,39 @@ def test_from_sticking_to_breakaway_no_state_changes_by_a_bit(place: str, law: A
         assert not np.diff(run["input_angle"])[stays["input"]].any(), way
         for name in EVERY_OUTPUT:
             assert not np.diff(run[name])[both].any(), (way, name)
+
+
+# Chattering
+
+MOST_EVENTS = 16  # of a step, before what is left of it is time-stepping
+
+
+@pytest.fixture(scope="module")
+def chattering(tmp_path_factory: pytest.TempPathFactory) -> list[list[float]]:
+    """What the program tells that counts events: most in a step and calls of time-stepping, then the motion at the end."""
+    folder, source = tmp_path_factory.mktemp("chattering"), Path(__file__).with_name("chattering.cpp")
+    options = (*STRICT, "-Og", "-ffp-contract=off")
+    assert compilation(compiler("g++"), folder, {source.name: source.read_text()}, *options) == (0, "")
+    subprocess.run(["g++", "chattering.o", "-o", "chattering"], cwd=folder, check=True)
+    told = subprocess.run([folder / "chattering"], capture_output=True, text=True, check=True, timeout=30)
+    return [[float(number) for number in line.split()] for line in told.stdout.splitlines()]
+
+
+def test_a_drive_without_chattering_is_never_time_stepped(chattering: list[list[float]]) -> None:
+    for events, arrivals, *_ in chattering[:4]:
+        assert 1 <= events < MOST_EVENTS
+        assert arrivals == 0
+
+
+def test_what_chattering_leaves_of_a_step_is_one_of_second_order(chattering: list[list[float]]) -> None:
+    """Events that change nothing, without end where the input stands beyond a wall: as many as may be, and a right end."""
+    exact, chatters = np.array(chattering[3][3:]), np.array(chattering[4:8])  # all but the current, which is no state here
+    assert np.all(chatters[:, 0] == MOST_EVENTS)
+    assert np.all(chatters[:, 1] == 2)  # to the middle, and to the end
+    errors = np.abs(chatters[:, 3:] / exact - 1.0).max(axis=1)
+    np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:]), 2.0, atol=0.1)
+
+
+def test_members_that_chatter_are_what_they_are_alone_and_disturb_no_other(chattering: list[list[float]]) -> None:
+    """Eight, of which six chatter from different moments on; the program tells how many numbers differ."""
+    assert chattering[8] == [0.0]
