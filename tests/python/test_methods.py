@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import subprocess
 from fractions import Fraction
 from pathlib import Path
@@ -16,7 +18,7 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.simulation import METHODS
 
-from tests.cplusplus import STRICT, compilation, compiler
+from tests.cplusplus import INCLUDE, STRICT, compilation, compiler
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, command
@@ -114,25 +116,27 @@ def test_a_turn_of_the_twist_within_a_step_is_remembered() -> None:
     assert np.log2(errors[0] / errors[1]) / 3.0 > 1.5
 
 
+def coefficients() -> dict[str, Any]:
+    """The numbers of the method as the code has them; rows filled up with zeros."""
+    code = (INCLUDE / "strainwave" / "integrate" / "rosenbrock.hpp").read_text()
+    found: dict[str, Any] = {}
+    for name, numbers in re.findall(r"static constexpr double (\w+)(?:\[stages\])* =\s*([^;]+);", code):
+        found[name] = json.loads(numbers.replace("{", "[").replace("}", "]"), parse_float=Fraction)
+    for name in ("argument", "coupling"):
+        found[name] = [row + [Fraction(0)] * (4 - len(row)) for row in found[name]]
+    return found
+
+
 def order_conditions() -> dict[str, tuple[Fraction, Fraction]]:
     """Left and right sides of those for a W-method of third order (Hairer and Wanner 1996, IV.7), in exact arithmetic.
 
     With sums over j < i in beta = argument + coupling, gamma on the diagonal of beta.
     """
-    gamma = Fraction("0.43586652150845900")
-    argument = [
-        [0, 0, 0, 0],
-        [Fraction("0.87173304301691801"), 0, 0, 0],
-        [Fraction("0.84457060015369423"), Fraction("-0.11299064236484185"), 0, 0],
-        [0, 0, 1, 0],
-    ]
+    method = coefficients()
+    argument, b = method["argument"], method["weight"]
     coupling = [
-        [gamma, 0, 0, 0],
-        [Fraction("-0.87173304301691801"), gamma, 0, 0],
-        [Fraction("-0.90338057013044082"), Fraction("0.054180672388095326"), gamma, 0],
-        [Fraction("0.24212380706095346"), Fraction("-1.2232505839045147"), Fraction("0.54526025533510214"), gamma],
+        [method["gamma"] if i == j else value for j, value in enumerate(row)] for i, row in enumerate(method["coupling"])
     ]
-    b = [Fraction("0.24212380706095346"), Fraction("-1.2232505839045147"), Fraction("1.5452602553351020"), gamma]
     stages = range(4)
 
     def along(matrix: list[Any], vector: list[Any]) -> list[Fraction]:
@@ -161,6 +165,18 @@ def test_the_rosenbrock_method_is_of_third_order_with_any_matrix(name: str) -> N
     assert abs(left - right) < Fraction(1, 10**14)
 
 
+def test_the_coefficients_of_the_rosenbrock_method_are_read_out_of_the_code() -> None:
+    """Four stages, each of the ones before; the last is at the end of the step with the weights of the whole: L-stable."""
+    method = coefficients()
+    assert set(method) == {"gamma", "argument", "coupling", "weight"}
+    for name in ("argument", "coupling"):
+        assert [len(row) for row in method[name]] == [4] * 4
+        assert all(method[name][i][j] == 0 for i in range(4) for j in range(i, 4))
+    last = [a + c for a, c in zip(method["argument"][3], method["coupling"][3], strict=True)]
+    last[3] += method["gamma"]
+    assert all(abs(one - other) < Fraction(1, 10**15) for one, other in zip(last, method["weight"], strict=True))
+
+
 # Stiff bristles
 
 
@@ -182,6 +198,20 @@ def on_bristles(stiffness: float) -> sw.drives.PositionDrive:
 
 
 TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than steps of .* take dt = 6\.3e-05 s or less$"
+
+
+def test_a_shaft_that_rests_on_stiff_bristles_and_slides_off_is_followed_by_the_rosenbrock_method() -> None:
+    """A voltage that rises from nothing: with its order, in steps with which the exponential method loses the shaft."""
+    law = DRIVE.gear.friction_input
+    drive = on_bristles(1000.0 * law.bristle_stiffness).replace(control=sw.control.OpenLoop())
+    rising = sw.scenario.ramp(5.0, 0.2)
+    exact = sw.simulate_adaptively(drive, rising, rtol=1e-8)
+    assert exact["input_speed"].min() >= 0.0
+    assert exact["input_angle"][20] < 1e-6  # it rests
+    assert exact["input_angle"][-1] > 0.1  # it slid
+    errors = [difference(sw.simulate(drive, rising, dt, sample=1e-3, method="rosenbrock"), exact) for dt in (4e-4, 2e-4, 1e-4)]
+    assert np.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(3.0, abs=0.35)
+    assert difference(sw.simulate(drive, rising, 2e-4, sample=1e-3, method="exponential"), exact) > 1000.0 * errors[1]
 
 
 def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
