@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from tests.cplusplus import INCLUDE, STRICT, compilation, compiler
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, command
-from tests.tolerance import difference, verdict
+from tests.tolerance import COLUMNS, difference, verdict
 
 Array = NDArray[np.float64]
 
@@ -264,6 +265,23 @@ def test_the_adaptive_method_keeps_its_tolerance_and_wastes_little(drive: sw.dri
     assert 1e-4 * rtol < error < 10.0 * rtol
 
 
+def steps_taken(run: sw.Run) -> int:
+    return int(run.method.rpartition(": ")[2].split()[0])
+
+
+@pytest.mark.parametrize("drive", [SMOOTH, STICKING, DRIVE], ids=["smooth", "sticking", "reference"])
+def test_what_is_tolerated_besides_is_kept_and_saves_steps(drive: sw.drives.PositionDrive) -> None:
+    """Each angle, speed and torque within `rtol` of its largest plus `atol` in its own unit."""
+    exact = sw.simulate_adaptively(drive, command(0.2), rtol=1e-10)
+    runs = {atol: sw.simulate_adaptively(drive, command(0.2), rtol=1e-8, atol=atol) for atol in (1e-12, 1e-6, 1e-4, 1e-2)}
+    for atol, run in runs.items():
+        tolerated = {name: 1e-8 * np.abs(exact[name]).max() + atol for name in COLUMNS}
+        errors = [np.abs(run[name] - exact[name]).max() / tolerated[name] for name in COLUMNS]
+        assert 1e-3 < max(errors) < 10.0, atol
+    steps = [steps_taken(run) for run in runs.values()]
+    assert all(fewer < 0.75 * more for more, fewer in pairwise(steps))
+
+
 def resolvable(drive: sw.drives.PositionDrive, rtol: float, voltage: float = 12.0) -> sw.Run:
     try:
         return sw.simulate_adaptively(drive, sw.scenario.sine(voltage, 50.0, 0.02), rtol=rtol, load_torque=2.0)
@@ -332,7 +350,7 @@ def test_what_cannot_be_a_tolerance_is_refused() -> None:
 def test_a_run_that_needs_more_steps_than_allowed_says_how_far_they_led_and_what_is_fast() -> None:
     """The gear at rest: 1.2e4 + 3e3 N.m/rad between 0.5 kg.m2 and 1e-4 kg.m2 times 100 squared; bristles of 50 N.m/rad."""
     run = sw.simulate_adaptively(DRIVE, command(0.1))
-    taken = int(run.method.rpartition(": ")[2].split()[0])
+    taken = steps_taken(run)
     assert sw.simulate_adaptively(DRIVE, command(0.1), most_steps=taken) == run
     words = (
         r"^all steps that most_steps allows lead to t = 0\.09\d* s only; .*"
