@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import sysconfig
+from collections import Counter
 from pathlib import Path
 
 import nanobind
 import pytest
 
-from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, compilation, compiler, drives
+from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, compilation, compiler, drives, zig
 
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
 
@@ -45,6 +47,19 @@ def test_models_chosen_at_run_time_step_in_every_scalar(name: str, tmp_path: Pat
     scalars = ("double", "strainwave::Dual<4>", "strainwave::Pack<8>")
     steps = [stepped(scalar, f"strainwave::AnyPositionDrive<{scalar}>") for scalar in scalars]
     assert compilation(compiler(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}, *STRICT) == (0, "")
+
+
+def test_a_pack_steps_in_the_vector_registers_of_neon(tmp_path: Path) -> None:
+    """Whose registers hold two doubles: `.2d`. It sums, multiplies, divides, compares and takes roots in them."""
+    scalar = "strainwave::Pack<8>"
+    source = "#include <strainwave/scalar/pack.hpp>\n" + HEADERS + stepped(scalar, drives(scalar)[0])
+    options = (*STRICT, "-O1", "-ffp-contract=off", "-g0", "-S", "-Wno-unused-command-line-argument")
+    command = (*zig(), "-target", "aarch64-linux-musl")
+    assert compilation(command, tmp_path, {"neon.cpp": source}, *options) == (0, "")
+    found = Counter(re.findall(r"^\s+(f\w+)\s+v\d+\.2d", (tmp_path / "neon.s").read_text("latin-1"), re.MULTILINE))
+    assert {"fadd", "fsub", "fmul", "fdiv", "fcmgt", "fsqrt", "fabs", "fneg"} <= set(found)
+    assert found["fmul"] > 100
+    assert not {"fmla", "fmls"} & set(found)  # nothing contracted: the same numbers as everywhere
 
 
 PAIR = """
