@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 import os
 import platform
-from collections.abc import Sequence
+import re
+import subprocess
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +23,7 @@ from rich.table import Table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+RUN = datetime.now(UTC).isoformat(timespec="seconds")  # which run a table is of: when its process began
 DISTRIBUTIONS = ("strainwave", "numpy", "scipy", "numba", "casadi", "scikit-sundae", "diffrax", "jax")
 
 
@@ -51,7 +55,7 @@ def table(title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], 
     for column in columns:
         view.add_column(escape(column.heading), justify="left" if column.words else "right", no_wrap=column.words)
     for row in rows:
-        view.add_row(*row)
+        view.add_row(*map(escape, row))
     return view
 
 
@@ -63,19 +67,45 @@ def processor() -> str:
     return names[0] if names else platform.processor()
 
 
+def compiler() -> str:
+    """What compiled strainwave, as its binary says; else the compiler that is here."""
+    from strainwave import _core
+
+    said = re.search(rb"GCC: \([^)]*\) [\d.]+|clang version [\d.]+", Path(_core.__file__).read_bytes())
+    if said:
+        return said[0].decode()
+    try:
+        told = subprocess.run([os.environ.get("CXX", "c++"), "--version"], capture_output=True, text=True, check=True).stdout
+    except OSError:
+        return "unknown"
+    return "here: " + told.partition("\n")[0]
+
+
+@cache
 def circumstances() -> dict[str, Any]:
     """What the figures depend on besides the code."""
     versions = {name: metadata.version(name) for name in DISTRIBUTIONS if installed(name)}
     return {
-        "date": datetime.now(UTC).date().isoformat(),
+        "run": RUN,
+        "date": RUN[:10],
         "machine": {"platform": platform.platform(), "processor": processor(), "cores": os.cpu_count()},
-        "versions": {"python": platform.python_version(), **versions},
+        "versions": {"compiler": compiler(), "python": platform.python_version(), **versions},
     }
 
 
 def save(part: str, results: Sequence[Any], **others: Any) -> None:
     """Writes the results, dataclasses, of a part to its JSON file, with what they depend on."""
-    content = circumstances() | others | {"results": [asdict(result) for result in results]}
+    write_json(part, circumstances() | others | {"results": [asdict(result) for result in results]})
+
+
+def saved(part: str) -> dict[str, Any] | None:
+    """What `save` has written last, if anything."""
+    kept = FOLDER / f"{part}.json"
+    return json.loads(kept.read_text()) if kept.exists() else None
+
+
+def write_json(part: str, content: Mapping[str, Any]) -> None:
+    """Beside its place and then there."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     partial = FOLDER / f"{part}.json.partial"
     partial.write_text(json.dumps(content, indent=1, allow_nan=False))
@@ -89,13 +119,16 @@ def figure(width: float = 7.0, height: float = 5.0) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def save_figure(part: str, drawn: Figure) -> None:
-    """Writes a figure as SVG, with machine, versions and date below."""
-    told = circumstances()
-    machine = told["machine"]
-    versions = ", ".join(f"{name} {version}" for name, version in told["versions"].items())
-    drawn.supxlabel(f"{machine['processor']}, {machine['cores']} cores, {told['date']}\n{versions}", fontsize=6)
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    partial = FOLDER / f"{part}.partial.svg"
-    drawn.savefig(partial)
-    os.replace(partial, FOLDER / f"{part}.svg")
+def save_figure(part: str, drawn: Figure, told: Mapping[str, Any] | None = None, folder: Path = FOLDER) -> None:
+    """Writes a figure as SVG, with machine, versions and date below: these, or those of now."""
+    import matplotlib as mpl
+
+    told = told or circumstances()
+    machine, names = told["machine"], [f"{name} {version}" for name, version in told["versions"].items()]
+    lines = [f"{machine['processor']}, {machine['cores']} cores, {told['date']}", ", ".join(names[:5]), ", ".join(names[5:])]
+    drawn.supxlabel("\n".join(lines).strip(), fontsize=6, color="0.4")
+    folder.mkdir(parents=True, exist_ok=True)
+    partial = folder / f"{part}.partial.svg"
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": part, "font.family": "sans-serif"}):
+        drawn.savefig(partial, metadata={"Date": None})
+    os.replace(partial, folder / f"{part}.svg")
