@@ -18,6 +18,7 @@ from reference import reference_solution
 from reference_drive import DURATION
 from report import Column, figure, save, save_figure, table, three_digits
 from rich.console import Console
+from single import shown
 
 MODULES = (strainwave_drive, numba_exponential, jax_exponential, casadi_cvodes, diffrax_tsit5)
 CROWDS: tuple[Crowd, ...] = tuple(crowd for module in MODULES for crowd in module.CROWDS)
@@ -70,12 +71,12 @@ def run(console: Console, peers: Sequence[str], quick: bool) -> None:
         else:
             rates.append(Rate(outcome, crowds[peer].members, crowds[peer].threads))
     console.print(table(TITLE, COLUMNS, [row(rate, rates) for rate in rates], CAPTION))
-    save("ensemble", rates)
+    save("ensemble", rates, quick=quick)
     draw(rates)
 
 
-def ratio(rate: Rate, rates: Sequence[Rate], speed: Callable[[Rate], float]) -> str:
-    """Speed of the baseline's fastest over this, at equal error and threads."""
+def ratio(rate: Rate, rates: Sequence[Rate], speed: Callable[[Rate], float]) -> float | None:
+    """Speed of the baseline's fastest over this, at equal error and threads, where it reaches that."""
     equal = [
         speed(other)
         for other in rates
@@ -83,7 +84,7 @@ def ratio(rate: Rate, rates: Sequence[Rate], speed: Callable[[Rate], float]) -> 
         and other.threads == rate.threads
         and other.first.no_less_accurate_than(rate.first)
     ]
-    return three_digits(max(equal) / speed(rate)) if equal else "-"
+    return max(equal) / speed(rate) if equal else None
 
 
 def row(rate: Rate, rates: Sequence[Rate]) -> list[str]:
@@ -95,9 +96,9 @@ def row(rate: Rate, rates: Sequence[Rate]) -> list[str]:
         f"{rate.first.output_angle_error:.1e}",
         f"{rate.first.torque_error:.1e}",
         three_digits(rate.trajectories),
-        ratio(rate, rates, lambda each: each.trajectories),
+        shown(ratio(rate, rates, lambda each: each.trajectories)),
         three_digits(rate.per_core),
-        ratio(rate, rates, lambda each: each.per_core),
+        shown(ratio(rate, rates, lambda each: each.per_core)),
     ]
 
 

@@ -64,7 +64,6 @@ DURATION = 5.0  # s
 SAMPLE = 1e-3  # s
 
 ELEMENTS = len(ELEMENT_LIMIT)
-_COMMAND_PULSATION = 2.0 * math.pi * COMMAND_FREQUENCY  # rad/s
 _SINE = tuple(a * math.cos(p) for a, p in zip(ERROR_AMPLITUDE, ERROR_PHASE, strict=True))
 _COSINE = tuple(a * math.sin(p) for a, p in zip(ERROR_AMPLITUDE, ERROR_PHASE, strict=True))
 _ORDERS = len(ERROR_AMPLITUDE)
@@ -137,28 +136,55 @@ def deflection(maths: Maths) -> Callable[..., Any]:
     return deflection
 
 
+def stribeck_torque(maths: Maths) -> Callable[..., Any]:
+    """(speed) -> torque at which the input friction slides steadily, without its viscous part [N.m]."""
+    exp = maths.exp
+
+    @maths.compile
+    def stribeck_torque(speed: Any) -> Any:
+        ratio = speed / STRIBECK_SPEED
+        return COULOMB + (BREAKAWAY - COULOMB) * exp(-ratio * ratio)
+
+    return stribeck_torque
+
+
 def bristle_decay(maths: Maths) -> Callable[..., Any]:
     """(input_speed) -> rate at which the LuGre bristle forgets [1/s]: stiffness |speed| / Stribeck torque."""
-    absolute, exp = maths.absolute, maths.exp
+    absolute, sliding = maths.absolute, stribeck_torque(maths)
 
     @maths.compile
     def bristle_decay(speed: Any) -> Any:
-        ratio = speed / STRIBECK_SPEED
-        return BRISTLE_STIFFNESS * absolute(speed) / (COULOMB + (BREAKAWAY - COULOMB) * exp(-ratio * ratio))
+        return BRISTLE_STIFFNESS * absolute(speed) / sliding(speed)
 
     return bristle_decay
 
 
-def voltage(maths: Maths) -> Callable[..., Any]:
+@dataclass(frozen=True)
+class Tracking:
+    """What the drive is to follow, and how hard it tries; the reference drive's own unless given."""
+
+    proportional: float = PROPORTIONAL  # V/rad, of the input angle
+    derivative: float = DERIVATIVE  # V.s/rad
+    slope: float = COMMAND_SLOPE  # rad/s
+    amplitude: float = COMMAND_AMPLITUDE  # rad
+    frequency: float = COMMAND_FREQUENCY  # Hz
+
+
+OWN_TRACKING = Tracking()
+
+
+def voltage(maths: Maths, tracking: Tracking = OWN_TRACKING) -> Callable[..., Any]:
     """(time, input_angle, input_speed) -> motor voltage [V]."""
     sin, cos, limit = maths.sin, maths.cos, clip(maths)
+    proportional, derivative, slope = tracking.proportional, tracking.derivative, tracking.slope
+    amplitude, pulsation = tracking.amplitude, 2.0 * math.pi * tracking.frequency
 
     @maths.compile
     def voltage(time: Any, angle: Any, speed: Any) -> Any:
-        phase = _COMMAND_PULSATION * time
-        command = COMMAND_SLOPE * time + COMMAND_AMPLITUDE * sin(phase)
-        command_speed = COMMAND_SLOPE + COMMAND_AMPLITUDE * _COMMAND_PULSATION * cos(phase)
-        demand = PROPORTIONAL * (RATIO * command - angle) + DERIVATIVE * (RATIO * command_speed - speed)
+        phase = pulsation * time
+        command = slope * time + amplitude * sin(phase)
+        command_speed = slope + amplitude * pulsation * cos(phase)
+        demand = proportional * (RATIO * command - angle) + derivative * (RATIO * command_speed - speed)
         return limit(demand, VOLTAGE_LIMIT)
 
     return voltage

@@ -1,4 +1,4 @@
-"""SciPy's `solve_ivp`: LSODA with a compiled right-hand side, and what a user writes first, in plain Python.
+"""SciPy's `solve_ivp`: LSODA and Radau with a compiled right-hand side, and what a user writes first, in plain Python.
 
 The ladder of LSODA ends at 3e-5: at 1e-5 it takes minutes and 7e7 evaluations.
 """
@@ -54,7 +54,7 @@ def plain_rates() -> Rates:
     return rates
 
 
-def prepare(method: Literal["LSODA", "RK45"], rates: Callable[[], Rates], tolerance: float) -> Callable[[], Array]:
+def prepare(method: Literal["LSODA", "Radau", "RK45"], rates: Callable[[], Rates], tolerance: float) -> Callable[[], Array]:
     """A run by a method of `scipy.integrate.solve_ivp` to this relative tolerance."""
     from scipy.integrate import solve_ivp
 
@@ -84,6 +84,13 @@ PEERS = (
         setting="rtol",
         ladder=(1e-3, 1e-4, 3e-5),
         prepare=partial(prepare, "LSODA", compiled_rates),
+    ),
+    Peer(
+        name="SciPy Radau, Numba",
+        distributions=("scipy", "numba"),
+        setting="rtol",
+        ladder=(1e-3, 1e-4),
+        prepare=partial(prepare, "Radau", compiled_rates),
     ),
     Peer(
         name="SciPy LSODA, Python",

@@ -1,11 +1,11 @@
-"""strainwave itself: exponential Runge-Kutta in C++, models chosen at run time, called from Python."""
+"""strainwave itself: its methods in C++, models chosen at run time, called from Python."""
 
 from __future__ import annotations
 
 import math
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,9 @@ from peers import Crowd, Peer
 
 if TYPE_CHECKING:
     import strainwave as sw
+    from strainwave.simulation import Method
+
+    Task = Callable[[], tuple[sw.drives.PositionDrive, sw.scenario.Scenario]]
 
 
 def friction() -> sw.friction.LuGre:
@@ -84,18 +87,43 @@ def command(duration: float = reference.DURATION) -> sw.scenario.Scenario:
     return rise + sw.scenario.sine(reference.COMMAND_AMPLITUDE, reference.COMMAND_FREQUENCY, duration)
 
 
-def prepare(step: float) -> Callable[[], Array]:
-    """A run with this step, through the public interface."""
-    import strainwave as sw
-
-    one, wanted = drive(), command()
+def repeated(simulate: Callable[[], sw.Recording]) -> Callable[[], Array]:
+    """A run that gives output angle and torque."""
 
     def solve() -> Array:
-        run = sw.simulate(one, wanted, dt=step, sample=reference.SAMPLE)
+        run = simulate()
         return np.column_stack([run["output_angle"], run["torque"]])
 
     solve()  # the first run imports what the later ones need
     return solve
+
+
+def prepare_steps(task: Task, method: Method, step: float) -> Callable[[], Array]:
+    """A run of a method with this step, through the public interface."""
+    import strainwave as sw
+
+    one, wanted = task()
+    return repeated(lambda: sw.simulate(one, wanted, step, sample=reference.SAMPLE, method=method))
+
+
+def prepare_tolerance(task: Task, tolerance: float) -> Callable[[], Array]:
+    """A run in steps that keep this tolerance."""
+    import strainwave as sw
+
+    one, wanted = task()
+    return repeated(lambda: sw.simulate_adaptively(one, wanted, tolerance, sample=reference.SAMPLE))
+
+
+def peers(task: Task, steps: Mapping[Method, tuple[float, ...]], tolerances: tuple[float, ...]) -> Iterator[Peer]:
+    """One for each method, with steps [s] to try, and the adaptive one, with tolerances."""
+    for method, ladder in steps.items():
+        name = "strainwave" if method == "exponential" else f"strainwave, {method}"
+        yield Peer(name, ("strainwave",), "step", ladder, partial(prepare_steps, task, method))
+    yield Peer("strainwave, adaptive", ("strainwave",), "rtol", tolerances, partial(prepare_tolerance, task))
+
+
+def reference_task() -> tuple[sw.drives.PositionDrive, sw.scenario.Scenario]:
+    return drive(), command()
 
 
 def prepare_crowd(instruction_set: str, members: int, threads: int, step: float) -> Callable[[], Array]:
@@ -129,14 +157,16 @@ def prepare_loop(members: int, step: float) -> Callable[[], Array]:
     return solve
 
 
-PEERS = (
-    Peer(
-        name="strainwave",
-        distributions=("strainwave",),
-        setting="step",
-        ladder=(5e-4, 2e-4, 1e-4),
-        prepare=prepare,
-    ),
+PEERS = tuple(
+    peers(
+        reference_task,
+        {
+            "exponential": (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5),
+            "moreau_jean": (2e-4, 1e-4, 5e-5, 2e-5),
+            "rosenbrock": (5e-4, 2e-4, 1e-4, 5e-5),
+        },
+        (1e-3, 1e-4, 1e-6, 1e-8),
+    )
 )
 INSTRUCTION_SETS = ("avx512", "avx2", "baseline")
 MEMBERS, MEMBERS_OF_LOOP = 512, 32
