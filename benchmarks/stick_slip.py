@@ -1,9 +1,9 @@
-"""The reference drive with friction that really sticks: error over step, and what stepping to events costs.
+"""The reference drive with friction that really sticks: accuracy and time side by side, and what stepping to events costs.
 
 Stribeck friction at the motor instead of LuGre, no gravity, and a weak controller that tracks a slow wave of small amplitude:
-the motor stops and breaks away again and again. Errors are the largest over 5 s at 1 kHz, against the same method at a
-hundredth of the finest step. The ensembles compare the same drive with three frictions, in packs on one thread: one that
-sticks, none that could (Runge-Kutta), and LuGre's (exponential Runge-Kutta).
+the motor stops and breaks away again and again. Errors are the largest over 5 s at 1 kHz, against a run of SciPy's DOP853 from
+event to event to a relative tolerance of 1e-13, which knows nothing of strainwave. The ensembles compare the same drive with
+three frictions, in packs on one thread: one that sticks, none that could (Runge-Kutta), and LuGre's (exponential Runge-Kutta).
 """
 
 from __future__ import annotations
@@ -17,33 +17,30 @@ from typing import Any
 import numpy as np
 import reference_drive as reference
 import strainwave as sw
-from measure import shortest
-from peers import strainwave_drive
+from measure import Effort, Failure, Result, measure_all, shortest
+from peers import Peer, strainwave_drive
+from reference_drive import Array, Tracking, numba_maths
 from report import Column, figure, save, save_figure, table, three_digits
 from rich.console import Console
+from single import ratio, shown
+from stretches import solver, sticking_stretches
 
-STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)  # s
-REFERENCE_STEP = 5e-7  # s
 STEP, MEMBERS, ALONE = 5e-4, 256, 8  # s, of the ensembles; how many members in packs, and one after the other
 ROUNDS = 7
-COMMAND = sw.scenario.sine(0.005, 1.0, reference.DURATION)  # rad
+TRACKING = Tracking(proportional=1.0, derivative=0.005, slope=0.0, amplitude=0.005, frequency=1.0)
+COMMAND = sw.scenario.sine(TRACKING.amplitude, TRACKING.frequency, reference.DURATION)  # rad
+THOROUGH = Effort(limit=60.0, runs=20, enough=3.0)
+QUICK = Effort(limit=20.0, runs=1, enough=0.0)
 
-SETS = (Column("step [s]"), Column("angle error [rad]"), Column("torque error [N.m]"), Column("order"), Column("wall [ms]"))
+SETS = (
+    Column("solver", words=True),
+    Column("setting", words=True),
+    *(Column(heading) for heading in ("angle error [rad]", "torque error [N.m]", "order", "wall [ms]", "ratio")),
+)
 COSTS = (
     Column("friction", words=True),
     *(Column(heading) for heading in ("pack [1/s]", "scalar [1/s]", "pack / scalar", "time / smooth, pack", "scalar")),
 )
-
-
-@dataclass(frozen=True)
-class Accuracy:
-    """Of a run at one step [s]: largest errors, order of the angle's since the step before, time [s]."""
-
-    step: float
-    output_angle_error: float
-    torque_error: float
-    order: float | None
-    wall_time: float
 
 
 @dataclass(frozen=True)
@@ -58,7 +55,9 @@ class Cost:
 def drives() -> dict[str, sw.drives.PositionDrive]:
     """The same with three frictions."""
     smooth = strainwave_drive.drive().replace(
-        control=sw.control.PID(proportional=1.0, derivative=0.005, limit=reference.VOLTAGE_LIMIT),
+        control=sw.control.PID(
+            proportional=TRACKING.proportional, derivative=TRACKING.derivative, limit=reference.VOLTAGE_LIMIT
+        ),
         load=sw.loads.Inertia(inertia=reference.OUTPUT_INERTIA),
     )
     frictions: dict[str, Any] = {
@@ -78,17 +77,27 @@ def simulated(drive: sw.drives.PositionDrive, step: float) -> sw.Recording:
     return sw.simulate(drive, COMMAND, dt=step, sample=reference.SAMPLE)
 
 
-def accuracies(drive: sw.drives.PositionDrive, exact: sw.Recording) -> list[Accuracy]:
-    times = shortest({f"{step:g}": partial(simulated, drive, step) for step in STEPS}, ROUNDS)
-    found: list[Accuracy] = []
-    for step in STEPS:
-        run = simulated(drive, step)
-        angle, torque = (float(np.abs(run[name] - exact[name]).max()) for name in ("output_angle", "torque"))
-        order = None
-        if found and angle > 0.0:
-            order = math.log(found[-1].output_angle_error / angle) / math.log(found[-1].step / step)
-        found.append(Accuracy(step, angle, torque, order, times[f"{step:g}"]))
-    return found
+def sticking() -> tuple[sw.drives.PositionDrive, sw.scenario.Scenario]:
+    return drives()["Stribeck, sticks"], COMMAND
+
+
+def by_scipy(method: str, tolerance: float) -> Callable[[], Array]:
+    """A run by a method of SciPy from event to event, to this relative tolerance."""
+    maths = numba_maths(error_model="numpy")
+    return solver(sticking_stretches(maths, TRACKING), maths, method, tolerance)
+
+
+PEERS = (
+    *strainwave_drive.peers(
+        sticking,
+        {"exponential": (1e-3, 5e-4, 2e-4, 1e-4, 5e-5), "moreau_jean": (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)},
+        (1e-3, 1e-4, 1e-6, 1e-8),
+    ),
+    *(
+        Peer(f"SciPy {method}, events", ("scipy", "numba"), "rtol", ladder, partial(by_scipy, method))
+        for method, ladder in {"LSODA": (1e-4, 1e-6, 1e-8), "RK45": (1e-4, 1e-6, 1e-8), "DOP853": (1e-6, 1e-8, 1e-10)}.items()
+    ),
+)
 
 
 def side_by_side(drive: sw.drives.PositionDrive) -> sw.Ensemble:
@@ -109,26 +118,48 @@ def costs(drives: Mapping[str, sw.drives.PositionDrive]) -> list[Cost]:
     return [Cost(name, MEMBERS / times[f"{name}, pack"], ALONE / times[f"{name}, scalar"]) for name in drives]
 
 
-def run(console: Console) -> None:
+def run(console: Console, quick: bool) -> None:
     """Prints, and writes table and figure."""
     kinds = drives()
-    sticking = kinds["Stribeck, sticks"]
-    with console.status("stick and slip"):
-        exact = sw.simulate(sticking, COMMAND, dt=REFERENCE_STEP, sample=reference.SAMPLE)
-        found, priced = accuracies(sticking, exact), costs(kinds)
-    stops = int(np.count_nonzero(np.diff(exact["input_speed"] == 0.0)))
-    told = f"{stops} stops and breakaways seen at 1 kHz; reference: the same method at {REFERENCE_STEP:g} s"
-    console.print(table("Stick and slip, 5 s", SETS, [accuracy_row(each) for each in found], told))
+    with console.status("stick and slip: reference"):
+        exact = by_scipy("DOP853", 1e-13)()
+    outcomes = [outcome for _, outcome in measure_all(console, PEERS, QUICK if quick else THOROUGH, exact)]
+    results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
+    with console.status("stick and slip: packs"):
+        priced = costs(kinds)
+    speed = simulated(kinds["Stribeck, sticks"], 1e-4)["input_speed"]
+    stops = int(np.count_nonzero(np.diff(speed == 0.0)))
+    told = f"{stops} stops and breakaways seen at 1 kHz; ratio: time over that of strainwave's cheapest with errors no larger"
+    console.print(table("Stick and slip, 5 s", SETS, [result_row(each, results) for each in results], told))
+    for outcome in outcomes:
+        if isinstance(outcome, Failure):
+            console.print(f"{outcome.solver}, {outcome.setting}: {outcome.reason}", markup=False)
     caption = f"trajectories a second at {STEP:g} s on one thread; time / smooth: over that of viscous friction"
     console.print(table("Stick and slip in packs", COSTS, [cost_row(each, priced) for each in priced], caption))
-    save("stick_slip", found, costs=[vars(cost) for cost in priced], stops_and_breakaways=stops)
-    draw(found)
+    save("stick_slip", outcomes, quick=quick, costs=[vars(cost) for cost in priced], stops_and_breakaways=stops)
+    draw(results)
 
 
-def accuracy_row(each: Accuracy) -> list[str]:
-    order = "-" if each.order is None else f"{each.order:.1f}"
+def steps_of(name: str, results: Sequence[Result]) -> tuple[list[float], list[float]]:
+    """Steps [s] and angle errors of a solver that takes them, in the order of its ladder."""
+    mine = [result for result in results if result.solver == name and result.setting.startswith("step")]
+    return [float(result.setting.split()[1]) for result in mine], [result.output_angle_error for result in mine]
+
+
+def order(result: Result, results: Sequence[Result]) -> float | None:
+    """Of the angle's error, since the step before."""
+    steps, errors = steps_of(result.solver, results)
+    place = errors.index(result.output_angle_error) if steps else 0
+    if place == 0 or errors[place] == 0.0:
+        return None
+    return math.log(errors[place - 1] / errors[place]) / math.log(steps[place - 1] / steps[place])
+
+
+def result_row(each: Result, results: Sequence[Result]) -> list[str]:
+    found = order(each, results)
     errors = [f"{each.output_angle_error:.1e}", f"{each.torque_error:.1e}"]
-    return [f"{each.step:g}", *errors, order, three_digits(1e3 * each.wall_time)]
+    times = [three_digits(1e3 * each.wall_time), shown(ratio(each, results, lambda other: other.wall_time))]
+    return [each.solver, each.setting, *errors, "-" if found is None else f"{found:.1f}", *times]
 
 
 def cost_row(each: Cost, priced: Sequence[Cost]) -> list[str]:
@@ -137,16 +168,22 @@ def cost_row(each: Cost, priced: Sequence[Cost]) -> list[str]:
     return [each.friction, *map(three_digits, rates)]
 
 
-def draw(found: Sequence[Accuracy]) -> None:
-    """Both errors over the step."""
-    drawn = figure()
-    axes = drawn.add_subplot()
-    steps = np.array([each.step for each in found])
-    angles = np.array([each.output_angle_error for each in found])
-    axes.loglog(steps, angles, marker="o", label="output angle [rad]")
-    axes.loglog(steps, [each.torque_error for each in found], marker="o", label="torque [N.m]")
-    axes.loglog(steps, angles[0] * (steps / steps[0]) ** 4, "k:", linewidth=1.0, label="order 4")
-    axes.set(xlabel="step [s]", ylabel="largest error", title="Stick and slip: event-driven Runge-Kutta, 5 s")
-    axes.grid(alpha=0.3)
-    axes.legend()
+def draw(results: Sequence[Result]) -> None:
+    """The angle's error over the step of each method that takes steps, and over the time of all."""
+    drawn = figure(width=9.0, height=4.5)
+    over_step, over_time = drawn.subplots(1, 2)
+    for name in dict.fromkeys(result.solver for result in results):
+        mine = [result for result in results if result.solver == name]
+        times = [result.wall_time for result in mine]
+        over_time.loglog(times, [result.output_angle_error for result in mine], marker="o", markersize=4, label=name)
+        steps, errors = steps_of(name, results)
+        if steps:
+            over_step.loglog(steps, errors, marker="o", markersize=4, label=name)
+            theirs = 2 if "moreau" in name else 4
+            over_step.loglog(steps, errors[0] * (np.array(steps) / steps[0]) ** theirs, "k:", linewidth=1.0)
+    over_step.set(xlabel="step [s]", ylabel="largest error of the output angle [rad]", title="dotted: orders 4 and 2")
+    over_time.set(xlabel="time of a run [s]", title="Stick and slip, 5 s")
+    for axes in (over_step, over_time):
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize=7)
     save_figure("stick_slip", drawn)
