@@ -1,9 +1,18 @@
-"""What comes on top of the steps: a call, storing, and derivatives; each against the run without it."""
+"""What comes on top of the steps: a call, storing, and derivatives; each against the run without it.
+
+And what comes before: a process that imports the package or shows its help, against one that does nothing.
+"""
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 import strainwave as sw
@@ -91,6 +100,39 @@ def storing_many(recorded: Sequence[str], what: str) -> Extra:
     return Extra(f"storing {what} at 1 kHz, simulate_many", *times.values())
 
 
+def processes() -> list[Extra]:
+    """Whole processes: one that imports the package, and one that shows the help of its command."""
+    words = {
+        "nothing": "pass",
+        "import strainwave": "import strainwave",
+        "strainwave --help": "from strainwave.cli import main; main()",
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        environment = dict(os.environ, PYTHONPATH=os.pathsep.join([as_installed(folder), *sys.path]))
+        runs = {
+            name: partial(
+                subprocess.run,
+                [sys.executable, "-S", "-c", statement, "--help"],
+                env=environment,
+                check=True,
+                stdout=subprocess.DEVNULL,
+            )
+            for name, statement in words.items()
+        }
+        nothing, *others = shortest(runs, ROUNDS).items()
+    return [Extra(f"{name}, whole process", nothing[1], time) for name, time in others]
+
+
+def as_installed(folder: str) -> str:
+    """A folder with the package as pip installs it: a developer's asks on import whether all is compiled."""
+    package = Path(folder, "strainwave")
+    package.mkdir()
+    files = {file.name: file for module in (sw, _core) for file in Path(str(module.__file__)).parent.iterdir()}
+    for name, file in files.items():
+        (package / name).symlink_to(file)
+    return folder
+
+
 def run(console: Console) -> None:
     """Prints, and writes table and figure."""
     with console.status("overhead"):
@@ -100,6 +142,7 @@ def run(console: Console) -> None:
             storing_one(),
             storing_many(OUTPUTS, f"all {len(OUTPUTS)} outputs"),
             storing_many(["input_angle", "output_angle", "torque", "current"], "4 outputs"),
+            *processes(),
         ]
     console.print(table("What comes on top", COLUMNS, [row(extra) for extra in extras]))
     save("overhead", extras)
