@@ -3,15 +3,17 @@
     python benchmarks/run.py                              all parts
     python benchmarks/run.py --only single,stick_slip     these parts
     python benchmarks/run.py --peers casadi,numba         of single and ensemble: solvers whose name contains one of the words
-    python benchmarks/run.py --quick                      of single and ensemble: one run each, 20 s at most
+    python benchmarks/run.py --quick                      of single, ensemble and stick_slip: one run each, 20 s at most
 
 single       one trajectory of the reference drive: error and time of all solvers
 ensemble     many reference drives at once: trajectories a second
-stick_slip   the same drive with friction that really sticks: error over step, and what events cost
+stick_slip   the same drive with friction that really sticks: error and time of all solvers, and what events cost
 scaling      time over steps, members and Maxwell elements
 files        ever more members run to files: time, memory and files
-overhead     what a call, storing and derivatives cost
+overhead     what a call, storing and derivatives cost, and a process that imports the package or shows its help
 peak         operations a second, beside the most that the processor does
+
+At the end stands what is to be reached and what of it was, by the tables there are (targets.json).
 
 The peers come with `pip install strainwave[bench]`. Figures and tables of each part go to build/benchmarks/, as SVG and JSON.
 """
@@ -29,13 +31,14 @@ import peak
 import scaling
 import single
 import stick_slip
+import targets
 from rich.console import Console
 
 NAMES = [peer.name for peer in single.PEERS] + [crowd.peer.name for crowd in ensemble.CROWDS]
 PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "single": single.run,
     "ensemble": ensemble.run,
-    "stick_slip": lambda console, peers, quick: stick_slip.run(console),
+    "stick_slip": lambda console, peers, quick: stick_slip.run(console, quick),
     "scaling": lambda console, peers, quick: scaling.run(console),
     "files": lambda console, peers, quick: files.run(console),
     "overhead": lambda console, peers, quick: overhead.run(console),
@@ -68,6 +71,7 @@ def main() -> None:
     for part, measure in PARTS.items():
         if any(word in part for word in wanted):
             measure(console, peers, options.quick)
+    targets.run(console)
 
 
 if __name__ == "__main__":

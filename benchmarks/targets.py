@@ -1,0 +1,243 @@
+"""What this library is to reach, and what the tables of a run say of it.
+
+Reads what the parts have written to build/benchmarks/. A ratio to a solver is the smallest among its settings that reach the
+wanted accuracy: time over that of strainwave's cheapest setting with errors no larger, as in the tables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import ensemble
+import single
+from measure import Result
+from reference_drive import DURATION
+from report import RUN, Column, circumstances, saved, table, three_digits, write_json
+from rich.console import Console
+
+Content = Mapping[str, Any]  # of the JSON file of a part
+SHARE_OF_PEAK_TORQUE = 1.5e-4  # error allowed where a run is compared with real time
+
+COLUMNS = (
+    Column("target", words=True),
+    Column("aim"),
+    Column("measured"),
+    Column("reached", words=True),
+    Column("remark", words=True),
+)
+
+
+@dataclass(frozen=True)
+class Found:
+    """A measured number, if there is one, and what is to be said of it."""
+
+    value: float | None
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Target:
+    """What; which part's table tells, and how it is found there; the aim, and whether it is the most that it may be."""
+
+    what: str
+    part: str
+    aim: float
+    most: bool
+    found: Callable[[Content], Found]
+
+    def reached(self, value: float | None) -> bool | None:
+        """None where nothing was measured."""
+        if value is None:
+            return None
+        return value <= self.aim if self.most else value >= self.aim
+
+
+def lead(rows: Sequence[tuple[str, bool, float | None]]) -> Found:
+    """The smallest of the ratios of (setting, accurate, ratio), of those accurate if there are any."""
+    known = [(setting, accurate, ratio) for setting, accurate, ratio in rows if ratio is not None]
+    if not known:
+        return Found(None, "not measured" if not rows else "more accurate than all settings of strainwave")
+    accurate = [(ratio, setting) for setting, is_accurate, ratio in known if is_accurate]
+    ratio, setting = min(accurate or [(ratio, setting) for setting, _, ratio in known])
+    return Found(ratio, setting if accurate else f"{setting}; misses the wanted accuracy, as all its settings")
+
+
+def results(content: Content) -> list[Result]:
+    return [Result(**row) for row in content["results"] if "reason" not in row]
+
+
+def ahead_of(*solvers: str) -> Callable[[Content], Found]:
+    """Lead over these solvers, one trajectory."""
+
+    def found(content: Content) -> Found:
+        all_results = results(content)
+        return lead(
+            [
+                (f"{each.solver}, {each.setting}", each.accurate, single.ratio(each, all_results, lambda one: one.wall_time))
+                for each in all_results
+                if each.solver in solvers
+            ]
+        )
+
+    return found
+
+
+def times_real_time(content: Content) -> Found:
+    allowed = SHARE_OF_PEAK_TORQUE * content["peak_torque"]
+    own = [each for each in results(content) if each.solver.startswith(single.BASELINE) and each.torque_error <= allowed]
+    if not own:
+        return Found(None, "not measured")
+    fastest = min(own, key=lambda each: each.wall_time)
+    share = fastest.torque_error / content["peak_torque"]
+    return Found(DURATION / fastest.wall_time, f"{fastest.solver}, {fastest.setting}: error {share:.1e} of the peak")
+
+
+def rates(content: Content) -> list[ensemble.Rate]:
+    return [ensemble.Rate(Result(**row["first"]), row["members"], row["threads"]) for row in content["results"]]
+
+
+def label(rate: ensemble.Rate) -> str:
+    return f"{rate.first.solver}, {rate.first.setting}, {rate.threads} thread{'s' * (rate.threads > 1)}"
+
+
+def many_ahead_of(solver: str) -> Callable[[Content], Found]:
+    """Lead over this solver of many trajectories."""
+
+    def found(content: Content) -> Found:
+        all_rates = rates(content)
+        return lead(
+            [
+                (label(each), each.first.accurate, ensemble.ratio(each, all_rates, lambda rate: rate.trajectories))
+                for each in all_rates
+                if each.first.solver == solver
+            ]
+        )
+
+    return found
+
+
+def two_threads(content: Content) -> Found:
+    """Of the fastest instruction set; the smallest over its settings."""
+    own = [rate for rate in rates(content) if rate.first.solver.startswith(ensemble.BASELINE)]
+    if not own:
+        return Found(None, "not measured")
+    solver = max(own, key=lambda rate: rate.trajectories).first.solver
+    speeds = {(rate.threads, rate.first.setting): rate.trajectories for rate in own if rate.first.solver == solver}
+    gains = [(two / speeds[1, setting], setting) for (threads, setting), two in speeds.items() if threads == 2]
+    return Found(min(gains)[0], f"{solver}, {min(gains)[1]}") if gains else Found(None, "not measured")
+
+
+def share_of_most(content: Content) -> Found:
+    for use in content["results"]:
+        if use["run"].startswith("packs"):
+            return Found(use["operations"] / use["step"] / use["most"], use["run"])
+    return Found(None, "not measured")
+
+
+def beside(compare: Callable[[float, float], float], *words: str) -> Callable[[Content], Found]:
+    """Times without and with something, compared."""
+
+    def found(content: Content) -> Found:
+        for extra in content["results"]:
+            if all(word in extra["what"] for word in words):
+                return Found(compare(extra["without"], extra["including"]), extra["what"])
+        return Found(None, "not measured")
+
+    return found
+
+
+def sticking_over_smooth(content: Content) -> Found:
+    packs = {cost["friction"]: cost["pack"] for cost in content["costs"]}
+    return Found(packs["viscous, smooth"] / packs["Stribeck, sticks"])
+
+
+def more(without: float, including: float) -> float:
+    return including / without - 1.0
+
+
+def times(without: float, including: float) -> float:
+    return including / without
+
+
+def whole(without: float, including: float) -> float:
+    return including
+
+
+def milliseconds(without: float, including: float) -> float:
+    return 1e3 * (including - without)
+
+
+TARGETS = (
+    Target("one trajectory: lead over expert LSODA", "single", 200, False, ahead_of("SciPy LSODA, expert")),
+    Target("plain LSODA or Radau", "single", 1000, False, ahead_of("SciPy LSODA, Numba", "SciPy Radau, Numba")),
+    Target("CasADi CVODES", "single", 100, False, ahead_of("CasADi CVODES", "CasADi CVODES, gcc")),
+    Target("scikit-sundae CVODE", "single", 300, False, ahead_of("CVODE, Numba")),
+    Target("diffrax", "single", 500, False, ahead_of("diffrax Tsit5")),
+    Target(f"times real time at {SHARE_OF_PEAK_TORQUE:g} of the peak torque", "single", 1500, False, times_real_time),
+    Target("ensemble: lead over JAX vmap", "ensemble", 30, False, many_ahead_of("JAX vmap, exponential")),
+    Target("Numba prange", "ensemble", 20, False, many_ahead_of("Numba prange, exponential")),
+    Target("diffrax vmap", "ensemble", 1000, False, many_ahead_of("diffrax vmap, Tsit5")),
+    Target("CasADi map", "ensemble", 400, False, many_ahead_of("CasADi map, CVODES, gcc")),
+    Target("packs over one by one, a core", "ensemble", 10, False, many_ahead_of("strainwave, loop of simulate")),
+    Target("two threads over one", "ensemble", 1.9, False, two_threads),
+    Target("share of the most multiply-adds", "peak", 0.6, False, share_of_most),
+    Target("sticking over smooth, packs", "stick_slip", 1.4, True, sticking_over_smooth),
+    Target("a call [ms]", "overhead", 0.2, True, beside(milliseconds, "a call")),
+    Target("storing, one", "overhead", 0.05, True, beside(more, "storing all", "simulate")),
+    Target("storing, many, all outputs", "overhead", 0.05, True, beside(more, "storing all", "simulate_many")),
+    Target("storing, many, 4 outputs", "overhead", 0.05, True, beside(more, "storing 4")),
+    Target("12 derivatives [runs]", "overhead", 6, True, beside(times, "derivatives")),
+    Target("import of the package [s]", "overhead", 0.3, True, beside(whole, "import strainwave")),
+    Target("strainwave --help [s]", "overhead", 0.3, True, beside(whole, "strainwave --help")),
+)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """On a target: as in the table."""
+
+    target: str
+    part: str
+    aim: float
+    at_most: bool
+    measured: float | None
+    reached: bool | None
+    remark: str
+
+
+def verdicts(tables: Mapping[str, Content]) -> Iterator[Verdict]:
+    """On all targets of these parts."""
+    for target in TARGETS:
+        if target.part in tables:
+            found = target.found(tables[target.part])
+            reached = target.reached(found.value)
+            yield Verdict(target.what, target.part, target.aim, target.most, found.value, reached, found.remark)
+
+
+def run(console: Console) -> None:
+    """Prints the targets of all parts whose tables are there, and writes them."""
+    parts = dict.fromkeys(target.part for target in TARGETS)
+    tables = {part: content for part in parts if (content := saved(part)) is not None}
+    judged = list(verdicts(tables))
+    console.print(table("Targets", COLUMNS, [row(each) for each in judged], "; ".join(remarks(parts, tables))))
+    runs = {part: content["run"] for part, content in tables.items()}
+    write_json("targets", circumstances() | {"runs": runs, "results": [vars(each) for each in judged]})
+
+
+def remarks(parts: Iterable[str], tables: Mapping[str, Content]) -> Iterator[str]:
+    """What is missing, and what is not of this run."""
+    for part in parts:
+        if part not in tables:
+            yield f"{part} was not run"
+        elif tables[part]["run"] != RUN:
+            yield f"{part} is of another run, {tables[part]['run']}"
+        elif tables[part].get("quick"):
+            yield f"{part} took one run each"
+
+
+def row(each: Verdict) -> list[str]:
+    measured = "-" if each.measured is None else three_digits(each.measured)
+    said = {None: "-", True: "yes", False: "no"}[each.reached]
+    return [each.target, f"{'<=' if each.at_most else '>='} {each.aim:g}", measured, said, each.remark]
