@@ -57,7 +57,7 @@ namespace {
 using namespace strainwave;
 using S = counting::Counted;
 
-/// The reference drive; benchmarks/reference_drive.py says where its numbers are from.
+/// The reference drive of benchmarks/reference_drive.py.
 auto reference_drive() {
     PositionDrive<
         S,
@@ -65,39 +65,7 @@ auto reference_drive() {
              hysteresis::MaxwellSlip<S>, friction::LuGre<S>, friction::Viscous<S>, friction::Viscous<S>>,
         motor::DC<S>, control::PID<S>, load::Pendulum<S>>
         drive{};
-    drive.motor.resistance = 0.5;
-    drive.motor.inductance = 5e-4;
-    drive.motor.torque_constant = drive.motor.back_emf = 0.1;
-    drive.motor.inertia = 1e-4;
-    drive.load.inertia = 0.5;
-    drive.load.gravity_torque = 15.0;
-    drive.control.proportional = 2.0;
-    drive.control.derivative = 0.05;
-    drive.control.limit = 48.0;
-    drive.gear.kinematics.reduction = 100.0;
-    drive.gear.stiffness.a1 = 1.2e4;
-    drive.gear.stiffness.a3 = 1e9;
-    drive.gear.damping = 10.0;
-    auto& hysteresis = drive.gear.hysteresis;
-    hysteresis.stiffness.count = hysteresis.breakaway.count = 8;
-    for (int j = 0; j < 8; ++j) {
-        hysteresis.stiffness[j] = 375.0;
-        hysteresis.breakaway[j] = 375.0 * 5e-5 * std::pow(1.6, j);
-    }
-    auto& error = drive.gear.kinematic_error;
-    error.order.count = error.amplitude.count = error.phase.count = 10;
-    for (int n = 1; n <= 10; ++n) {
-        error.order[n - 1] = double(n);
-        error.amplitude[n - 1] = n == 2 ? 2e-4 : 2e-5 / n;
-    }
-    auto& friction = drive.gear.friction_input;
-    friction.coulomb = 0.03;
-    friction.breakaway = 0.045;
-    friction.stribeck_speed = 2.0;
-    friction.bristle_stiffness = 50.0;
-    friction.bristle_damping = 0.02;
-    friction.viscous = 5e-5;
-    drive.gear.friction_output.viscous = 0.5;
+#include "reference_drive.inc"  // its numbers, written by peak.py
     return drive.compile();
 }
 
@@ -107,7 +75,9 @@ double operations_of_a_step() {
     constexpr double dt = 2e-4;
     const auto drive = reference_drive();
     const auto input = [](double t) {
-        return Input<S>{0.3 * t + 0.2 * std::sin(4.0 * pi * t), 0.3 + 0.8 * pi * std::cos(4.0 * pi * t), 0.0, 293.15};
+        const double w = 2.0 * pi * COMMAND_FREQUENCY;
+        const double angle = COMMAND_SLOPE * t + COMMAND_AMPLITUDE * std::sin(w * t);
+        return Input<S>{angle, COMMAND_SLOPE + COMMAND_AMPLITUDE * w * std::cos(w * t), 0.0, 293.15};
     };
     auto at = drive.standing(drive.rest(), input(0.0));
     counting::operations = 0;

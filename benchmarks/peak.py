@@ -10,10 +10,12 @@ import os
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import reference_drive
 import strainwave as sw
 from measure import shortest
 from peers import strainwave_drive
@@ -22,6 +24,7 @@ from report import Column, save, table, three_digits
 from rich.console import Console
 from strainwave import _core
 
+COMMAND = ("COMMAND_SLOPE", "COMMAND_AMPLITUDE", "COMMAND_FREQUENCY")
 HERE = Path(__file__).resolve().parent
 STEP = 2e-4  # s
 PACKS = 8
@@ -51,11 +54,23 @@ class Use:
 def counted(compiler: str) -> tuple[float, float]:
     """Operations of a step, and the most that one core does in a second."""
     with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder, "peak")
-        options = ["-std=c++20", "-O3", "-march=native", "-ffp-contract=fast", "-Wno-psabi", f"-I{HERE.parent / 'include'}"]
-        subprocess.run([compiler, *options, str(HERE / "peak.cpp"), "-o", str(program)], check=True)
+        program, numbers = Path(folder, "peak"), Path(folder, "reference_drive.inc")
+        numbers.write_text("".join(f"{line};\n" for line in assignments()))
+        options = ["-std=c++20", "-O3", "-march=native", "-ffp-contract=fast", "-Wno-psabi"]
+        places = [f"-I{HERE.parent / 'include'}", f"-I{folder}"]
+        command = [f"-D{name}={getattr(reference_drive, name)!r}" for name in COMMAND]
+        subprocess.run([compiler, *options, *places, *command, str(HERE / "peak.cpp"), "-o", str(program)], check=True)
         operations, most = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
     return float(operations), 1e9 * float(most)
+
+
+def assignments() -> Iterator[str]:
+    """The numbers of the reference drive, as C++ takes them."""
+    for path, value, *_ in _core.parameters(strainwave_drive.drive()):
+        name, _, place = path.partition("[")
+        if place:
+            yield f"drive.{name}.count = {int(place[:-1]) + 1}"
+        yield f"drive.{path} = {value!r}"
 
 
 def run(console: Console) -> None:

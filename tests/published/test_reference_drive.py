@@ -5,16 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
+from reference import KNOWN
 
 from tests.reference_drive import DRIVE, command
 
-# Time [s]: input angle [rad], input speed [rad/s], output angle [rad], output speed [rad/s], torque [N.m].
-KNOWN = {
-    0.01: (0.6141273030231038, 85.54005991885637, 0.002497814213612874, 0.8855815019873978, 103.71346401041895),
-    0.1: (14.392587761524922, 143.65033435759096, 0.1444046414000202, 1.4304542780659235, -9.508663912887966),
-    1.0: (21.095375263666458, 205.2593723418557, 0.2102066314860274, 2.0259423270991017, 7.54384223777401),
-    5.0: (140.7869469886738, 205.59575000746915, 1.4063923224425494, 2.0287055041106963, 20.62009884513958),
-}
 COLUMNS = ("input_angle", "input_speed", "output_angle", "output_speed", "torque")
 
 
