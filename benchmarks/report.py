@@ -29,10 +29,11 @@ DISTRIBUTIONS = ("strainwave", "numpy", "scipy", "numba", "casadi", "scikit-sund
 
 @dataclass(frozen=True)
 class Column:
-    """Of a table: its heading, and whether it holds words rather than numbers."""
+    """Of a table: its heading, and whether it holds words rather than numbers, which may take several lines."""
 
     heading: str
     words: bool = False
+    long: bool = False
 
 
 def installed(distribution: str) -> bool:
@@ -53,7 +54,9 @@ def table(title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], 
     """Words on the left, numbers on the right."""
     view = Table(title=title, caption=caption or None, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
     for column in columns:
-        view.add_column(escape(column.heading), justify="left" if column.words else "right", no_wrap=column.words)
+        view.add_column(
+            escape(column.heading), justify="left" if column.words else "right", no_wrap=column.words and not column.long
+        )
     for row in rows:
         view.add_row(*map(escape, row))
     return view

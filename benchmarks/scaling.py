@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import strainwave as sw
@@ -17,6 +18,9 @@ from peers import strainwave_drive
 from reference_drive import OUTPUT_INERTIA
 from report import Column, figure, save, save_figure, table, three_digits
 from rich.console import Console
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 STEP = 2e-4  # s
 DURATIONS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)  # s
@@ -86,7 +90,7 @@ def run(console: Console) -> None:
     caption = "exponent: of the power law through the times, 1 if they are proportional"
     console.print(table("Time over what there is more of", COLUMNS, [row(line) for line in lines], caption))
     save("scaling", lines)
-    draw(lines)
+    save_figure("scaling", drawn(lines))
 
 
 def row(line: Line) -> list[str]:
@@ -99,14 +103,14 @@ def row(line: Line) -> list[str]:
     ]
 
 
-def draw(lines: Sequence[Line]) -> None:
+def drawn(lines: Sequence[Line]) -> Figure:
     """A plot a line, with a slope of one beside."""
-    drawn = figure(width=9.0, height=3.5)
-    for axes, line in zip(np.ravel(drawn.subplots(1, len(lines))), lines, strict=True):
+    picture = figure(width=9.0, height=3.5)
+    for axes, line in zip(np.ravel(picture.subplots(1, len(lines))), lines, strict=True):
         numbers = np.array(line.numbers)
         axes.loglog(numbers, line.times, marker="o", label=f"exponent {line.exponent:.2f}")
         axes.loglog(numbers, line.times[-1] / numbers[-1] * numbers, "k:", linewidth=1.0, label="proportional")
         axes.set(xlabel=line.over, ylabel="time [s]")
         axes.grid(alpha=0.3)
         axes.legend()
-    save_figure("scaling", drawn)
+    return picture

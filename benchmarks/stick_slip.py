@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -81,10 +81,15 @@ def sticking() -> tuple[sw.drives.PositionDrive, sw.scenario.Scenario]:
     return drives()["Stribeck, sticks"], COMMAND
 
 
+@cache
+def compiled(method: str) -> Callable[[float], Array]:
+    maths = numba_maths(error_model="numpy")
+    return solver(sticking_stretches(maths, TRACKING), maths, method)
+
+
 def by_scipy(method: str, tolerance: float) -> Callable[[], Array]:
     """A run by a method of SciPy from event to event, to this relative tolerance."""
-    maths = numba_maths(error_model="numpy")
-    return solver(sticking_stretches(maths, TRACKING), maths, method, tolerance)
+    return partial(compiled(method), tolerance)
 
 
 PEERS = (

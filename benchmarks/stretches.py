@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -145,18 +144,18 @@ class Stretch:
         return [self.signal(which, time, state) for which in range(len(self.drive.signals))]
 
 
-def solver(drive: Smooth, maths: Maths, method: str, tolerance: float) -> Callable[[], Array]:
-    """A run by a method of SciPy to this relative tolerance: output angle and torque at the samples, shape (5001, 2).
+def solver(drive: Smooth, maths: Maths, method: str) -> Callable[[float], Array]:
+    """Runs by a method of SciPy: relative tolerance -> output angle and torque at the samples, shape (5001, 2).
 
     Steps are taken one by one: `solve_ivp`, which does the same, spends half of its time on the bookkeeping of events.
     """
     from scipy import integrate
 
     method_class = getattr(integrate, method)
-    start, scale = initial_state()[: drive.states], state_scale()[: drive.states]
+    start, samples, scale = initial_state()[: drive.states], sample_times(), state_scale()[: drive.states]
     at, catch_up, observe = deflection(maths), advance(maths), observed(maths)
 
-    def solve(times: Array) -> Array:
+    def solve(tolerance: float, times: Array = samples) -> Array:
         time, state, memory, mode = 0.0, start.copy(), np.zeros(ELEMENTS + 2), drive.first
         memory[ELEMENTS + 1] = OUTPUT_INERTIA
         pieces: list[Array] = []
@@ -179,8 +178,8 @@ def solver(drive: Smooth, maths: Maths, method: str, tolerance: float) -> Callab
                 mode = drive.switched(which, time, state, memory, mode)
         return np.concatenate(pieces)
 
-    solve(sample_times()[:100])  # compiles
-    return partial(solve, sample_times())
+    solve(1e-3, samples[:100])  # compiles
+    return solve
 
 
 def first_fall(stretch: Stretch, stepper: Any, before: list[float], after: list[float]) -> tuple[float, Array, int | None]:

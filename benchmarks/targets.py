@@ -25,7 +25,7 @@ COLUMNS = (
     Column("aim"),
     Column("measured"),
     Column("reached", words=True),
-    Column("remark", words=True),
+    Column("remark", words=True, long=True),
 )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 
 from reference_drive import Array, numba_maths
 from stretches import reference_stretches, solver
@@ -11,10 +11,15 @@ from stretches import reference_stretches, solver
 from peers import Peer
 
 
+@cache
+def compiled(method: str) -> Callable[[float], Array]:
+    maths = numba_maths(error_model="numpy")
+    return solver(reference_stretches(maths), maths, method)
+
+
 def prepare(method: str, tolerance: float) -> Callable[[], Array]:
     """A run by a method of SciPy to this relative tolerance."""
-    maths = numba_maths(error_model="numpy")
-    return solver(reference_stretches(maths), maths, method, tolerance)
+    return partial(compiled(method), tolerance)
 
 
 PEERS = (

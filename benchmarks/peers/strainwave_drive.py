@@ -161,7 +161,7 @@ PEERS = tuple(
     peers(
         reference_task,
         {
-            "exponential": (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5),
+            "exponential": (1e-3, 5e-4, 2.5e-4, 2e-4, 1.25e-4, 1e-4, 5e-5, 2e-5),
             "moreau_jean": (2e-4, 1e-4, 5e-5, 2e-5),
             "rosenbrock": (5e-4, 2e-4, 1e-4, 5e-5),
         },
