@@ -128,10 +128,15 @@ def save_figure(part: str, drawn: Figure, told: Mapping[str, Any] | None = None,
 
     told = told or circumstances()
     machine, names = told["machine"], [f"{name} {version}" for name, version in told["versions"].items()]
-    lines = [f"{machine['processor']}, {machine['cores']} cores, {told['date']}", ", ".join(names[:5]), ", ".join(names[5:])]
+    runs = ", one run each" if told.get("quick") else ""
+    lines = [
+        f"{machine['processor']}, {machine['cores']} cores, {told['date']}{runs}",
+        ", ".join(names[:5]),
+        ", ".join(names[5:]),
+    ]
     drawn.supxlabel("\n".join(lines).strip(), fontsize=6, color="0.4")
     folder.mkdir(parents=True, exist_ok=True)
     partial = folder / f"{part}.partial.svg"
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": part, "font.family": "sans-serif"}):
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": part, "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"]}):
         drawn.savefig(partial, metadata={"Date": None})
     os.replace(partial, folder / f"{part}.svg")

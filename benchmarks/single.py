@@ -115,7 +115,7 @@ def drawn(results: Sequence[Result]) -> Figure:
         colour = f"C{number}" if ours else f"C{4 + (number - own) % 6}"
         width, marker = (2.5, "o") if ours else (1.0, "osD^v"[(number - own) % 5])
         axes.loglog(errors, times, style, marker=marker, markersize=4, color=colour, linewidth=width, label=solver)
-    axes.axvline(WANTED_TORQUE, color="0.6", linewidth=0.8)
+    axes.axvline(WANTED_TORQUE, color="0.6", linewidth=0.8, label=f"wanted: at most {WANTED_TORQUE:g} N.m")
     axes.set(title=f"Reference drive, {DURATION:.0f} s", xlabel="largest error of the torque [N.m]", ylabel="time of a run [s]")
     axes.grid(alpha=0.3)
     picture.legend(loc="outside right upper", fontsize=7, frameon=False)
