@@ -56,11 +56,11 @@ class Target:
 
 def lead(rows: Sequence[tuple[str, bool, float | None]]) -> Found:
     """The smallest of the ratios of (setting, accurate, ratio), of those accurate if there are any."""
-    known = [(setting, accurate, ratio) for setting, accurate, ratio in rows if ratio is not None]
+    accurate = [row for row in rows if row[1]]
+    known = [(ratio, setting) for setting, _, ratio in accurate or rows if ratio is not None]
     if not known:
-        return Found(None, "not measured" if not rows else "more accurate than all settings of strainwave")
-    accurate = [(ratio, setting) for setting, is_accurate, ratio in known if is_accurate]
-    ratio, setting = min(accurate or [(ratio, setting) for setting, _, ratio in known])
+        return Found(None, "more accurate than all settings of strainwave" if rows else "not measured")
+    ratio, setting = min(known)
     return Found(ratio, setting if accurate else f"{setting}; misses the wanted accuracy, as all its settings")
 
 
@@ -231,9 +231,10 @@ def remarks(parts: Iterable[str], tables: Mapping[str, Content]) -> Iterator[str
     for part in parts:
         if part not in tables:
             yield f"{part} was not run"
-        elif tables[part]["run"] != RUN:
+            continue
+        if tables[part]["run"] != RUN:
             yield f"{part} is of another run, {tables[part]['run']}"
-        elif tables[part].get("quick"):
+        if tables[part].get("quick"):
             yield f"{part} took one run each"
 
 
