@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
+import strainwave as sw
+from strainwave.simulation import Excitation
 
-from tests.stress import outcome
+from tests.stress import HANGS, check, outcome, outcomes
 
 
 @pytest.mark.parametrize("number", [*range(10), 64311])
@@ -12,3 +14,47 @@ def test_a_random_drive_ends_in_numbers_or_with_a_reason_and_is_in_a_pack_what_i
     """In 64311 the noise grows with the speed, so that a trial step goes further than an angle has digits."""
     found = outcome(number)
     assert not found.wrong, found.said
+
+
+def test_a_drive_that_takes_too_long_is_given_up_and_the_next_begun() -> None:
+    """Here all do: a process that is no more answers for its drive."""
+    assert [(one.number, one.said, one.wrong) for one in outcomes([3, 4], processes=1, limit=1e-3)] == [
+        (number, {"any": HANGS}, True) for number in (3, 4)
+    ]
+
+
+def test_outcomes_from_other_processes_are_those_of_their_drives() -> None:
+    assert {one.number: one.said for one in outcomes(range(3), processes=1)} == {n: outcome(n).said for n in range(3)}
+
+
+FRICTION = sw.friction.Coulomb(coulomb=0.01, breakaway=0.02)
+SLIDING = sw.drives.PositionDrive(gear=sw.Gear(friction_input=FRICTION))
+
+
+@pytest.mark.parametrize(
+    ("column", "said"),
+    [
+        ("current", "current at the end is not that of the state"),
+        ("twist", "angles do not add up"),
+        ("friction_input", "friction_input drives"),
+    ],
+)
+def test_a_recording_that_contradicts_itself_is_told(column: str, said: str) -> None:
+    """A run that is right, and the same with a column turned round; its end too but where the end is looked at."""
+    volts = Excitation(sw.scenario.constant(1.0, 0.01))
+    run = sw.simulate(SLIDING, volts.command, 1e-4)
+    inputs = volts.over(volts.course(1e-4, None))[-1, -1]
+    check(SLIDING, run, inputs)
+    turned = {name: -run[name] if name == column else run[name].copy() for name in run.names}
+    if column != "current":
+        turned[column][-1] = run[column][-1]
+    with pytest.raises(AssertionError, match=f"^WRONG: {said}$"):
+        check(SLIDING, sw.Run(turned, run.units, run.end, run.method), inputs)
+
+
+def test_what_sticks_and_moves_is_told() -> None:
+    volts = Excitation(sw.scenario.constant(1.0, 0.01))
+    run = sw.simulate(SLIDING, volts.command, 1e-4)
+    held = sw.Run({name: run[name] for name in run.names}, run.units, run.end.replace(sliding_input=0.0), run.method)
+    with pytest.raises(AssertionError, match=r"^WRONG: the input sticks and moves$"):
+        check(SLIDING, held, volts.over(volts.course(1e-4, None))[-1, -1])
