@@ -6,7 +6,7 @@ import json
 import re
 import subprocess
 from fractions import Fraction
-from itertools import pairwise
+from itertools import count, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ from tests.cplusplus import INCLUDE, STRICT, compilation, compiler
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, command
-from tests.tolerance import COLUMNS, difference, verdict
+from tests.tolerance import COLUMNS, difference, until, verdict
 
 Array = NDArray[np.float64]
 
@@ -315,12 +315,11 @@ def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, 
     check_tolerance(EVERYTHING.replace(gear=EVERYTHING.gear.replace(**{part: law})))
 
 
-@pytest.mark.parametrize("first", range(0, 40, 8))
+@pytest.mark.parametrize("first", range(0, 600, 100))
 def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> None:
-    """Of forty drives; `python -m tests.tolerance` takes more, and says what is set aside and why."""
-    verdicts = [verdict(number) for number in range(first, first + 8)]
+    """By four drives from each; `python -m tests.tolerance` takes two hundred, and says what is set aside and why."""
+    verdicts = until(4, map(verdict, count(first)))
     assert [one for one in verdicts if one.missed] == []
-    assert sum(not one.aside for one in verdicts) >= 2
 
 
 @pytest.mark.parametrize("sample", [1e-3, 7e-5, 0.03])
