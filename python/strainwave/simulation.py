@@ -297,8 +297,8 @@ def simulate_adaptively(
 
     Args:
         drive, command, load_torque, temperature, start, progress: as for `simulate`
-        rtol: error tolerated in each member of the motion (angles, speeds, current, bristles) and in the torque, relative to
-            the largest it has been so far
+        rtol: error tolerated in each member of the motion (input angle within its turn, transmission error, both speeds,
+            current, state of the controller, bristles) and in the torque, relative to the largest it has been so far
         atol: error tolerated besides, in the unit of each
         sample: distance of samples in the recording [s]
         most_steps: after how many the run gives up. One takes some microseconds
