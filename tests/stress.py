@@ -91,8 +91,11 @@ def model(kind: Any, random: np.random.Generator) -> Any:
 
 
 def neighbours(drive: sw.drives.PositionDrive, random: np.random.Generator) -> dict[str, list[float]]:
-    """Values of three of its numbers for as many members as a pack holds, the first its own."""
-    known = _core.parameters(drive)
+    """Values of three of its numbers for as many members as a pack holds, the first its own.
+
+    None of those that are whole in some members only, which may differ in the last digit then: documented.
+    """
+    known = [one for one in _core.parameters(drive) if not re.search(r"\.order\[|\.density\.exponent$", one[0])]
     drawn: dict[str, list[float]] = {}
     for place in random.choice(len(known), min(3, len(known)), replace=False):
         path, own, unit, _, low, high = known[place]

@@ -59,7 +59,6 @@ SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for what can 
         (STRIBECKS, SWING, "exponential", 4.0),
         (SMOOTH, RISE, "rosenbrock", 3.0),
         (SMOOTH, RISE, "moreau_jean", 2.0),
-        (STICKING, RISE, "moreau_jean", 2.0),
     ],
     ids=[
         "exponential",
@@ -69,7 +68,6 @@ SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for what can 
         "exponential, both sides sticking, Stribeck",
         "rosenbrock",
         "moreau_jean",
-        "moreau_jean, turning round",
     ],
 )
 def test_each_method_converges_with_its_order(
@@ -315,7 +313,7 @@ def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, 
     check_tolerance(EVERYTHING.replace(gear=EVERYTHING.gear.replace(**{part: law})))
 
 
-@pytest.mark.parametrize("first", range(0, 600, 100))
+@pytest.mark.parametrize("first", range(0, 500, 100))
 def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> None:
     """By four drives from each; `python -m tests.tolerance` takes two hundred, and says what is set aside and why."""
     verdicts = until(4, map(verdict, count(first)))
