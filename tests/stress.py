@@ -281,9 +281,8 @@ class Worker:
 
 
 def work(pipe: Connection, limit: float) -> None:
-    """Answers numbers with outcomes. Whatever it is in, compiled code that looks at no signal too, it ends where one lasts."""
-    while True:
-        number = pipe.recv()
+    """Answers numbers with outcomes, until None; ends where one lasts, though in compiled code that looks at no signal."""
+    while (number := pipe.recv()) is not None:
         signal.setitimer(signal.ITIMER_REAL, limit)
         found = outcome(number)
         signal.setitimer(signal.ITIMER_REAL, 0.0)
@@ -305,8 +304,11 @@ def outcomes(numbers: Iterable[int], processes: int, limit: float = LIMIT) -> It
         for pipe in wait(list(busy)):
             worker = busy.pop(pipe)
             yield worker.answer()
-            for number in islice(left, 1):
+            number = next(left, None)
+            if number is not None:
                 begin(worker if worker.process.is_alive() else Worker(limit), number)
+            elif worker.process.is_alive():
+                worker.pipe.send(None)
 
 
 def tell(counted: Counter[tuple[str, str]], slowest: list[Outcome], wrong: list[Outcome]) -> None:
