@@ -20,7 +20,7 @@ import strainwave as sw
 from measure import shortest
 from peers import strainwave_drive
 from reference_drive import DURATION, OUTPUT_INERTIA
-from report import Column, save, table, three_digits
+from report import Column, save, tell, three_digits
 from rich.console import Console
 from strainwave import _core
 
@@ -32,7 +32,7 @@ ROUNDS = 15
 
 COLUMNS = (
     Column("run", words=True),
-    *(Column(heading) for heading in ("operations a step", "step [us]", "1e9 operations/s", "share of the most")),
+    *(Column(heading) for heading in ("operations a step", "step [µs]", "1e9 operations/s", "share of the most")),
 )
 
 
@@ -92,7 +92,7 @@ def run(console: Console) -> None:
             Use("one trajectory", operations, alone, most),
             Use(f"packs of {_core.lanes}", _core.lanes * operations, packed / PACKS, most),
         ]
-    console.print(table(f"Of at most {three_digits(1e-9 * most)}e9 operations a second", COLUMNS, [row(use) for use in uses]))
+    tell(console, f"Of at most {three_digits(1e-9 * most)}e9 operations a second", COLUMNS, [row(use) for use in uses])
     save("peak", uses)
 
 

@@ -17,12 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 from reference import FOLDER
 from rich.box import SIMPLE_HEAD
+from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+TABLES = FOLDER / "tables"  # as the page of the documentation has them
 RUN = datetime.now(UTC).isoformat(timespec="seconds")  # which run a table is of: when its process began
 DISTRIBUTIONS = ("strainwave", "numpy", "scipy", "numba", "casadi", "scikit-sundae", "diffrax", "jax")
 
@@ -50,8 +52,16 @@ def three_digits(value: float) -> str:
     return f"{value:.3g}" if value < 1000.0 else f"{value:.0f}"
 
 
-def table(title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str = "") -> Table:
-    """Words on the left, numbers on the right."""
+def tell(console: Console, title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str = "") -> None:
+    """Prints a table, words on the left, numbers on the right; and keeps it for the page of the documentation."""
+    console.print(table(title, columns, rows, caption))
+    rule = ["---" if column.words else "---:" for column in columns]
+    lines = [f"| {' | '.join(cells)} |" for cells in ([column.heading for column in columns], rule, *rows)]
+    TABLES.mkdir(parents=True, exist_ok=True)
+    (TABLES / f"{re.sub('[^a-z]+', '_', title.lower()).strip('_')}.md").write_text("\n".join(lines) + "\n")
+
+
+def table(title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], caption: str) -> Table:
     view = Table(title=title, caption=caption or None, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
     for column in columns:
         view.add_column(

@@ -14,7 +14,7 @@ import ensemble
 import single
 from measure import Result
 from reference_drive import DURATION
-from report import RUN, Column, circumstances, saved, table, three_digits, write_json
+from report import RUN, Column, circumstances, saved, tell, three_digits, write_json
 from rich.console import Console
 
 Content = Mapping[str, Any]  # of the JSON file of a part
@@ -221,7 +221,7 @@ def run(console: Console) -> None:
     parts = dict.fromkeys(target.part for target in TARGETS)
     tables = {part: content for part in parts if (content := saved(part)) is not None}
     judged = list(verdicts(tables))
-    console.print(table("Targets", COLUMNS, [row(each) for each in judged], "; ".join(remarks(parts, tables))))
+    tell(console, "Targets", COLUMNS, [row(each) for each in judged], "; ".join(remarks(parts, tables)))
     runs = {part: content["run"] for part, content in tables.items()}
     write_json("targets", circumstances() | {"runs": runs, "results": [vars(each) for each in judged]})
 

@@ -100,17 +100,17 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
             simulate_many(drive, variation, request.course, recorded, fastest, largest, threads, out.data(), request.kept, pause);
     }
     auto sound = array<bool>({variation.members});
-    Values twists = array({variation.members}), vibrations = array({variation.members}), on_bristles = array({variation.members});
+    Values twists = array({variation.members}), rates = array({variation.members}), on_bristles = array({variation.members});
     nb::dict refusals;
     for (std::size_t m = 0; m < verdicts.size(); ++m) {
         sound.data()[m] = verdicts[m].sound;
         twists.data()[m] = verdicts[m].twist;
-        vibrations.data()[m] = verdicts[m].vibration;
+        rates.data()[m] = verdicts[m].fastest;
         on_bristles.data()[m] = verdicts[m].bristle_vibration;
         if (verdicts[m].refusal) refusals[nb::int_(m)] = text_of(*verdicts[m].refusal);
         if (!verdicts[m].problem.empty()) refusals[nb::int_(m)] = verdicts[m].problem;
     }
-    return nb::make_tuple(sound, twists, vibrations, on_bristles, refusals);
+    return nb::make_tuple(sound, twists, rates, on_bristles, refusals);
 }
 
 nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Numbers& inputs, const Flags& keep,
@@ -128,6 +128,8 @@ nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Num
 }
 
 double vibration(const Drive& drive, double twist) { return drive.vibration(std::abs(twist)); }
+
+double fastest_of(const Drive& drive, double twist) { return drive.fastest(std::abs(twist)); }
 
 double bristle_vibration(const Drive& drive) { return drive.bristle_vibration(); }
 
@@ -409,14 +411,18 @@ void bind_drives(nb::module_& core) {
             ", dict[int, str]]"),
         "Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and "
         "neither "
-        "its outputs nor its twist are larger than `largest`, its largest twist [rad], the fastest vibration of its gear up to "
-        "there "
-        "and of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), "
+        "its outputs nor its twist are larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to "
+        "there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape "
+        "(numbers, members), "
         "takes "
-        "the place of the numbered parameters. Members whose gear vibrates faster than `fastest` at rest are not run.");
+        "the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.");
     core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
              nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
              "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
+    core.def("fastest", &fastest_of, nb::arg("drive"), nb::arg("twist"),
+             nb::sig("def fastest(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
+             "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's "
+             "vibration, or the decay of speeds.");
     core.def("bristle_vibration", &bristle_vibration, nb::arg("drive"),
              nb::sig("def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float"),
              "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");

@@ -34,7 +34,7 @@ struct Variation {
 /// How the run of a member went.
 struct Verdict {
     double twist = 0.0;                    ///< largest recorded, rad
-    double vibration = 0.0;                ///< the fastest of the gear up to that twist, rad/s
+    double fastest = 0.0;                  ///< what steps had to follow up to that twist, rad/s
     double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
     bool sound = false;                    ///< whether it ran, and all that was recorded and the twist mean something
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did

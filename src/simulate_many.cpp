@@ -139,12 +139,12 @@ private:
     template <class S>
     void run_members(std::size_t first, std::size_t count) {
         const auto drive = assembled_from<S>(first, count);
-        const S at_rest = drive.vibration(S(0.0)), on_bristles = drive.bristle_vibration();
+        const S at_rest = drive.fastest(S(0.0)), on_bristles = drive.bristle_vibration();
         const auto too_fast = at_rest > S(fastest);
-        const auto tell = [&](const S& twist, const S& vibration, const S& sound) {
+        const auto tell = [&](const S& twist, const S& own, const S& sound) {
             for (std::size_t i = 0; i < count; ++i)
                 verdicts[first + i] = {
-                    lane_of(twist, i), lane_of(vibration, i), lane_of(on_bristles, i), lane_of(sound, i) > 0.0, {}, {}};
+                    lane_of(twist, i), lane_of(own, i), lane_of(on_bristles, i), lane_of(sound, i) > 0.0, {}, {}};
         };
         if (all(too_fast)) {
             clear(first, count);
@@ -165,7 +165,7 @@ private:
         });
         rows.flush();
         sound = select(S(largest) >= twist, sound, S(0.0));
-        tell(select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.vibration(twist)), sound);
+        tell(select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.fastest(twist)), sound);
     }
 
     /// Leaves not-a-number in the rows of members.

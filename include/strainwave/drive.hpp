@@ -307,6 +307,28 @@ struct PositionDrive {
         return sqrt(gear.steepest(twist) * (S(1.0) / inertia_of(load) + inverse * inverse / input_inertia()));
     }
 
+    /// How fast speeds decay at most [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
+    /// back-EMF and control. The larger eigenvalue of what two speeds do to their rates.
+    constexpr S damping() const {
+        State x = rest();
+        x.sliding_input = x.sliding_output = S(1.0);
+        const auto rate = [&](double input_speed, double output_speed) {
+            Motion y = x.motion;
+            y.input_speed = S(input_speed);
+            y.output_speed = S(output_speed);
+            return flow(x, y, Input<S>{}).rate;
+        };
+        const Motion slow = rate(1.0, 1.0), by_input = rate(2.0, 1.0), by_output = rate(1.0, 2.0);
+        const S input = slow.input_speed - by_input.input_speed, output = slow.output_speed - by_output.output_speed;
+        const S across = (slow.input_speed - by_output.input_speed) * (slow.output_speed - by_input.output_speed);
+        const S mean = S(0.5) * (input + output), product = input * output - across, square = mean * mean - product;
+        return select(square < S(0.0), sqrt(max(product, S(0.0))), max(mean + sqrt(max(square, S(0.0))), S(0.0)));
+    }
+
+    /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the gear's own vibration at twists up to `twist`
+    /// [rad], or the decay of speeds. Of the latter a Runge-Kutta step of fourth order bears 2.78 times its length.
+    constexpr S fastest(const S& twist) const { return max(vibration(twist), damping() / S(2.5)); }
+
     /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
     constexpr S bristle_vibration() const {
         const S inverse = gear.kinematics.inverse_ratio();

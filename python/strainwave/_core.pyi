@@ -353,12 +353,17 @@ def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, in
 
 def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, largest: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
     """
-    Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and neither its outputs nor its twist are larger than `largest`, its largest twist [rad], the fastest vibration of its gear up to there and of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members whose gear vibrates faster than `fastest` at rest are not run.
+    Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and neither its outputs nor its twist are larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.
     """
 
 def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float:
     """
     The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].
+    """
+
+def fastest(drive: strainwave.drives.PositionDrive, twist: float) -> float:
+    """
+    The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's vibration, or the decay of speeds.
     """
 
 def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float:

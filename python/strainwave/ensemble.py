@@ -155,7 +155,7 @@ class _Plan:
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
         channels = [OUTPUTS.index(name) for name in self.recorded]
         outputs = np.empty((len(channels), last - first, len(self.time)))
-        sound, twists, vibrations, on_bristles, refusals = _core.simulate_many(
+        sound, twists, fastest, on_bristles, refusals = _core.simulate_many(
             self.drive,
             self.numbers,
             values,
@@ -169,7 +169,7 @@ class _Plan:
             outputs,
             shown,  # type: ignore[arg-type]
         )
-        failures = self.failures(outputs, sound, twists, vibrations, refusals)
+        failures = self.failures(outputs, sound, twists, fastest, refusals)
         _tell_of_bristles(self.dt, on_bristles)
         outputs[:, list(failures), :] = np.nan
         units = output_units(self.drive)
@@ -182,18 +182,18 @@ class _Plan:
         )
 
     def failures(
-        self, outputs: Array, ran: NDArray[np.bool_], twists: Array, vibrations: Array, refusals: dict[int, str]
+        self, outputs: Array, ran: NDArray[np.bool_], twists: Array, fastest: Array, refusals: dict[int, str]
     ) -> dict[int, str]:
         """Why members have no result, as `simulate` would say it of each alone."""
         found = dict(refusals)
-        coarse = vibrations > COARSEST / self.dt
+        coarse = fastest > COARSEST / self.dt
         at_rest = coarse & (twists == 0.0)  # such members are not run
         sound = at_rest | ran
         for member in np.flatnonzero(~sound | coarse).tolist():
             if member not in found and not sound[member]:
                 found[member] = diverged(self.time, self.recorded, outputs[:, member], remedy(self.dt))
             elif member not in found:
-                found[member] = too_coarse(self.dt, float(twists[member]), float(vibrations[member]))
+                found[member] = too_coarse(self.dt, float(twists[member]), float(fastest[member]))
         return dict(sorted(found.items()))
 
 

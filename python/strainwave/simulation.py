@@ -19,7 +19,7 @@ from strainwave.recording import Recording
 from strainwave.scenario import Scenario
 
 Array = NDArray[np.float64]
-COARSEST = 1.0  # step times angular frequency of the gear's vibration
+COARSEST = 1.0  # step times angular frequency of a drive's own motion
 ROOM_TEMPERATURE = 293.15  # K
 LARGEST = 1e15  # of all that is recorded: no angle beyond is told to within a radian
 _TWIST = [name for name, _, _ in _core.outputs].index("twist")
@@ -206,7 +206,8 @@ def simulate(
         ValueError: `dt`, `sample` or `temperature` is not positive, `load_torque` or `temperature` lasts another time than
             `command`, `method` is not known, or the drive leaves the range in which one of its parts is valid; says which,
             where and when
-        FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration; says when, and what would do
+        FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration or what damps it; says when, and
+            what would do
 
     Warns:
         RuntimeWarning: a `method` was asked for whose steps cannot follow a shaft on its bristles
@@ -301,7 +302,8 @@ def simulate_adaptively(
             current, state of the controller, bristles) and in the torque, relative to the largest it has been so far
         atol: error tolerated besides, in the unit of each
         sample: distance of samples in the recording [s]
-        most_steps: after how many the run gives up. One takes some microseconds
+        most_steps: after how many the run gives up. One takes some microseconds,
+            where friction chatters thousands of times as long
 
     Returns:
         as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
@@ -417,9 +419,9 @@ def _largest_twist(outputs: Array) -> float:
 
 
 def _check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
-    vibration = _core.vibration(drive, twist)
-    if vibration > COARSEST / dt:
-        raise FloatingPointError(too_coarse(dt, twist, vibration))
+    fastest = _core.fastest(drive, twist)
+    if fastest > COARSEST / dt:
+        raise FloatingPointError(too_coarse(dt, twist, fastest))
 
 
 def output_units(drive: PositionDrive) -> dict[str, str]:
@@ -427,15 +429,15 @@ def output_units(drive: PositionDrive) -> dict[str, str]:
     return {name: unit for name, unit, _ in _core.outputs} | {"time": "s", "command": drive.control.command_unit}
 
 
-def too_coarse(dt: float, twist: float, vibration: float) -> str:
-    """Says that steps of `dt` [s] cannot follow the gear's own vibration [rad/s], which would end in numbers that mean nothing.
+def too_coarse(dt: float, twist: float, fastest: float) -> str:
+    """Says that steps of `dt` [s] cannot follow what a drive does by itself, which would end in numbers that mean nothing.
 
     Of a vibration of angular frequency w the classical scheme diverges beyond dt w = 2.8, and loses a hundredth of the
     amplitude each step at 1.
     """
     return (
-        f"dt = {dt:g} s is too coarse for this drive: its gear vibrates at {vibration:.4g} rad/s at a twist of "
-        f"{twist:.3g} rad; take dt = {COARSEST / vibration:.2g} s or less"
+        f"dt = {dt:g} s is too coarse for this drive: its own motion is as fast as a vibration of {fastest:.4g} rad/s "
+        f"at a twist of {twist:.3g} rad; take dt = {COARSEST / fastest:.2g} s or less"
     )
 
 

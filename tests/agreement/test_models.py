@@ -96,6 +96,7 @@ def agree(drive: PositionDrive, seed: int) -> None:
     assume(False)
 
 
+@pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 @pytest.mark.parametrize(("part", "model"), EVERY_PART)
 @settings(max_examples=8)
 @given(st.data(), seeds)

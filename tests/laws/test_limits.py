@@ -229,6 +229,7 @@ def test_the_loop_of_a_stiff_bristle_loses_what_coulomb_friction_loses(stiffness
     assert end == pytest.approx(back.trace(cycle)[-1], rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 @pytest.mark.parametrize("stiffness", [1e3, 1e6, 1e9, 1e12, 1e20])
 def test_the_stiffest_bristle_slides_in_a_drive_as_the_curve_has_it(stiffness: float) -> None:
     """It follows the speed within G / (sigma_0 v); one step of the integration is up to 1e18 times as long."""

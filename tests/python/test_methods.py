@@ -199,6 +199,7 @@ def on_bristles(stiffness: float) -> sw.drives.PositionDrive:
 TOO_STIFF = r"^the drive has bristles on which a shaft vibrates faster than steps of .* take dt = 6\.3e-05 s or less$"
 
 
+@pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 def test_a_shaft_that_rests_on_stiff_bristles_and_slides_off_is_followed_by_the_rosenbrock_method() -> None:
     """A voltage that rises from nothing: with its order, in steps with which the exponential method loses the shaft."""
     law = DRIVE.gear.friction_input

@@ -9,6 +9,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -373,20 +374,22 @@ def test_a_temperature_below_absolute_zero_is_refused(temperature: sw.scenario.S
 
 
 def test_a_run_that_leaves_all_bounds_is_no_result_though_its_numbers_are_finite() -> None:
-    """A motor that its friction slows down at 1e4 /s: steps of fourth order multiply its speed by (-5)^4/24 + ... = 13.7."""
-    gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e-6), friction_input=sw.friction.Viscous(viscous=1.0))
-    braked = sw.drives.PositionDrive(gear=gear, motor=sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=1e-4))
-    rest = braked.rest()
-    start = rest.replace(motion=rest.motion.replace(input_speed=1.0))
-    grown = 1.0 - 5.0 + 5.0**2 / 2.0 - 5.0**3 / 6.0 + 5.0**4 / 24.0
+    """An output pushed by 1.9e17 rad/s2."""
+    acceleration, inertia = 1.9e17, 1e-3
+    free = sw.drives.PositionDrive(
+        gear=sw.Gear(stiffness=sw.stiffness.Linear(k=1e-30), damping=0.0),
+        motor=sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=1e-4),
+        load=sw.loads.Inertia(inertia=inertia),
+    )
 
     def after(steps: int) -> sw.Recording:
-        return sw.simulate(braked, sw.scenario.constant(0.0, 5e-4 * steps), dt=5e-4, start=start)
+        still = sw.scenario.constant(0.0, 5e-4 * steps)
+        return sw.simulate(free, still, dt=5e-4, load_torque=-acceleration * inertia)
 
-    largest = math.floor(math.log(1e15) / math.log(grown))
-    assert after(largest)["input_speed"][-1] == pytest.approx(grown**largest, rel=1e-6)
+    largest = math.floor(1e15 / acceleration / 5e-4)
+    assert after(largest)["output_speed"][-1] == pytest.approx(acceleration * 5e-4 * largest, rel=1e-9)
     with pytest.raises(
-        FloatingPointError, match=rf"^the simulation diverged at t = {5e-4 * (largest + 1):.6g} s \(input_speed"
+        FloatingPointError, match=rf"^the simulation diverged at t = {5e-4 * (largest + 1):.6g} s \(output_speed"
     ):
         after(largest + 1)
 
@@ -395,14 +398,70 @@ def test_a_step_too_coarse_at_rest_is_refused_before_any_is_taken(monkeypatch: p
     """The gear of 1.5e4 N.m/rad at rest, between 0.5 kg.m2 and 1e-4 kg.m2 times 100 squared."""
     monkeypatch.setattr(_core, "simulate", None)
     vibration = math.sqrt(1.5e4 * 3.0)
-    words = rf"its gear vibrates at {vibration:.4g} rad/s at a twist of 0 rad; take dt = {1.0 / vibration:.2g} s or less$"
+    motion = f"its own motion is as fast as a vibration of {vibration:.4g} rad/s at a twist of 0 rad"
+    words = rf"{motion}; take dt = {1.0 / vibration:.2g} s or less$"
     with pytest.raises(FloatingPointError, match=words):
         sw.simulate(DRIVE, command(0.1), dt=1.01 / vibration, method="exponential")
 
 
+OPEN = sw.drives.PositionDrive(
+    gear=sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), stiffness=sw.stiffness.Linear(k=1e4)),
+    motor=sw.motor.DC(resistance=0.5, torque_constant=0.05, back_emf=0.04, inertia=1e-4),
+    load=sw.loads.Inertia(inertia=0.02),
+)
+EMF = 0.05 * 0.04 / 0.5 / 1e-4  # 1/s
+
+
+@pytest.mark.parametrize(
+    ("parts", "motor", "rate"),
+    [
+        ({}, {}, EMF),
+        ({}, {"inductance": 1e-3}, 0.0),
+        ({"damping": 250.0}, {"back_emf": 0.0}, 250.0 * (1.0 / 0.02 + 1.0 / (1e-4 * 100.0**2))),
+        ({"friction_input": sw.friction.Coulomb(coulomb=0.01, breakaway=0.02, viscous=2.0)}, {}, EMF + 2.0 / 1e-4),
+        ({"friction_output": sw.friction.Viscous(viscous=300.0)}, {}, 300.0 / 0.02),
+        ({"friction_input": sw.friction.LuGre(bristle_damping=1.0, viscous=0.5)}, {"back_emf": 0.0}, 1.5 / 1e-4),
+    ],
+    ids=["back-EMF", "with inductance", "gear", "input", "output", "bristles"],
+)
+def test_how_fast_speeds_decay_is_known_of_every_part(parts: Any, motor: Any, rate: float) -> None:
+    """What damps over what it damps; 2.5 of it weigh as much as one of the gear's vibration, which is soft here."""
+    gear = OPEN.gear.replace(stiffness=sw.stiffness.Linear(k=1e-3), **parts)
+    drive = OPEN.replace(gear=gear, motor=OPEN.motor.replace(**motor))
+    assert _core.fastest(drive, 0.0) == pytest.approx(max(rate / 2.5, math.sqrt(1e-3 * 51.0)), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"damping": 400.0, "friction_output": sw.friction.Coulomb(coulomb=0.733, breakaway=1.1)},
+        {"friction_input": sw.friction.Coulomb(coulomb=0.0067, breakaway=0.01, viscous=2.0)},
+    ],
+    ids=["gear", "input"],
+)
+def test_a_step_too_long_for_what_damps_is_refused_where_sticking_would_hide_it(parts: Any) -> None:
+    """Unstable steps end in rest there, over and over: bounded, and wrong by any factor. What is not refused is right."""
+    drive = OPEN.replace(
+        gear=OPEN.gear.replace(**({"friction_input": sw.friction.Coulomb(coulomb=0.0067, breakaway=0.01)} | parts))
+    )
+    volts = sw.scenario.sine(6.0, 5.0, 0.1)
+    longest = 1.0 / _core.fastest(drive, 0.0)
+    exact = sw.simulate_adaptively(drive, volts, rtol=1e-9)
+    run = sw.simulate(drive, volts, 0.99 * longest, sample=1e-3)
+    for name in ("input_speed", "torque", "output_angle"):
+        assert np.abs(run[name] - exact[name]).max() < 1e-2 * np.abs(exact[name]).max()
+    words = r"too coarse for this drive: its own motion is as fast as .* at a twist of 0 rad; take dt = .* s or less"
+    with pytest.raises(FloatingPointError, match=words):
+        sw.simulate(drive, volts, 1.01 * longest)
+    light = {"load.inertia": [0.02] * 7 + [1e-3] * 2, "motor.inertia": [1e-4] * 7 + [1e-5] * 2}
+    with pytest.warns(sw.EnsembleWarning, match="2 of 9 members have no result"):
+        runs = sw.simulate_many(drive, volts, light, 0.5 * longest)
+    assert all(re.search(words, reason) for reason in runs.failures.values())
+
+
 DIVERGED = (
     r"the simulation diverged at t = [\d.]+ s \(.*\); take a smaller dt \(now 0\.05 s\)"
-    r"|dt = 0\.05 s is too coarse for this drive: its gear vibrates at .* rad/s"
+    r"|dt = 0\.05 s is too coarse for this drive: its own motion is as fast as a vibration of .* rad/s"
 )
 
 
@@ -558,7 +617,7 @@ def test_a_step_that_cannot_follow_the_gear_is_refused_with_one_that_can() -> No
     command = sw.scenario.step(amplitude=1.0, duration=0.1)
     frequency = np.sqrt(1e4 * (1.0 / 1e-2 + 1.0 / (1e4 * drive.motor.inertia)))
     with pytest.raises(
-        FloatingPointError, match=rf"vibrates at {frequency:.4g} rad/s.*take dt = {1.0 / frequency:.2g} s or less"
+        FloatingPointError, match=rf"a vibration of {frequency:.4g} rad/s.*take dt = {1.0 / frequency:.2g} s or less"
     ):
         sw.simulate(drive, command, dt=1.5 / frequency)
     assert len(sw.simulate(drive, command, dt=0.9 / frequency)) > 2

@@ -10,13 +10,16 @@ class Factored {
     Array<int, n> order;
 
 public:
-    /// Gauss's elimination; in each column the largest pivot left.
+    /// Gauss's elimination; in each column the largest pivot left, but a row that holds nothing else comes first: what it says is
+    /// then solved to the last bit, as that what sticks does not move.
     constexpr explicit Factored(const Array<Array<S, n>, n>& matrix) : rows(matrix), order{} {
         for (int i = 0; i < n; ++i) order[i] = i;
         for (int k = 0; k < n; ++k) {
             int pivot = k;
             for (int i = k + 1; i < n; ++i)
-                if (abs(rows[order[i]][k]) > abs(rows[order[pivot]][k])) pivot = i;
+                if (!alone(rows[order[pivot]], k) &&
+                    (alone(rows[order[i]], k) || abs(rows[order[i]][k]) > abs(rows[order[pivot]][k])))
+                    pivot = i;
             const int first = order[pivot];
             order[pivot] = order[k];
             order[k] = first;
@@ -27,6 +30,12 @@ public:
                 for (int j = k + 1; j < n; ++j) row[j] = row[j] - row[k] * rows[first][j];
             }
         }
+    }
+    /// Whether a row holds one number only, at place k.
+    static constexpr bool alone(const Array<S, n>& row, int k) {
+        for (int j = 0; j < n; ++j)
+            if ((row[j] == S(0.0)) == (j == k)) return false;
+        return true;
     }
     constexpr Array<S, n> solve(const Array<S, n>& right) const {
         Array<S, n> x{};

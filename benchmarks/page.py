@@ -1,0 +1,54 @@
+"""Brings docs/benchmarks.md up to date with the last runs: draws its pictures, and replaces each table whose columns it knows.
+
+python benchmarks/page.py
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import scaling
+import single
+import targets
+from report import TABLES, save_figure, saved
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "pictures"
+
+
+def content(part: str) -> dict[str, Any]:
+    found = saved(part)
+    if found is None:
+        sys.exit(f"page: run benchmarks/run.py --only {part} first")
+    return found
+
+
+def draw() -> None:
+    precision, growth = content("single"), content("scaling")
+    save_figure("work_precision", single.drawn(targets.results(precision)), precision, PICTURES)
+    lines = [scaling.Line(**line) for line in growth["results"]]
+    save_figure("growth", scaling.drawn(lines), growth, PICTURES)
+
+
+def replaced(page: str, table: str) -> str:
+    """The page with a table in place of that with the same columns."""
+    heading = table.partition("\n")[0] + "\n"
+    if page.count(heading) != 1:
+        sys.exit(f"page: {PAGE.name} has not one table with the columns {heading.strip()}")
+    before, _, after = page.partition(heading)
+    rows = after.splitlines(keepends=True)
+    own = next((i for i, row in enumerate(rows) if not row.startswith("|")), len(rows))
+    return before + table + "".join(rows[own:])
+
+
+if __name__ == "__main__":
+    draw()
+    page = PAGE.read_text()
+    for kept in sorted(TABLES.glob("*.md")):
+        page = replaced(page, kept.read_text())
+    partial = PAGE.with_suffix(".partial")
+    partial.write_text(page)
+    os.replace(partial, PAGE)
