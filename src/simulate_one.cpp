@@ -58,8 +58,9 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
         return step(moved, from, u, dt, called_step<double, Compiled>);
     };
     x = drive.consistent(x);
-    integrate::Adaptive<double, Compiled, decltype(advance)> adaptive(drive, advance, tolerance,
-                                                                      1e-2 * (course.instants[1] - course.instants[0]));
+    const auto smooth = called_step<double, Compiled>;
+    integrate::Adaptive<double, Compiled, decltype(smooth)> adaptive(drive, smooth, tolerance,
+                                                                     1e-2 * (course.instants[1] - course.instants[0]));
     long taken = 0;
     for (std::size_t i = 0; i < course.steps; ++i) {
         if (i % 256 == 0) pause(i);

@@ -286,6 +286,15 @@ struct PositionDrive {
         x.held_rate = now.twist_rate;
     }
 
+    /// Whether the twist has turned round since `before`, and the hysteresis gives another torque than had it gone straight.
+    constexpr bool turned(const State& before, const Standing& now) const {
+        if (!(before.held_rate * now.state.held_rate < S(0.0))) return false;
+        return gear.hysteresis.torque(before.hysteresis, now.state.held_twist - before.held_twist) !=
+               gear.hysteresis.torque(now.state.hysteresis, S(0.0));
+    }
+    /// The twist stands still here, to turn round.
+    constexpr void turn(State& x) const { x.held_rate = S(0.0); }
+
     /// The state becomes that `dt` [s] after it was remembered: its input angle within its turn, whole turns counted.
     constexpr void wrap(State& x, const S& dt) const {
         x.elapsed = dt;

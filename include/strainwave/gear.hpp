@@ -100,7 +100,7 @@ struct Gear {
         constexpr int parts = 64;
         S largest = stiffness.tangent(S(0.0));
         for (int i = -parts; i <= parts; ++i) largest = max(largest, stiffness.tangent(twist * S(double(i) / parts)));
-        const S little = S(1e-9) * max(twist, S(1e-9));
+        const S little(1e-12);  // rad: within any loop's first slope, and more than rounding
         return largest + hysteresis.torque(typename Hysteresis::State{}, little) / little;
     }
 

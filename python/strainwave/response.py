@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.scenario import Scenario, constant, sine
-from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, recording, warn_of_bristles
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, check_resolution, recording, warn_of_bristles
 from strainwave.steady import averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
@@ -178,6 +178,7 @@ class _Sines:
         """The outputs over each period, both ends included."""
         period = excitation.command.duration
         step = _step(period, self.dt)
+        check_resolution(self.drive, step, 0.0)
         course = excitation.course(step, None)
         inputs, state = excitation.over(course), self.start
         while True:

@@ -239,7 +239,7 @@ def simulate(
             progress=progress,
         )
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
-        _check_resolution(drive, dt, 0.0)  # at rest: else many a step may be spent on events that mean nothing
+        check_resolution(drive, dt, 0.0)
     course = excitation.course(dt, interval)
     taken = method or "exponential"
     time = course.times
@@ -252,7 +252,7 @@ def simulate(
             first += int(np.count_nonzero(keep))
     _check_meaning(time, outputs, remedy(dt))
     if method != "rosenbrock":
-        _check_resolution(drive, dt, _largest_twist(outputs))
+        check_resolution(drive, dt, _largest_twist(outputs))
     warn_of_bristles(drive, longest)
     return Run(_columns(time, outputs), output_units(drive), state, f"{_named(taken, drive)}, steps of {dt:g} s")
 
@@ -363,6 +363,7 @@ def differentiate(
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
     excitation = Excitation(command, load_torque, temperature)
+    check_resolution(drive, dt, 0.0)
     course = excitation.course(dt, samples)
     outputs, slopes = _core.differentiate(drive, course.instants, excitation.over(course), course.samples[1:], list(numbers))
     return recording(drive, course, outputs, dt), slopes
@@ -384,7 +385,7 @@ def recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -
     """What a run recorded, shape (channels, samples), if its numbers mean anything."""
     time = course.times
     _check_meaning(time, outputs, remedy(dt))
-    _check_resolution(drive, dt, _largest_twist(outputs))
+    check_resolution(drive, dt, _largest_twist(outputs))
     return Recording(_columns(time, outputs), output_units(drive), title="simulation")
 
 
@@ -418,7 +419,8 @@ def _largest_twist(outputs: Array) -> float:
     return float(np.abs(outputs[_TWIST]).max())
 
 
-def _check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
+def check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
+    """Refuses steps too coarse for a drive; at rest before a run, else many a step may be spent on events that mean nothing."""
     fastest = _core.fastest(drive, twist)
     if fastest > COARSEST / dt:
         raise FloatingPointError(too_coarse(dt, twist, fastest))

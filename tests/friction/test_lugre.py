@@ -148,6 +148,13 @@ def test_without_dry_friction_only_viscous_friction_is_left(speed: float) -> Non
     assert law.steady(speed) == pytest.approx(0.03 * speed, rel=1e-12)
 
 
+def test_a_bristle_has_some_reach_at_rest() -> None:
+    with pytest.raises(ValueError, match=r"^lugre: breakaway must be positive where coulomb is$"):
+        LuGre(coulomb=0.03, breakaway=0.0)
+    with pytest.raises(ValueError, match="breakaway must be positive where coulomb is"):
+        LuGre().replace(breakaway=0.0)
+
+
 @pytest.mark.parametrize("speed", [5e-324, 1e-300, 1e200, 1e300])
 def test_no_speed_is_too_extreme(speed: float) -> None:
     law = bristle()

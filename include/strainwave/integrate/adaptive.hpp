@@ -1,5 +1,5 @@
 #pragma once
-#include <strainwave/integrate/interval.hpp>
+#include <strainwave/integrate/event_driven.hpp>
 
 namespace strainwave::integrate {
 
@@ -10,16 +10,18 @@ struct Tolerance {
     double absolute = 1e-12;
 };
 
-/// Steps as long as a tolerance allows. The error of two steps is told by one of twice their length; both are of fourth order.
-/// Between its ends a step is known as exactly as there: by a step of part of its length. For scalars that are plain numbers.
-template <class S, class Drive, class Step>
+/// Steps as long as a tolerance allows, taken by `smooth`, which knows no events. The error of two steps is told by one of twice
+/// their length; both are of fourth order. A step ends where a side stops, breaks away or turns round, as it would find out itself,
+/// and where the twist turns round: the stages of one that went on would miss what the hysteresis makes of it, all alike. Between
+/// its ends a step is known as exactly as there: by a step of part of its length. For scalars that are plain numbers.
+template <class S, class Drive, class Smooth>
 class Adaptive {
     using Standing = typename Drive::Standing;
     static constexpr int n = size_of<S, typename Drive::Motion> + 1;
     using Measured = Array<S, n>;
 
     const Drive& drive;
-    const Step& step;
+    const Smooth& smooth;
     const Tolerance tolerance;
     Measured largest{};
     S next;  ///< length of the next step, s
@@ -30,8 +32,8 @@ public:
     /// Whether one of the shortest steps after the other missed the tolerance, where `through` ended.
     constexpr bool gave_up() const { return missed > most_missed; }
 
-    constexpr Adaptive(const Drive& drive_, const Step& step_, const Tolerance& tolerance_, const S& first)
-        : drive(drive_), step(step_), tolerance(tolerance_), next(first) {}
+    constexpr Adaptive(const Drive& drive_, const Smooth& smooth_, const Tolerance& tolerance_, const S& first)
+        : drive(drive_), smooth(smooth_), tolerance(tolerance_), next(first) {}
 
     /// The drive after the interval `u` of `dt` [s]. Calls within(from, half, end, done, middle, to) for each step taken: where it
     /// stands at these three fractions of the interval.
@@ -39,18 +41,24 @@ public:
     constexpr Standing through(Standing from, const Interval<S>& u, const S& dt, const Within& within) {
         S done{0.0};
         while (done < S(1.0)) {
+            from = drive.released(from, u.at(done, dt));
             // What is left is not cut so that a sliver remains.
             const S left = (S(1.0) - done) * dt, steps = left / next;
             const S length = steps <= S(1.0) ? left : steps < S(2.0) ? S(0.5) * left : next;
-            const S to = length < left ? done + length / dt : S(1.0), middle = S(0.5) * (done + to);
-            const Standing whole = step(drive, from, u.part(done, to, dt), (to - done) * dt);
-            const Standing half = step(drive, from, u.part(done, middle, dt), (middle - done) * dt);
-            const Standing end = step(drive, half, u.part(middle, to, dt), (to - middle) * dt);
-            const S error = this->error(whole, end) * S(forgetting) / (length + S(brief));
+            Trial tried = trial(from, u, dt, done, length < left ? done + length / dt : S(1.0));
+            const Stop stop = chatters() ? Stop{tried.to} : this->stop(from, tried, u, dt, done);
+            if (stop.event && (stop.at - done) * dt <= S(shortest)) {
+                from = settled(from, u.at(done, dt));
+                ++events;
+                continue;
+            }
+            const bool cut = stop.at < tried.to;
+            if (cut) tried = trial(from, u, dt, done, stop.at);
+            const S taken = (tried.to - done) * dt, error = this->error(from, tried, taken);
             // An error of what is not a number is larger than any; a step must not become nothing.
             const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), S(4.0)) : S(0.2);
-            next = max(length * factor, S(shortest));
             const bool kept = error <= S(1.0);
+            if (!cut || !kept) next = max(taken * factor, S(shortest));
             if (!kept && length > S(shortest)) {
                 ++rejected;
                 continue;
@@ -58,10 +66,13 @@ public:
             missed = kept ? 0 : missed + 1;
             if (missed > most_missed) return from;
             ++accepted;
-            within(from, half, end, done, middle, to);
-            note(end);
-            from = end;
-            done = to;
+            if (stop.event) tried.end = settled(tried.end, u.at(tried.to, dt));
+            if (stop.turn) drive.turn(tried.end.state);
+            events = taken > S(brief) || chatters() ? 0 : events + stop.event;
+            within(from, tried.half, tried.end, done, tried.middle, tried.to);
+            note(tried.end);
+            from = tried.end;
+            done = tried.to;
         }
         return from;
     }
@@ -74,6 +85,59 @@ private:
     static constexpr double brief = 1e-6;
     /// s. A drive forgets an error within about this time, so that errors of steps may add up to the tolerance over it.
     static constexpr double forgetting = 0.1;
+    int events = 0;  ///< each within a brief time of the other
+
+    /// Whether events follow so fast that the next step is one of Moreau and Jean's.
+    constexpr bool chatters() const { return events >= most_events; }
+
+    /// A step, and two of half its length.
+    struct Trial {
+        Standing whole, half, end;
+        S middle, to;
+    };
+    constexpr Trial trial(const Standing& from, const Interval<S>& u, const S& dt, const S& done, const S& to) const {
+        const S middle = S(0.5) * (done + to);
+        const Standing half = stretch(from, u, dt, done, middle);
+        return {stretch(from, u, dt, done, to), half, stretch(half, u, dt, middle, to), middle, to};
+    }
+    constexpr Standing stretch(const Standing& from, const Interval<S>& u, const S& dt, const S& begin, const S& end) const {
+        const Interval<S> part = u.part(begin, end, dt);
+        const S length = (end - begin) * dt;
+        if (chatters()) return drive.standing(moreau_jean_step(drive, from, part, length), part.end);
+        return smooth(drive, from, part, length);
+    }
+    constexpr Standing settled(const Standing& at, const Input<S>& u) const {
+        return drive.standing(drive.settled(at, u, true), u);
+    }
+
+    /// Where a step must end, as a fraction of the interval, and why.
+    struct Stop {
+        S at;
+        bool event = false, turn = false;
+    };
+    /// The first on the way of a trial; its end if there is none.
+    constexpr Stop stop(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt, const S& done) const {
+        const Stop early = stop(from, tried.half, u, dt, done, tried.middle);
+        const Stop found = early.event || early.turn ? early : stop(tried.half, tried.end, u, dt, tried.middle, tried.to);
+        // A turn at the very beginning is that of the step before.
+        return found.turn && (found.at - done) * dt <= S(shortest) ? Stop{tried.to} : found;
+    }
+    constexpr Stop stop(const Standing& start, const Standing& end, const Interval<S>& u, const S& dt, const S& from,
+                        const S& to) const {
+        Stop found{to};
+        const auto reach = [&](const S& fraction) { return stretch(start, u, dt, from, from + fraction * (to - from)); };
+        if (const S margin = drive.margin(end); margin < S(0.0)) {
+            const auto at = [&](const S& fraction) { return drive.margin(reach(fraction)); };
+            found = {from + crossing(at, S(0.0), drive.margin(start), margin) * (to - from), true, false};
+        }
+        if (drive.turned(start.state, end)) {
+            const S way = sign(start.state.held_rate);
+            const auto onward = [&](const S& fraction) { return way * reach(fraction).state.held_rate; };
+            const S turn = crossing(onward, S(0.0), way * start.state.held_rate, way * end.state.held_rate);
+            if (from + turn * (to - from) < found.at) found = {from + turn * (to - from), false, true};
+        }
+        return found;
+    }
 
     /// What is held to the tolerance: the motion, and the torque, which shows what the hysteresis remembers.
     constexpr Measured measured(const Standing& at) const {
@@ -83,18 +147,39 @@ private:
         found[n - 1] = at.flow.mesh.torque;
         return found;
     }
-    /// The error of `fine` in units of what is tolerated, the largest of all.
-    constexpr S error(Standing coarse, const Standing& fine) const {
+    /// The error of a step of some `length` [s] in units of what is tolerated, the largest of all: that of the two halves, a
+    /// fifteenth of how far the whole is off, in proportion to the step; and what contradicts it, however short the step.
+    constexpr S error(const Standing& from, const Trial& tried, const S& length) const {
+        Standing coarse = tried.whole;
         S& angle = coarse.state.motion.input_angle;
-        angle = angle + S(2.0 * pi) * (coarse.state.turns - fine.state.turns);
-        const Measured a = measured(coarse), b = measured(fine);
+        angle = angle + S(2.0 * pi) * (coarse.state.turns - tried.end.state.turns);
+        const Measured a = measured(coarse), b = measured(tried.end);
+        const auto against = flattened<S>(contradiction(from, tried, length));
+        const S share = S(forgetting / 15.0) / (length + S(brief));
         S worst{0.0};
+        const auto note = [&](const S& off) {
+            if (!(off <= worst) && worst == worst) worst = off;  // what is not a number stays
+        };
         for (int i = 0; i < n; ++i) {
             const S tolerated = S(tolerance.absolute) + S(tolerance.relative) * max(largest[i], abs(b[i]));
-            const S relative = abs(a[i] - b[i]) / (S(15.0) * tolerated);
-            if (!(relative <= worst) && worst == worst) worst = relative;  // what is not a number stays
+            note(abs(a[i] - b[i]) * share / tolerated);
+            if (i < against.size()) note(abs(against[i]) / tolerated);
         }
         return worst;
+    }
+    /// By how much the speeds miss Simpson's rule over the two halves: of the same order and size as what the whole is off, but
+    /// where a force kinks on the way, and whole and halves happen to agree, it does not vanish.
+    constexpr typename Drive::Motion contradiction(const Standing& from, const Trial& tried, const S& length) const {
+        typename Drive::Motion missed{};
+        if (chatters()) return missed;
+        const auto &begin = from.flow.rate, &middle = tried.half.flow.rate, &end = tried.end.flow.rate;
+        const auto rule = [&](const S& first, const S& second, const S& third) {
+            return length * S(1.0 / 6.0) * (first + S(4.0) * second + third);
+        };
+        const auto &y = from.state.motion, &z = tried.end.state.motion;
+        missed.input_speed = z.input_speed - y.input_speed - rule(begin.input_speed, middle.input_speed, end.input_speed);
+        missed.output_speed = z.output_speed - y.output_speed - rule(begin.output_speed, middle.output_speed, end.output_speed);
+        return missed;
     }
     constexpr void note(const Standing& at) {
         const Measured y = measured(at);
