@@ -6,6 +6,7 @@
 #include "narrow.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <new>
@@ -66,8 +67,24 @@ void check_bounds(const Drive& drive, const typename Drive::Standing& at, double
     });
 }
 
-/// How many steps pass between two calls of `pause`.
-inline constexpr std::size_t steps_between_pauses = 1 << 14;
+/// Calls `pause` some twenty times a second: a step may take a tenth of a microsecond, or milliseconds.
+class Pauses {
+    using Clock = std::chrono::steady_clock;
+    const Pause& pause;
+    Clock::time_point due{};
+
+public:
+    explicit Pauses(const Pause& pause_) : pause(pause_) {}
+
+    /// After `taken` steps, `done` of those to report.
+    void operator()(std::size_t taken, std::size_t done) {
+        if (taken % 64 != 0) return;  // to look at the clock takes as long as the fastest steps
+        const auto now = Clock::now();
+        if (now < due) return;
+        due = now + std::chrono::milliseconds(50);
+        pause(done);
+    }
+};
 
 /// A step without events, every call on the way inlined: worth its size where there is not too much to choose from.
 template <class S, class Drive>
@@ -88,12 +105,13 @@ template <class S, class Drive, class Record, class Advance>
 typename Drive::State run_compiled(const Drive& drive, const typename Drive::State& start, const Course& course, Record& record,
                                    const Pause& pause, const Advance& advance) {
     const bool has_bounds = drive.has_bounds();
+    Pauses pauses(pause);
     Interval<S> u = interval<S>(course.inputs);
     using Standing = typename Drive::Standing;
     Standing places[2]{drive.standing(drive.consistent(start), u.start), {}}, *here = places, *there = places + 1;
     if (has_bounds) check_bounds<S>(drive, *here, course.instants[0]);
     for (std::size_t i = 0; i < course.steps; ++i) {
-        if (i % steps_between_pauses == 0) pause(i);
+        pauses(i, i);
         if (i > 0) {
             const double *const inputs = course.inputs + 3 * driving * i, *const before = inputs - driving;
             u = interval<S>(inputs);

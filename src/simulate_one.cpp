@@ -62,8 +62,8 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     integrate::Adaptive<double, Compiled, decltype(smooth)> adaptive(drive, smooth, tolerance,
                                                                      1e-2 * (course.instants[1] - course.instants[0]));
     long taken = 0;
+    Pauses pauses(pause);
     for (std::size_t i = 0; i < course.steps; ++i) {
-        if (i % 256 == 0) pause(i);
         const Interval<double> u = interval<double>(course.inputs + 3 * driving * i);
         const double begin = course.instants[i], dt = course.instants[i + 1] - begin;
         const Standing start = drive.standing(x, u.start);
@@ -71,7 +71,7 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
         const auto within = [&](const Standing& from, const Standing& half, const Standing& end, double done, double middle,
                                 double to) {
             if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
-            if (++taken % steps_between_pauses == 0) pause(i);
+            pauses(taken++, i);
             if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
             while (record.k < wanted.count && wanted.at[record.k] <= until) {

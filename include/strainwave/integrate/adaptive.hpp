@@ -47,7 +47,7 @@ public:
             const S length = steps <= S(1.0) ? left : steps < S(2.0) ? S(0.5) * left : next;
             Trial tried = trial(from, u, dt, done, length < left ? done + length / dt : S(1.0));
             const Stop stop = chatters() ? Stop{tried.to} : this->stop(from, tried, u, dt, done);
-            if (stop.event && (stop.at - done) * dt <= S(shortest)) {
+            if (stop.event && stop.at == done) {
                 from = settled(from, u.at(done, dt));
                 ++events;
                 continue;
@@ -68,7 +68,7 @@ public:
             ++accepted;
             if (stop.event) tried.end = settled(tried.end, u.at(tried.to, dt));
             if (stop.turn) drive.turn(tried.end.state);
-            events = taken > S(brief) || chatters() ? 0 : events + stop.event;
+            events = chatters() ? most_events - 1 : taken > S(brief) ? 0 : events + stop.event;
             within(from, tried.half, tried.end, done, tried.middle, tried.to);
             note(tried.end);
             from = tried.end;
@@ -115,8 +115,10 @@ private:
         S at;
         bool event = false, turn = false;
     };
-    /// The first on the way of a trial; its end if there is none.
+    /// The first on the way of a trial; its end if there is none. An event within the shortest time is one at once.
     constexpr Stop stop(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt, const S& done) const {
+        if (drive.margin(tried.half) < S(0.0) && drive.margin(stretch(from, u, dt, done, done + S(shortest) / dt)) < S(0.0))
+            return {done, true};
         const Stop early = stop(from, tried.half, u, dt, done, tried.middle);
         const Stop found = early.event || early.turn ? early : stop(tried.half, tried.end, u, dt, tried.middle, tried.to);
         // A turn at the very beginning is that of the step before.
