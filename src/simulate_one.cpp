@@ -54,9 +54,6 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
                                         Steps& steps, const Pause& pause) {
     using Standing = typename Compiled::Standing;
     const bool has_bounds = drive.has_bounds();
-    const auto advance = [](const Compiled& moved, const Standing& from, const Interval<double>& u, double dt) {
-        return step(moved, from, u, dt, called_step<double, Compiled>);
-    };
     x = drive.consistent(x);
     const auto smooth = called_step<double, Compiled>;
     integrate::Adaptive<double, Compiled, decltype(smooth)> adaptive(drive, smooth, tolerance,
@@ -68,18 +65,14 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
         const double begin = course.instants[i], dt = course.instants[i + 1] - begin;
         const Standing start = drive.standing(x, u.start);
         if (has_bounds) check_bounds<double>(drive, start, begin);
-        const auto within = [&](const Standing& from, const Standing& half, const Standing& end, double done, double middle,
-                                double to) {
+        const auto within = [&](double done, double to, const Standing& end, const auto& standing_at) {
             if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
             pauses(taken++, i);
             if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
             while (record.k < wanted.count && wanted.at[record.k] <= until) {
                 const double at = clip((wanted.at[record.k] - begin) / dt, done, to);
-                const Standing there = at == to      ? end
-                                       : at < middle ? advance(drive, from, u.part(done, at, dt), (at - done) * dt)
-                                                     : advance(drive, half, u.part(middle, at, dt), (at - middle) * dt);
-                record(drive.output(there, u.at(at, dt)));
+                record(drive.output(standing_at(at), u.at(at, dt)));
             }
         };
         x = adaptive.through(start, u, dt, within).state;

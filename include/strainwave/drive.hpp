@@ -286,7 +286,8 @@ struct PositionDrive {
         x.held_rate = now.twist_rate;
     }
 
-    /// Whether the twist has turned round since `before`, and the hysteresis gives another torque than had it gone straight.
+    /// Whether the twist has turned round since `before`, and the hysteresis gives another torque than had it gone straight, be it
+    /// by rounding.
     constexpr bool turned(const State& before, const Standing& now) const {
         if (!(before.held_rate * now.state.held_rate < S(0.0))) return false;
         return gear.hysteresis.torque(before.hysteresis, now.state.held_twist - before.held_twist) !=

@@ -448,7 +448,8 @@ class LuGre:
     sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous, phi = damping_fading: the reciprocal of the
     speed v_d at which the bristle's damping has fallen to 1/e, 0 for a constant one.
 
-    Valid for one contact under constant load; leaves out load, position and temperature. Dissipates for every motion if
+    Valid for one contact under constant load; leaves out load, position and temperature. G must be positive: a bristle
+    without reach at rest would lose all its torque in every reversal, in no time. Dissipates for every motion if
     sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then
     also necessary. A set that violates this is accepted, and ``check()`` warns with both sides.
 

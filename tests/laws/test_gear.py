@@ -18,7 +18,7 @@ from strainwave.friction import LuGre, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
-from tests.strategies import built, gears, models
+from tests.strategies import built, drives, gears, models
 
 Array = NDArray[np.float64]
 
@@ -367,3 +367,9 @@ def test_what_sticks_holds_no_more_than_its_breakaway(
     parts: dict[str, Any] = {**dict.fromkeys(PLACES, sw.friction.Viscous()), place: law}
     run = resolved(DRIVE.replace(gear=GEAR.replace(**parts)), command, load_torque=load)
     assert np.abs(run[place]).max() <= breakaway * (1.0 + 1e-14)
+
+
+@given(drives, st.floats(0.0, 1e9))
+def test_a_drive_is_never_slower_at_large_twists_than_at_rest(drive: PositionDrive, twist: float) -> None:
+    """Else a run away to them would be taken for one that its steps can follow."""
+    assert _core.fastest(drive, twist) >= _core.fastest(drive, 0.0)

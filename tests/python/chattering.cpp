@@ -30,13 +30,16 @@ struct Chattering : Base {
     }
 };
 
+template <class S, class Hysteresis, class FrictionOutput>
+using Drive =
+    PositionDrive<S,
+                  strainwave::Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
+                                   stiffness::Linear<S>, Hysteresis, friction::Coulomb<S>, friction::Viscous<S>, FrictionOutput>,
+                  motor::DC<S>, control::OpenLoop<S>, load::Inertia<S>>;
+
 template <class S>
 auto made(const S& wall) {
-    using Sticking = friction::Coulomb<S>;
-    using Smooth = friction::Viscous<S>;
-    using Spring = strainwave::Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
-                                    stiffness::Linear<S>, hysteresis::MaxwellSlip<S>, Sticking, Smooth, Sticking>;
-    PositionDrive<S, Spring, motor::DC<S>, control::OpenLoop<S>, load::Inertia<S>> drive{};
+    Drive<S, hysteresis::MaxwellSlip<S>, friction::Coulomb<S>> drive{};
     drive.gear.kinematics.reduction = S(100.0);
     drive.gear.stiffness.k = S(1.2e4);
     drive.gear.damping = S(10.0);
@@ -92,6 +95,67 @@ int different(const double (&walls)[8], int steps) {
     return count;
 }
 
+template <class D>
+typename D::Standing smooth_step(const D& drive, const typename D::Standing& from, const Interval<double>& u, double dt) {
+    return drive.standing(integrate::exponential_step(drive, from, u, dt), u.end);
+}
+
+/// A tenth of a second in steps that keep a tolerance; tells how many end later than an event too.
+void run_adaptively(double wall) {
+    const auto drive = made<double>(wall);
+    using Chatters = std::remove_cv_t<decltype(drive)>;
+    const auto smooth = smooth_step<Chatters>;
+    integrate::Adaptive<double, Chatters, decltype(smooth)> adaptive(drive, smooth, {1e-6, 1e-12}, 1e-5);
+    int late = 0;
+    auto x = drive.rest();
+    const int intervals = 1000;
+    const double dt = 0.1 / intervals;
+    for (int i = 0; i < intervals; ++i) {
+        const Interval<double> u{voltage<double>(i * dt), voltage<double>((i + 0.5) * dt), voltage<double>((i + 1) * dt)};
+        const auto within = [&](double, double, const typename Chatters::Standing& end, const auto&) {
+            late += wall == unbounded && drive.margin(end) < -1e-9;
+        };
+        x = adaptive.through(drive.standing(x, u.start), u, dt, within).state;
+    }
+    std::printf("%d %d %ld %ld", late, drive.events, adaptive.accepted, adaptive.rejected);
+    const auto y = flattened<double>(x.motion);
+    for (int i = 0; i < y.size(); ++i) std::printf(" %.17g", y[i]);
+    std::printf("\n");
+}
+
+/// How many steps that keep a tolerance end later than an event, of a gear that has all but settled when it is moved anew: its
+/// twist often turns round at once then.
+int late_after_settling() {
+    Drive<double, hysteresis::BoucWen<double>, friction::Viscous<double>> made{};
+    made.gear.kinematics.reduction = 100.0;
+    made.gear.stiffness.k = 1.2e4;
+    made.gear.damping = 60.0;
+    made.gear.hysteresis.stiffness = 5e3;
+    made.gear.hysteresis.saturation = 5.0;
+    made.gear.friction_input = {0.03, 0.045, 1e-4};
+    made.gear.friction_output = {2.0};
+    made.motor = {0.5, 2e-3, 0.1, 0.1, 1e-4};
+    made.load.inertia = 0.5;
+    const auto drive = made.compile();
+    using Settling = std::remove_cv_t<decltype(drive)>;
+    const auto smooth = smooth_step<Settling>;
+    int late = 0;
+    for (int k = 0; k < 400; ++k) {
+        integrate::Adaptive<double, Settling, decltype(smooth)> adaptive(drive, smooth, {1e-6, 1e-12}, 1e-4);
+        const auto within = [&](double, double, const typename Settling::Standing& end, const auto&) {
+            late += drive.margin(end) < -1e-9;
+        };
+        Input<double> before{}, after{};
+        before.load_torque = 1.0;
+        after.load_torque = k % 2 ? 2.0 : 0.0;
+        after.command = 10.0;
+        const Interval<double> settling{before, before, before}, moving{after, after, after};
+        const auto settled = adaptive.through(drive.standing(drive.rest(), before), settling, 0.25 + 1e-3 * k, within);
+        adaptive.through(drive.standing(settled.state, after), moving, 0.005, within);
+    }
+    return late;
+}
+
 int main() {
     for (const double wall : {unbounded, 0.6})
         for (const int steps : {100, 200, 400, 800}) {
@@ -102,4 +166,7 @@ int main() {
             std::printf("\n");
         }
     std::printf("%d\n", different({0.2, 0.6, 1.0, 1.4, 1.8, unbounded, 2.6, unbounded}, 100));
+    run_adaptively(unbounded);
+    run_adaptively(0.6);
+    std::printf("%d\n", late_after_settling());
 }

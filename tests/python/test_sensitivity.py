@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -65,6 +66,17 @@ def test_the_path_of_a_sequence_is_all_its_elements() -> None:
     assert found.values.shape == (3, len(found.run.names) - 1, len(found.run))
     angle = found.run["input_angle"]
     assert found["kinematic_error", "gear.kinematic_error.amplitude[1]"][0] == pytest.approx(np.sin(2.0 * angle[0] + 0.5))
+
+
+def test_steps_too_coarse_at_rest_are_refused_as_they_are_of_a_run() -> None:
+    """Of a hysteresis that is stiff at first, and lets go in a run that steps cannot follow."""
+    sudden = sw.hysteresis.BoucWen(stiffness=1e7, saturation=0.1)
+    drive = sw.drives.PositionDrive(gear=sw.Gear(hysteresis=sudden), load=sw.loads.Inertia(inertia=0.01))
+    volts = sw.scenario.constant(10.0, 0.1)
+    with pytest.raises(FloatingPointError, match="too coarse for this drive") as refusal:
+        sw.simulate(drive, volts)
+    with pytest.raises(FloatingPointError, match=re.escape(str(refusal.value))):
+        sw.derivatives(drive, volts, ["load.inertia"])
 
 
 def test_what_there_is_not_is_refused_with_what_there_is() -> None:

@@ -48,7 +48,7 @@ struct LuGre {
     }
 
     constexpr const char* problem() const {
-        return all(breakaway > S(0.0)) || !any(coulomb > S(0.0)) ? nullptr : "breakaway must be positive where coulomb is";
+        return all((breakaway > S(0.0)) | !(coulomb > S(0.0))) ? nullptr : "breakaway must be positive where coulomb is";
     }
 
     struct State {

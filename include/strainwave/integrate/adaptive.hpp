@@ -10,10 +10,11 @@ struct Tolerance {
     double absolute = 1e-12;
 };
 
-/// Steps as long as a tolerance allows, taken by `smooth`, which knows no events. The error of two steps is told by one of twice
-/// their length; both are of fourth order. A step ends where a side stops, breaks away or turns round, as it would find out itself,
-/// and where the twist turns round: the stages of one that went on would miss what the hysteresis makes of it, all alike. Between
-/// its ends a step is known as exactly as there: by a step of part of its length. For scalars that are plain numbers.
+/// Steps as long as a tolerance allows, taken by `smooth`, which knows no events and is of fourth order; by Moreau and Jean's
+/// scheme where events chatter. The error of two steps is told by one of twice their length. A step ends where a side stops, breaks
+/// away or turns round, as it would find out itself, and where the twist turns round: the stages of one that went on would miss
+/// what the hysteresis makes of it, all alike. Between its ends a step is known as exactly as there: by a step of part of its
+/// length. For scalars that are plain numbers.
 template <class S, class Drive, class Smooth>
 class Adaptive {
     using Standing = typename Drive::Standing;
@@ -35,8 +36,8 @@ public:
     constexpr Adaptive(const Drive& drive_, const Smooth& smooth_, const Tolerance& tolerance_, const S& first)
         : drive(drive_), smooth(smooth_), tolerance(tolerance_), next(first) {}
 
-    /// The drive after the interval `u` of `dt` [s]. Calls within(from, half, end, done, middle, to) for each step taken: where it
-    /// stands at these three fractions of the interval.
+    /// The drive after the interval `u` of `dt` [s]. Calls within(done, to, end, at) for each step taken: between which fractions
+    /// of the interval, where the drive stands at its end, and a function that tells where at any fraction in between.
     template <class Within>
     constexpr Standing through(Standing from, const Interval<S>& u, const S& dt, const Within& within) {
         S done{0.0};
@@ -48,7 +49,7 @@ public:
             Trial tried = trial(from, u, dt, done, length < left ? done + length / dt : S(1.0));
             const Stop stop = chatters() ? Stop{tried.to} : this->stop(from, tried, u, dt, done);
             if (stop.event && stop.at == done) {
-                from = settled(from, u.at(done, dt));
+                from = settled(from, stop.met, u.at(done, dt));
                 ++events;
                 continue;
             }
@@ -66,11 +67,14 @@ public:
             missed = kept ? 0 : missed + 1;
             if (missed > most_missed) return from;
             ++accepted;
-            if (stop.event) tried.end = settled(tried.end, u.at(tried.to, dt));
+            if (stop.event) tried.end = settled(tried.end, stop.met, u.at(tried.to, dt));
             if (stop.turn) drive.turn(tried.end.state);
-            events = chatters() ? most_events - 1 : taken > S(brief) ? 0 : events + stop.event;
-            within(from, tried.half, tried.end, done, tried.middle, tried.to);
-            note(tried.end);
+            within(done, tried.to, tried.end, [&](const S& at) {
+                if (at == tried.to) return tried.end;
+                return at < tried.middle ? stretch(from, u, dt, done, at) : stretch(tried.half, u, dt, tried.middle, at);
+            });
+            events = chatters() ? most_events - 1 : taken > S(brief) ? stop.event : events + stop.event;
+            if (kept) note(tried.end);
             from = tried.end;
             done = tried.to;
         }
@@ -106,23 +110,35 @@ private:
         if (chatters()) return drive.standing(moreau_jean_step(drive, from, part, length), part.end);
         return smooth(drive, from, part, length);
     }
-    constexpr Standing settled(const Standing& at, const Input<S>& u) const {
-        return drive.standing(drive.settled(at, u, true), u);
+    /// At an event that was met close by: what happens is decided there, for friction that holds one way only may not tell here.
+    constexpr Standing settled(const Standing& at, const Standing& met, const Input<S>& u) const {
+        const auto after = drive.settled(met, u, true);
+        auto x = at.state;
+        if (after.sliding_input != met.state.sliding_input || after.motion.input_speed != met.state.motion.input_speed) {
+            x.sliding_input = after.sliding_input;
+            x.motion.input_speed = after.motion.input_speed;
+        }
+        if (after.sliding_output != met.state.sliding_output || after.motion.output_speed != met.state.motion.output_speed) {
+            x.sliding_output = after.sliding_output;
+            x.motion.output_speed = after.motion.output_speed;
+        }
+        return drive.standing(x, u);
     }
 
-    /// Where a step must end, as a fraction of the interval, and why.
+    /// Where a step must end, as a fraction of the interval, and why; and where the drive meets the event.
     struct Stop {
         S at;
         bool event = false, turn = false;
+        Standing met{};
     };
     /// The first on the way of a trial; its end if there is none. An event within the shortest time is one at once.
     constexpr Stop stop(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt, const S& done) const {
-        if (drive.margin(tried.half) < S(0.0) && drive.margin(stretch(from, u, dt, done, done + S(shortest) / dt)) < S(0.0))
-            return {done, true};
+        if (drive.margin(tried.half) < S(0.0)) {
+            const Standing soon = stretch(from, u, dt, done, done + S(shortest) / dt);
+            if (drive.margin(soon) < S(0.0)) return {done, true, false, soon};
+        }
         const Stop early = stop(from, tried.half, u, dt, done, tried.middle);
-        const Stop found = early.event || early.turn ? early : stop(tried.half, tried.end, u, dt, tried.middle, tried.to);
-        // A turn at the very beginning is that of the step before.
-        return found.turn && (found.at - done) * dt <= S(shortest) ? Stop{tried.to} : found;
+        return early.event || early.turn ? early : stop(tried.half, tried.end, u, dt, tried.middle, tried.to);
     }
     constexpr Stop stop(const Standing& start, const Standing& end, const Interval<S>& u, const S& dt, const S& from,
                         const S& to) const {
@@ -130,13 +146,15 @@ private:
         const auto reach = [&](const S& fraction) { return stretch(start, u, dt, from, from + fraction * (to - from)); };
         if (const S margin = drive.margin(end); margin < S(0.0)) {
             const auto at = [&](const S& fraction) { return drive.margin(reach(fraction)); };
-            found = {from + crossing(at, S(0.0), drive.margin(start), margin) * (to - from), true, false};
+            const S moment = crossing(at, S(0.0), drive.margin(start), margin);
+            found = {from + moment * (to - from), true, false, reach(moment)};
         }
         if (drive.turned(start.state, end)) {
             const S way = sign(start.state.held_rate);
             const auto onward = [&](const S& fraction) { return way * reach(fraction).state.held_rate; };
-            const S turn = crossing(onward, S(0.0), way * start.state.held_rate, way * end.state.held_rate);
-            if (from + turn * (to - from) < found.at) found = {from + turn * (to - from), false, true};
+            const S turn = crossing(onward, S(0.0), way * start.state.held_rate, way * end.state.held_rate) * (to - from);
+            // One at the very beginning lies behind.
+            if (turn * dt > S(shortest) && from + turn < found.at) found = {from + turn, false, true};
         }
         return found;
     }
@@ -149,15 +167,15 @@ private:
         found[n - 1] = at.flow.mesh.torque;
         return found;
     }
-    /// The error of a step of some `length` [s] in units of what is tolerated, the largest of all: that of the two halves, a
-    /// fifteenth of how far the whole is off, in proportion to the step; and what contradicts it, however short the step.
+    /// The error of a step of some `length` [s] in units of what is tolerated, the largest of all: that of the two halves, by
+    /// how far the whole is off, in proportion to the step; and what contradicts it, however short the step.
     constexpr S error(const Standing& from, const Trial& tried, const S& length) const {
         Standing coarse = tried.whole;
         S& angle = coarse.state.motion.input_angle;
         angle = angle + S(2.0 * pi) * (coarse.state.turns - tried.end.state.turns);
         const Measured a = measured(coarse), b = measured(tried.end);
         const auto against = flattened<S>(contradiction(from, tried, length));
-        const S share = S(forgetting / 15.0) / (length + S(brief));
+        const S share = S(forgetting / (chatters() ? 3.0 : 15.0)) / (length + S(brief));
         S worst{0.0};
         const auto note = [&](const S& off) {
             if (!(off <= worst) && worst == worst) worst = off;  // what is not a number stays
