@@ -293,8 +293,9 @@ def simulate_adaptively(
 ) -> Run:
     """Runs a drive through a command in steps as long as a tolerance allows.
 
-    The steps are those of `simulate`'s exponential method, events included; two of half the length tell the error of one.
-    Samples lie anywhere within steps: there a step of part of the length gives the state, as exactly as at the ends.
+    The steps are those of `simulate`'s exponential method. Each ends where a side stops, breaks away or turns round, and where
+    the twist does; two of half the length tell its error. Samples lie anywhere within steps: there a step of part of the
+    length gives the state, as exactly as at the ends.
 
     Args:
         drive, command, load_torque, temperature, start, progress: as for `simulate`
@@ -302,8 +303,8 @@ def simulate_adaptively(
             current, state of the controller, bristles) and in the torque, relative to the largest it has been so far
         atol: error tolerated besides, in the unit of each
         sample: distance of samples in the recording [s]
-        most_steps: after how many the run gives up. One takes some microseconds,
-            where friction chatters thousands of times as long
+        most_steps: after how many the run gives up. One takes some microseconds; where friction chatters, or laws with many
+            states stick and slip, up to a millisecond
 
     Returns:
         as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
