@@ -417,6 +417,17 @@ struct PositionDrive {
         return x;
     }
 
+    /// A drive whose event was settled in a state close by, `after` which its sides stand or slide: at the event itself friction
+    /// that holds one way only may not tell.
+    constexpr Standing as_settled(const Standing& at, const State& after, const Input<S>& u) const {
+        State x = at.state;
+        x.sliding_input = after.sliding_input;
+        x.sliding_output = after.sliding_output;
+        x.motion.input_speed = select(after.motion.input_speed == S(0.0), S(0.0), x.motion.input_speed);
+        x.motion.output_speed = select(after.motion.output_speed == S(0.0), S(0.0), x.motion.output_speed);
+        return standing(x, u);
+    }
+
     /// Whether every part is valid where the drive stands; visit(part, Domain) of those that may not be.
     template <class Visit>
     constexpr void bounds(const Flow& now, Visit&& visit) const {

@@ -46,35 +46,27 @@ public:
             // What is left is not cut so that a sliver remains.
             const S left = (S(1.0) - done) * dt, steps = left / next;
             const S length = steps <= S(1.0) ? left : steps < S(2.0) ? S(0.5) * left : next;
-            Trial tried = trial(from, u, dt, done, length < left ? done + length / dt : S(1.0));
-            const Stop stop = chatters() ? Stop{tried.to} : this->stop(from, tried, u, dt, done);
+            const Trial planned = trial(from, u, dt, done, length < left ? done + length / dt : S(1.0));
+            const Stop stop = chatters() ? Stop{planned.to} : this->stop(from, planned, u, dt);
+            const auto settled = [&](const Standing& at) {
+                const Input<S> then = u.at(stop.at, dt);
+                return drive.as_settled(at, drive.settled(along(from, planned, u, dt, stop.met), then, true), then);
+            };
             if (stop.event && stop.at == done) {
-                from = settled(from, stop.met, u.at(done, dt));
+                from = settled(from);
                 ++events;
                 continue;
             }
-            const bool cut = stop.at < tried.to;
-            if (cut) tried = trial(from, u, dt, done, stop.at);
-            const S taken = (tried.to - done) * dt, error = this->error(from, tried, taken);
-            // An error of what is not a number is larger than any; a step must not become nothing.
-            const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), S(4.0)) : S(0.2);
-            const bool kept = error <= S(1.0);
-            if (!cut || !kept) next = max(taken * factor, S(shortest));
-            if (!kept && length > S(shortest)) {
-                ++rejected;
-                continue;
-            }
-            missed = kept ? 0 : missed + 1;
-            if (missed > most_missed) return from;
-            ++accepted;
-            if (stop.event) tried.end = settled(tried.end, stop.met, u.at(tried.to, dt));
+            const bool cut = stop.at < planned.to;
+            Trial tried = cut ? trial(from, u, dt, done, stop.at) : planned;
+            const S taken = (tried.to - done) * dt;
+            if (!stands(error(from, tried, taken), taken, cut)) continue;
+            if (gave_up()) return from;
+            if (stop.event) tried.end = settled(tried.end);
             if (stop.turn) drive.turn(tried.end.state);
-            within(done, tried.to, tried.end, [&](const S& at) {
-                if (at == tried.to) return tried.end;
-                return at < tried.middle ? stretch(from, u, dt, done, at) : stretch(tried.half, u, dt, tried.middle, at);
-            });
+            within(done, tried.to, tried.end, [&](const S& at) { return along(from, tried, u, dt, at); });
             events = chatters() ? most_events - 1 : taken > S(brief) ? stop.event : events + stop.event;
-            if (kept) note(tried.end);
+            if (missed == 0) note(tried.end);
             from = tried.end;
             done = tried.to;
         }
@@ -94,15 +86,32 @@ private:
     /// Whether events follow so fast that the next step is one of Moreau and Jean's.
     constexpr bool chatters() const { return events >= most_events; }
 
-    /// A step, and two of half its length.
+    /// Whether a step of some `length` [s] that misses so much may stand, be it as one of the shortest; and how long the next one
+    /// is. What an event or a turn has `cut` says nothing of longer ones.
+    constexpr bool stands(const S& error, const S& length, bool cut) {
+        // An error of what is not a number is larger than any; a step must not become nothing.
+        const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), S(4.0)) : S(0.2);
+        const bool kept = error <= S(1.0), last = next <= S(shortest);
+        if (!cut || !kept) next = max(length * factor, S(shortest));
+        ++(kept || last ? accepted : rejected);
+        if (kept || last) missed = kept ? 0 : missed + 1;
+        return kept || last;
+    }
+
+    /// A step between two fractions of the interval, and two of half its length.
     struct Trial {
         Standing whole, half, end;
-        S middle, to;
+        S begin, middle, to;
     };
-    constexpr Trial trial(const Standing& from, const Interval<S>& u, const S& dt, const S& done, const S& to) const {
-        const S middle = S(0.5) * (done + to);
-        const Standing half = stretch(from, u, dt, done, middle);
-        return {stretch(from, u, dt, done, to), half, stretch(half, u, dt, middle, to), middle, to};
+    constexpr Trial trial(const Standing& from, const Interval<S>& u, const S& dt, const S& begin, const S& to) const {
+        const S middle = S(0.5) * (begin + to);
+        const Standing half = stretch(from, u, dt, begin, middle);
+        return {stretch(from, u, dt, begin, to), half, stretch(half, u, dt, middle, to), begin, middle, to};
+    }
+    /// Where the drive stands on the way of a trial.
+    constexpr Standing along(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt, const S& at) const {
+        if (at == tried.to) return tried.end;
+        return at < tried.middle ? stretch(from, u, dt, tried.begin, at) : stretch(tried.half, u, dt, tried.middle, at);
     }
     constexpr Standing stretch(const Standing& from, const Interval<S>& u, const S& dt, const S& begin, const S& end) const {
         const Interval<S> part = u.part(begin, end, dt);
@@ -110,34 +119,16 @@ private:
         if (chatters()) return drive.standing(moreau_jean_step(drive, from, part, length), part.end);
         return smooth(drive, from, part, length);
     }
-    /// At an event that was met close by: what happens is decided there, for friction that holds one way only may not tell here.
-    constexpr Standing settled(const Standing& at, const Standing& met, const Input<S>& u) const {
-        const auto after = drive.settled(met, u, true);
-        auto x = at.state;
-        if (after.sliding_input != met.state.sliding_input || after.motion.input_speed != met.state.motion.input_speed) {
-            x.sliding_input = after.sliding_input;
-            x.motion.input_speed = after.motion.input_speed;
-        }
-        if (after.sliding_output != met.state.sliding_output || after.motion.output_speed != met.state.motion.output_speed) {
-            x.sliding_output = after.sliding_output;
-            x.motion.output_speed = after.motion.output_speed;
-        }
-        return drive.standing(x, u);
-    }
 
-    /// Where a step must end, as a fraction of the interval, and why; and where the drive meets the event.
+    /// Where a step must end, as a fraction of the interval, and why; and where it is seen that an event was met.
     struct Stop {
         S at;
         bool event = false, turn = false;
-        Standing met{};
+        S met{0.0};
     };
-    /// The first on the way of a trial; its end if there is none. An event within the shortest time is one at once.
-    constexpr Stop stop(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt, const S& done) const {
-        if (drive.margin(tried.half) < S(0.0)) {
-            const Standing soon = stretch(from, u, dt, done, done + S(shortest) / dt);
-            if (drive.margin(soon) < S(0.0)) return {done, true, false, soon};
-        }
-        const Stop early = stop(from, tried.half, u, dt, done, tried.middle);
+    /// The first on the way of a trial; its end if there is none.
+    constexpr Stop stop(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt) const {
+        const Stop early = stop(from, tried.half, u, dt, tried.begin, tried.middle);
         return early.event || early.turn ? early : stop(tried.half, tried.end, u, dt, tried.middle, tried.to);
     }
     constexpr Stop stop(const Standing& start, const Standing& end, const Interval<S>& u, const S& dt, const S& from,
@@ -146,8 +137,12 @@ private:
         const auto reach = [&](const S& fraction) { return stretch(start, u, dt, from, from + fraction * (to - from)); };
         if (const S margin = drive.margin(end); margin < S(0.0)) {
             const auto at = [&](const S& fraction) { return drive.margin(reach(fraction)); };
-            const S moment = crossing(at, S(0.0), drive.margin(start), margin);
-            found = {from + moment * (to - from), true, false, reach(moment)};
+            // An event within the shortest time is one at once.
+            const S soon = min(S(shortest) / ((to - from) * dt), S(1.0));
+            const bool at_once = at(soon) < S(0.0);
+            const S moment = at_once ? soon : crossing(at, S(0.0), drive.margin(start), margin);
+            const S met = from + moment * (to - from);
+            found = {at_once ? from : met, true, false, met};
         }
         if (drive.turned(start.state, end)) {
             const S way = sign(start.state.held_rate);
