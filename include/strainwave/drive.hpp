@@ -2,6 +2,7 @@
 #include <strainwave/condition.hpp>
 #include <strainwave/control/reference.hpp>
 #include <strainwave/friction/contact.hpp>
+#include <strainwave/friction/sticking.hpp>
 #include <strainwave/gear.hpp>
 
 namespace strainwave {
@@ -286,16 +287,6 @@ struct PositionDrive {
         x.held_rate = now.twist_rate;
     }
 
-    /// Whether the twist has turned round since `before`, and the hysteresis gives another torque than had it gone straight, be it
-    /// by rounding.
-    constexpr bool turned(const State& before, const Standing& now) const {
-        if (!(before.held_rate * now.state.held_rate < S(0.0))) return false;
-        return gear.hysteresis.torque(before.hysteresis, now.state.held_twist - before.held_twist) !=
-               gear.hysteresis.torque(now.state.hysteresis, S(0.0));
-    }
-    /// The twist stands still here, to turn round.
-    constexpr void turn(State& x) const { x.held_rate = S(0.0); }
-
     /// The state becomes that `dt` [s] after it was remembered: its input angle within its turn, whole turns counted.
     constexpr void wrap(State& x, const S& dt) const {
         x.elapsed = dt;
@@ -306,8 +297,8 @@ struct PositionDrive {
 
     /// A state from outside, with each side's sense of sliding as its speed and its law have it.
     constexpr State consistent(State x) const {
-        x.sliding_input = sense_of(input_sticks(), x.motion.input_speed, x.sliding_input);
-        x.sliding_output = sense_of(output_sticks(), x.motion.output_speed, x.sliding_output);
+        x.sliding_input = input_sticks() ? friction::sense_at(x.motion.input_speed, x.sliding_input) : S(1.0);
+        x.sliding_output = output_sticks() ? friction::sense_at(x.motion.output_speed, x.sliding_output) : S(1.0);
         return x;
     }
 
@@ -349,22 +340,24 @@ struct PositionDrive {
     /// Whether a side can stick.
     constexpr bool set_valued() const { return input_sticks() || output_sticks(); }
 
+    /// Whether a side sticks, in any lane.
+    constexpr bool sticks(const State& x) const {
+        return (input_sticks() && any(x.sliding_input == S(0.0))) || (output_sticks() && any(x.sliding_output == S(0.0)));
+    }
+
     /// How far both sides are from changing between sticking and sliding; below zero, one has.
     constexpr S margin(const Standing& at) const { return min(margin_input(at.state, at.flow), margin_output(at.state, at.flow)); }
 
-    /// Sides that stick and are driven beyond what their friction holds set off.
+    /// Whether a side that sticks is driven beyond what its friction holds, in any lane.
+    constexpr bool sets_off(const Standing& at) const {
+        return sticks(at.state) && ((input_sticks() && any(input_sets_off(at))) || (output_sticks() && any(output_sets_off(at))));
+    }
+
+    /// The same with those sides sliding.
     constexpr Standing released(const Standing& at, const Input<S>& u) const {
-        const auto off = [](const S& sliding, const S& hold, const S& balance) {
-            return (sliding == S(0.0)) & (hold < abs(balance));
-        };
         State x = at.state;
-        const Flow& now = at.flow;
-        if (!sticks(x)) return at;
-        const auto input = off(x.sliding_input, hold_input(now), now.input_balance);
-        const auto output = off(x.sliding_output, hold_output(now), now.output_balance);
-        if (!(input_sticks() && any(input)) && !(output_sticks() && any(output))) return at;
-        if (input_sticks()) x.sliding_input = select(input, sign(now.input_balance), x.sliding_input);
-        if (output_sticks()) x.sliding_output = select(output, sign(now.output_balance), x.sliding_output);
+        if (input_sticks()) x.sliding_input = select(input_sets_off(at), sign(at.flow.input_balance), x.sliding_input);
+        if (output_sticks()) x.sliding_output = select(output_sets_off(at), sign(at.flow.output_balance), x.sliding_output);
         return standing(x, u);
     }
 
@@ -373,22 +366,14 @@ struct PositionDrive {
     constexpr State arriving(const State& x, const Motion& end, const Flow& now, const S& dt) const {
         State y = x;
         y.motion = end;
-        const auto input_friction = [&](const S& sense) {
-            const Contact mesh = now.contacts.mesh.pushed(along(now.mesh.per_input, sense));
-            return sliding(gear.friction_input, x.motion.friction_input, now.contacts.input.pushed(sense)) +
-                   sliding(gear.friction_mesh, x.motion.friction_mesh, mesh) * now.mesh.per_input;
-        };
-        const auto output_friction = [&](const S& sense) {
-            return sliding(gear.friction_output, x.motion.friction_output, now.contacts.output.pushed(sense));
-        };
-        const S hold_input = input_sticks() ? this->hold_input(now) : S(0.0);
-        const S hold_output = output_sticks() ? this->hold_output(now) : S(0.0);
-        const Arrival input =
-            arrival(input_sticks(), x.sliding_input, x.motion.input_speed * input_inertia(), now.input_balance * dt,
-                    hold_input * dt, [&](const S& sense) { return input_friction(sense) * dt; });
-        const Arrival output =
-            arrival(output_sticks(), x.sliding_output, x.motion.output_speed * inertia_of(load), now.output_balance * dt,
-                    hold_output * dt, [&](const S& sense) { return output_friction(sense) * dt; });
+        friction::Arrival<S> input{x.motion.input_speed * input_inertia() + now.input_balance * dt, x.sliding_input};
+        if (input_sticks())
+            input = friction::arrival(x.sliding_input, x.motion.input_speed * input_inertia(), now.input_balance * dt,
+                                      hold_input(now) * dt, [&](const S& sense) { return input_friction(x, now, sense) * dt; });
+        friction::Arrival<S> output{x.motion.output_speed * inertia_of(load) + now.output_balance * dt, x.sliding_output};
+        if (output_sticks())
+            output = friction::arrival(x.sliding_output, x.motion.output_speed * inertia_of(load), now.output_balance * dt,
+                                       hold_output(now) * dt, [&](const S& sense) { return output_friction(x, now, sense) * dt; });
         y.sliding_input = input.sliding;
         y.sliding_output = output.sliding;
         y.motion.input_speed = input.momentum / input_inertia();
@@ -412,8 +397,9 @@ struct PositionDrive {
         x.motion.input_speed = select(input_stops, S(0.0), x.motion.input_speed);
         x.motion.output_speed = select(output_stops, S(0.0), x.motion.output_speed);
         const Flow now = standing(x, u).flow;
-        x.sliding_input = select(at_input, sense(now.input_balance, hold_input(now), input_stops), x.sliding_input);
-        x.sliding_output = select(at_output, sense(now.output_balance, hold_output(now), output_stops), x.sliding_output);
+        x.sliding_input = select(at_input, friction::sense_after(now.input_balance, hold_input(now), input_stops), x.sliding_input);
+        x.sliding_output =
+            select(at_output, friction::sense_after(now.output_balance, hold_output(now), output_stops), x.sliding_output);
         return x;
     }
 
@@ -453,8 +439,8 @@ struct PositionDrive {
         const State& x = at.state;
         const Flow& now = at.flow;
         const Motion& y = x.motion;
-        const S of_input = input_sticks() ? held(now.input_balance, hold_input(now)) : S(0.0);
-        const S of_output = output_sticks() ? held(now.output_balance, hold_output(now)) : S(0.0);
+        const S of_input = input_sticks() ? friction::share_of_hold(now.input_balance, hold_input(now)) : S(0.0);
+        const S of_output = output_sticks() ? friction::share_of_hold(now.output_balance, hold_output(now)) : S(0.0);
         return {u.command,
                 input_angle(x, y),
                 y.input_speed,
@@ -494,11 +480,6 @@ private:
     }
     constexpr bool output_sticks() const { return friction::set_valued(gear.friction_output); }
 
-    static constexpr S sense_of(bool sticks, const S& speed, const S& sliding) {
-        if (!sticks) return S(1.0);
-        return select(speed == S(0.0), sign(sliding), sign(speed));
-    }
-
     /// How each place moves and what it bears. The output's angle is split into whole turns before it is multiplied out.
     constexpr Contacts contacts(const State& x, const Motion& y, const typename Gear::Mesh& mesh, const Input<S>& u) const {
         const S inverse = gear.kinematics.inverse_ratio(), turned = x.turns * inverse, turns = rint(turned);
@@ -514,58 +495,42 @@ private:
         const S push = sign(now.input_balance), per_input = now.mesh.per_input;
         const S held = friction::hold(gear.friction_input, now.contacts.input.pushed(push)) +
                        abs(per_input) * friction::hold(gear.friction_mesh, now.contacts.mesh.pushed(along(per_input, push)));
-        return max(held, S(negligible));
+        return max(held, S(friction::negligible_hold));
     }
     constexpr S hold_output(const Flow& now) const {
         const S held = friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_balance)));
-        return max(held, S(negligible));
+        return max(held, S(friction::negligible_hold));
     }
 
-    /// How a side moves after an impulse.
-    struct Arrival {
-        S momentum, sliding;
-    };
-    /// A side of some momentum under a `push` [N.m.s] and the impulse of its friction, which a side at rest must overcome `hold`
-    /// to set off against.
-    template <class Friction>
-    static constexpr Arrival arrival(bool sticks, const S& sliding, const S& momentum, const S& push, const S& hold,
-                                     const Friction& friction) {
-        const S free = momentum + push;
-        if (!sticks) return {free, sliding};
-        const S way = sign(free), left = free - friction(way);
-        const auto rests = (hold >= abs(free)) & !(sliding * free > S(0.0));
-        const auto onward = !(S(0.0) >= left * way);
-        const auto moves = onward & !rests;
-        return {select(moves, left, S(0.0)), select(moves, way, S(0.0))};
+    /// The torque with which friction that can stick would oppose the input sliding one way, and likewise the output.
+    constexpr S input_friction(const State& x, const Flow& now, const S& sense) const {
+        const Contact mesh = now.contacts.mesh.pushed(along(now.mesh.per_input, sense));
+        return sliding(gear.friction_input, x.motion.friction_input, now.contacts.input.pushed(sense)) +
+               sliding(gear.friction_mesh, x.motion.friction_mesh, mesh) * now.mesh.per_input;
+    }
+    constexpr S output_friction(const State& x, const Flow& now, const S& sense) const {
+        return sliding(gear.friction_output, x.motion.friction_output, now.contacts.output.pushed(sense));
     }
     template <class Law>
     static constexpr S sliding(const Law& law, const typename Law::State& x, const Contact& contact) {
         return friction::set_valued(law) ? friction::torque(law, x, contact) : S(0.0);
     }
 
+    constexpr auto input_sets_off(const Standing& at) const {
+        return friction::sets_off(at.state.sliding_input, hold_input(at.flow), at.flow.input_balance);
+    }
+    constexpr auto output_sets_off(const Standing& at) const {
+        return friction::sets_off(at.state.sliding_output, hold_output(at.flow), at.flow.output_balance);
+    }
+
     constexpr S margin_input(const State& x, const Flow& now) const {
-        return margin(input_sticks(), x.sliding_input, x.motion.input_speed, hold_input(now), now.input_balance);
+        if (!input_sticks()) return S(unbounded);
+        return friction::margin(x.sliding_input, x.motion.input_speed, hold_input(now), now.input_balance);
     }
     constexpr S margin_output(const State& x, const Flow& now) const {
-        return margin(output_sticks(), x.sliding_output, x.motion.output_speed, hold_output(now), now.output_balance);
+        if (!output_sticks()) return S(unbounded);
+        return friction::margin(x.sliding_output, x.motion.output_speed, hold_output(now), now.output_balance);
     }
-    static constexpr S margin(bool sticks, const S& sliding, const S& speed, const S& hold, const S& balance) {
-        return sticks ? select(sliding == S(0.0), hold - abs(balance), sliding * speed) : S(unbounded);
-    }
-    /// Whether a side sticks, in any lane.
-    constexpr bool sticks(const State& x) const {
-        return (input_sticks() && any(x.sliding_input == S(0.0))) || (output_sticks() && any(x.sliding_output == S(0.0)));
-    }
-    /// N.m. What a side that can stick holds at the least: less is the rounding of its balance, to which it would set off and stop
-    /// without end.
-    static constexpr double negligible = 1e-12;
-
-    /// Which way a side goes at an event: one that stops sticks if its friction holds it.
-    template <class Mask>
-    static constexpr S sense(const S& balance, const S& hold, const Mask& stops) {
-        return select(stops & !(abs(balance) > hold), S(0.0), sign(balance));
-    }
-
     /// Torque per angle [N.m/rad] of a friction that is about to slip.
     template <class Law>
     static constexpr S presliding_stiffness(const Law& law) {
@@ -588,8 +553,6 @@ private:
     /// A side that sticks does not accelerate.
     static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
 
-    /// The share of its hold that a side which sticks makes use of, with the sense of what it balances.
-    static constexpr S held(const S& balance, const S& hold) { return clip(balance / max(hold, S(smallest)), S(-1.0), S(1.0)); }
     /// A place that sticks balances its share of what drives its side.
     template <class Law>
     static constexpr S reported(const Law& law, const Contact& contact, const S& sliding, const S& share) {

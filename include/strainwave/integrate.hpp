@@ -7,8 +7,8 @@
 namespace strainwave {
 
 /// Where the drive stands after one step of `dt` [s]: of fourth order, with events located and stepped to exactly where friction
-/// can stick. Events show at the end of a step: a side that crosses zero speed and returns within one is not seen, which a smaller
-/// step cures. `smooth` leads to the end of a step without events.
+/// can stick. Events show at the end of a step: a side that crosses zero speed and returns within one, or sets off and stops, is
+/// not seen, which a smaller step cures. `smooth` leads to the end of a step without events.
 template <class S, class Drive, class Smooth>
 constexpr typename Drive::Standing step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u, const S& dt,
                                         const Smooth& smooth) {

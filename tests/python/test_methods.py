@@ -321,6 +321,22 @@ def test_the_tolerance_is_kept_where_the_torque_turns_over_within_a_step(rtol: f
     assert difference(run, exact) < 10.0 * rtol
 
 
+@pytest.mark.parametrize("rtol", [3e-5, 1e-5, 3e-6, 1e-6])
+def test_what_slips_for_a_moment_where_the_torque_turns_over_is_not_missed(rtol: float) -> None:
+    """A gear that locks itself holds nothing while it bears nothing: each time, its load moves on by half a nanoradian."""
+    locking = sw.friction.LoadDependent(
+        driving_forward=100.0, driving_reverse=100.0, backdriving_forward=100.0, backdriving_reverse=100.0
+    )
+    gear = sw.Gear(friction_input=sw.friction.Viscous(viscous=1e-4), friction_output=locking, damping=4.0)
+    drive = sw.drives.PositionDrive(gear=gear, load=sw.loads.Inertia(inertia=0.1))
+    swing = sw.scenario.sine(24.0, 30.0, 0.06)
+    exact, run = (
+        sw.simulate_adaptively(drive, swing, rtol=each, atol=1e-15, load_torque=-6.0)["output_angle"] for each in (1e-10, rtol)
+    )
+    assert np.unique(exact.round(13)).size >= 5
+    assert np.abs(run - exact).max() < 10.0 * rtol * np.abs(exact).max()
+
+
 @pytest.mark.parametrize("first", range(0, 500, 100))
 def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> None:
     """By four drives from each; `python -m tests.tolerance` takes two hundred, and says what is set aside and why."""
@@ -498,11 +514,13 @@ def test_the_moment_of_an_event_is_found_just_behind_it_in_few_looks(tmp_path: P
     """Every margin falls to zero at 0.3. Secants come within 1e-12 of it in a few looks where it is smooth; where it jumps or
     is the same at first, twenty are tried in vain, and bisection takes another 40."""
     most_looks = dict.fromkeys(["jump", "jump_down", "plateau"], 60)
-    found = told("crossing", tmp_path)
+    *found, nowhere = told("crossing", tmp_path)
     assert len(found) == 9
-    for name, moment, looks in found:
+    for name, moment, looks, in_a_pack in found:
         assert 0.3 <= float(moment) < 0.3 + 3e-12, name
         assert int(looks) <= most_looks.get(name, 15), name
+        assert in_a_pack == moment, name
+    assert nowhere == ["nowhere", "1", "0", "1"]
 
 
 # Chattering

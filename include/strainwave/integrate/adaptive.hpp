@@ -12,9 +12,8 @@ struct Tolerance {
 
 /// Steps as long as a tolerance allows, taken by `smooth`, which knows no events and is of fourth order; by Moreau and Jean's
 /// scheme where events chatter. The error of two steps is told by one of twice their length. A step ends where a side stops, breaks
-/// away or turns round, as it would find out itself, and where the twist turns round: the stages of one that went on would miss
-/// what the hysteresis makes of it, all alike. Between its ends a step is known as exactly as there: by a step of part of its
-/// length. For scalars that are plain numbers.
+/// away or turns round. Between its ends a step is known as exactly as there: by a step of part of its length. For scalars that are
+/// plain numbers.
 template <class S, class Drive, class Smooth>
 class Adaptive {
     using Standing = typename Drive::Standing;
@@ -42,7 +41,7 @@ public:
     constexpr Standing through(Standing from, const Interval<S>& u, const S& dt, const Within& within) {
         S done{0.0};
         while (done < S(1.0)) {
-            from = drive.released(from, u.at(done, dt));
+            if (drive.sets_off(from)) from = drive.released(from, u.at(done, dt));
             // What is left is not cut so that a sliver remains.
             const S left = (S(1.0) - done) * dt, steps = left / next;
             const S length = steps <= S(1.0) ? left : steps < S(2.0) ? S(0.5) * left : next;
@@ -63,7 +62,6 @@ public:
             if (!stands(error(from, tried, taken), taken, cut)) continue;
             if (gave_up()) return from;
             if (stop.event) tried.end = settled(tried.end);
-            if (stop.turn) drive.turn(tried.end.state);
             within(done, tried.to, tried.end, [&](const S& at) { return along(from, tried, u, dt, at); });
             events = chatters() ? most_events - 1 : taken > S(brief) ? stop.event : events + stop.event;
             if (missed == 0) note(tried.end);
@@ -87,7 +85,7 @@ private:
     constexpr bool chatters() const { return events >= most_events; }
 
     /// Whether a step of some `length` [s] that misses so much may stand, be it as one of the shortest; and how long the next one
-    /// is. What an event or a turn has `cut` says nothing of longer ones.
+    /// is. What an event has `cut` says nothing of longer ones.
     constexpr bool stands(const S& error, const S& length, bool cut) {
         // An error of what is not a number is larger than any; a step must not become nothing.
         const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), S(4.0)) : S(0.2);
@@ -120,38 +118,50 @@ private:
         return smooth(drive, from, part, length);
     }
 
-    /// Where a step must end, as a fraction of the interval, and why; and where it is seen that an event was met.
+    /// Where a step must end, as a fraction of the interval, be it at an event; and where it is seen that one was met.
     struct Stop {
         S at;
-        bool event = false, turn = false;
+        bool event = false;
         S met{0.0};
     };
     /// The first on the way of a trial; its end if there is none.
     constexpr Stop stop(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt) const {
-        const Stop early = stop(from, tried.half, u, dt, tried.begin, tried.middle);
-        return early.event || early.turn ? early : stop(tried.half, tried.end, u, dt, tried.middle, tried.to);
+        if (const Look look = closest(from, tried.half, u, dt, tried.begin, tried.middle); look.margin < S(0.0)) {
+            // An event within the shortest time of a step is one at once.
+            const S soon = min(tried.begin + S(shortest) / dt, look.at);
+            if (drive.margin(stretch(from, u, dt, tried.begin, soon)) < S(0.0)) return {tried.begin, true, soon};
+            const S met = moment(from, look, u, dt, tried.begin);
+            return {met, true, met};
+        }
+        if (const Look look = closest(tried.half, tried.end, u, dt, tried.middle, tried.to); look.margin < S(0.0)) {
+            const S met = moment(tried.half, look, u, dt, tried.middle);
+            return {met, true, met};
+        }
+        return {tried.to};
     }
-    constexpr Stop stop(const Standing& start, const Standing& end, const Interval<S>& u, const S& dt, const S& from,
-                        const S& to) const {
-        Stop found{to};
-        const auto reach = [&](const S& fraction) { return stretch(start, u, dt, from, from + fraction * (to - from)); };
-        if (const S margin = drive.margin(end); margin < S(0.0)) {
-            const auto at = [&](const S& fraction) { return drive.margin(reach(fraction)); };
-            // An event within the shortest time is one at once.
-            const S soon = min(S(shortest) / ((to - from) * dt), S(1.0));
-            const bool at_once = at(soon) < S(0.0);
-            const S moment = at_once ? soon : crossing(at, S(0.0), drive.margin(start), margin);
-            const S met = from + moment * (to - from);
-            found = {at_once ? from : met, true, false, met};
+    /// The margin at a fraction of the interval.
+    struct Look {
+        S at, margin;
+    };
+    /// Where between two fractions a margin is first seen to be used up, if at all: where the torque turns over, for there friction
+    /// that grows with it holds nothing, be it for a moment; or at the end.
+    constexpr Look closest(const Standing& start, const Standing& end, const Interval<S>& u, const S& dt, const S& from,
+                           const S& to) const {
+        const S before = start.flow.mesh.torque, after = end.flow.mesh.torque;
+        if (before * after < S(0.0) && drive.sticks(start.state)) {
+            const auto reach = [&](const S& fraction) { return stretch(start, u, dt, from, from + fraction * (to - from)); };
+            const auto left = [&](const S& fraction) { return sign(before) * reach(fraction).flow.mesh.torque; };
+            const S empty = crossing(left, S(0.0), abs(before), -abs(after));
+            const S soon = min(empty + S(shortest) / ((to - from) * dt), S(1.0));  // a moment that a step can resolve
+            if (const S margin = drive.margin(reach(soon)); margin < S(0.0)) return {from + soon * (to - from), margin};
         }
-        if (drive.turned(start.state, end)) {
-            const S way = sign(start.state.held_rate);
-            const auto onward = [&](const S& fraction) { return way * reach(fraction).state.held_rate; };
-            const S turn = crossing(onward, S(0.0), way * start.state.held_rate, way * end.state.held_rate) * (to - from);
-            // One at the very beginning lies behind.
-            if (turn * dt > S(shortest) && from + turn < found.at) found = {from + turn, false, true};
-        }
-        return found;
+        return {to, drive.margin(end)};
+    }
+    /// The fraction of the interval behind `from` at which a margin that is used up at a look came to be so.
+    constexpr S moment(const Standing& start, const Look& look, const Interval<S>& u, const S& dt, const S& from) const {
+        const S way = look.at - from;
+        const auto at = [&](const S& fraction) { return drive.margin(stretch(start, u, dt, from, from + fraction * way)); };
+        return from + crossing(at, S(0.0), drive.margin(start), look.margin) * way;
     }
 
     /// What is held to the tolerance: the motion, and the torque, which shows what the hysteresis remembers.
