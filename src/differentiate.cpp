@@ -11,11 +11,11 @@ constexpr int width = 8;
 using Slope = Dual<width>;
 
 /// The same set with its parameters number `first` and following as the numbers that derivatives are taken by.
-template <class M>
+template <class M, int n>
 M seeded(const Parts& parts, const std::vector<int>& parameters, std::size_t first) {
-    return assembled<M, Slope>(parts.shape, [&](int number) {
-        Slope x(parts.numbers[number]);
-        for (std::size_t p = first; p < first + width && p < parameters.size(); ++p)
+    return assembled<M, Dual<n>>(parts.shape, [&](int number) {
+        Dual<n> x(parts.numbers[number]);
+        for (std::size_t p = first; p < first + n && p < parameters.size(); ++p)
             if (parameters[p] == number) x.slope[p - first] = 1.0;
         return x;
     });
@@ -36,19 +36,20 @@ X sought(const Array<double, n>& numbers, int from, int count, int first) {
 
 /// Writes samples one after the other: values, and derivatives by the parameters number `first` and following. Rows lie far apart,
 /// so a stretch of samples is gathered before it is written.
+template <int n>
 class Writer {
     static constexpr std::size_t stretch = 16;
     const std::size_t first, last, samples;
     double *const out, *const slopes;
-    Array<Slope, channels> held[stretch];
+    Array<Dual<n>, channels> held[stretch];
     std::size_t written = 0, gathered = 0;
 
 public:
     Writer(std::size_t first_, std::size_t parameters, std::size_t samples_, double* out_, double* slopes_)
-        : first(first_), last(std::min(parameters, first_ + width)), samples(samples_), out(out_), slopes(slopes_) {}
+        : first(first_), last(std::min(parameters, first_ + n)), samples(samples_), out(out_), slopes(slopes_) {}
 
-    void operator()(const Output<Slope>& output) {
-        held[gathered] = flattened<Slope>(output);
+    void operator()(const Output<Dual<n>>& output) {
+        held[gathered] = flattened<Dual<n>>(output);
         if (++gathered == stretch) flush();
     }
     void flush() {
@@ -64,25 +65,36 @@ public:
     }
 };
 
+/// One run that gives the derivatives by `n` parameters, number `first` and following.
+template <int n>
+void differentiate_by(const Parts& parts, const Course& course, const std::vector<int>& parameters, std::size_t first, double* out,
+                      double* slopes, std::size_t kept, const Pause& pause) {
+    using Scalar = Dual<n>;
+    const auto dual = seeded<AnyPositionDrive<Scalar>, n>(parts, parameters, first);
+    Writer<n> record(first, parameters.size(), kept + 1, out, slopes);
+    const Input<Scalar> at_start = interval<Scalar>(course.inputs).start;
+    record(dual.output(dual.standing(dual.rest(), at_start), at_start));
+    run<Scalar>(dual, dual.rest(), course, record, [&](std::size_t i) { pause(first * course.steps + n * i); });
+    record.flush();
+}
+
 }  // namespace
 
 void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
                    std::size_t kept, const Pause& pause) {
+    constexpr int few = width / 2;  // a run that gives only so many takes two thirds of the time
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
-        const auto dual = seeded<AnyPositionDrive<Slope>>(parts, parameters, first);
-        Writer record(first, parameters.size(), kept + 1, out, slopes);
-        const Input<Slope> at_start = interval<Slope>(course.inputs).start;
-        record(dual.output(dual.standing(dual.rest(), at_start), at_start));
-        const auto paused = [&](std::size_t i) { pause(first * course.steps + width * i); };
-        run<Slope>(dual, dual.rest(), course, record, paused);
-        record.flush();
+        if (parameters.size() <= first + few)
+            differentiate_by<few>(parts, course, parameters, first, out, slopes, kept, pause);
+        else
+            differentiate_by<width>(parts, course, parameters, first, out, slopes, kept, pause);
     }
 }
 
 void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {
     constexpr int rows = motions + channels;
-    const auto dual = seeded<AnyPositionDrive<Slope>>(parts_of(drive), {}, 0);
+    const auto dual = seeded<AnyPositionDrive<Slope>, width>(parts_of(drive), {}, 0);
     for (int first = 0; first < motions + driving; first += width) {
         const auto state = sought<AnyPositionDrive<Slope>::State>(flattened<double>(x), 0, motions, first);
         const auto input = sought<Input<Slope>>(flattened<double>(u), motions, driving, first);
@@ -103,7 +115,7 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
     const Parts parts = parts_of(gear);
     const std::size_t shift = parameters.size();
     for (std::size_t first = 0; first <= shift; first += width) {
-        const auto dual = seeded<AnyGear<Slope>>(parts, parameters, first);
+        const auto dual = seeded<AnyGear<Slope>, width>(parts, parameters, first);
         const auto point = [&](std::size_t i) {
             Slope x(twist[i]);
             if (i > 0 && shift < first + width) x.slope[shift - first] = 1.0;
@@ -123,7 +135,7 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
                           double* out, double* slopes) {
     const Parts parts = parts_of(gear);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
-        const auto law = compiled(seeded<AnyGear<Slope>>(parts, parameters, first).friction_input);
+        const auto law = compiled(seeded<AnyGear<Slope>, width>(parts, parameters, first).friction_input);
         for (std::size_t i = 0; i < n; ++i) {
             const Slope torque = friction::steady(law, friction::Contact<Slope>{Slope(speed[i])});
             out[i] = torque.value;

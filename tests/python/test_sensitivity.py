@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 
+from tests.reference_drive import DRIVE, command
+
 TORQUE_CONSTANT, RESISTANCE, INERTIA = 0.05, 0.5, 1e-4  # N.m/A, ohm, kg.m2
 
 
@@ -52,6 +54,17 @@ def test_derivatives_go_through_the_moment_of_breakaway_which_moves() -> None:
     assert found["input_speed", paths[0]] == pytest.approx(-(time - start) / INERTIA, rel=1e-7, abs=1e-9)
     later = -(breakaway - coulomb) / (growth * INERTIA)
     assert found["input_speed", paths[1]] == pytest.approx(np.where(time > start, later, 0.0), rel=1e-7, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 4, 5, 8, 9, 12])
+def test_a_derivative_is_the_same_whatever_others_are_asked_for(count: int) -> None:
+    """They are worked out several at a time, in as many runs as that takes; each stands elsewhere among others."""
+    numbers = [f"gear.hysteresis.{name}[{i}]" for name in ("stiffness", "breakaway") for i in range(6)]
+    numbers += ["gear.damping", "motor.inertia", "load.inertia"]
+    all_of_them, some = (sw.derivatives(DRIVE, command(0.05), each) for each in (numbers, numbers[-count:]))
+    assert np.array_equal(some.values, all_of_them.values[-count:])
+    assert np.all(np.any(some.values, axis=(1, 2)))
+    assert some.run == all_of_them.run
 
 
 def test_the_path_of_a_sequence_is_all_its_elements() -> None:
