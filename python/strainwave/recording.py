@@ -65,8 +65,12 @@ class Recording:
         known = {name: _known(name, units[name]) for name in columns}
         if fault := _first_fault(frozen, known):
             raise ValueError(f'column "{fault.column}" row {fault.row}: {fault.reason}')
-        object.__setattr__(self, "columns", MappingProxyType(frozen))
-        object.__setattr__(self, "units", MappingProxyType(known))
+        self._hold(frozen, known, title)
+
+    def _hold(self, columns: Mapping[str, Array], units: Mapping[str, str], title: str) -> None:
+        """Keeps what is known to be in order: read-only series, units in their standard spelling."""
+        object.__setattr__(self, "columns", MappingProxyType(columns))
+        object.__setattr__(self, "units", MappingProxyType(units))
         object.__setattr__(self, "title", title)
 
     @property

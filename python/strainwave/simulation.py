@@ -123,8 +123,8 @@ class Excitation:
 
     def first(self) -> Array:
         """Command, its rate, load torque and temperature at t = 0."""
-        command, load_torque, temperature = (signal.at(np.zeros(()), before=False) for signal in self.signals)
-        return np.array([*command, load_torque[0], temperature[0]])
+        start: Array = _core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0]
+        return start
 
     def over(self, course: Course) -> Array:
         """The same at the start, middle and end of each step, shape (n, 3, 4)."""
@@ -157,9 +157,24 @@ class Run(Recording):
     method: str
 
     def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str], end: _core.State, method: str) -> None:
-        super().__init__(columns, units, title=f"simulation: {method}")
+        super().__init__(columns, units, title=_title(method))
+        self._came_about(end, method)
+
+    @classmethod
+    def _made(cls, drive: PositionDrive, time: Array, outputs: Array, end: _core.State, method: str) -> Run:
+        """Of outputs, shape (channels, samples), that mean something: to check them as any others takes a quarter of a call."""
+        run = object.__new__(cls)
+        run._hold(_columns(time, outputs), output_units(drive), _title(method))
+        run._came_about(end, method)
+        return run
+
+    def _came_about(self, end: _core.State, method: str) -> None:
         object.__setattr__(self, "end", end)
         object.__setattr__(self, "method", method)
+
+
+def _title(method: str) -> str:
+    return f"simulation: {method}"
 
 
 def simulate(
@@ -178,7 +193,7 @@ def simulate(
 
     Steps end at every jump of the inputs. With set-valued friction they are cut at its events, located to rounding, so that
     sticking is exact. Events are told by how a step ends: a side whose speed changes its sign and is back before the end is
-    taken to slide on.
+    taken to slide on, one that sets off and stops before to stick on.
 
     Args:
         drive: what is commanded
@@ -254,7 +269,7 @@ def simulate(
     if method != "rosenbrock":
         check_resolution(drive, dt, _largest_twist(outputs))
     warn_of_bristles(drive, longest)
-    return Run(_columns(time, outputs), output_units(drive), state, f"{_named(taken, drive)}, steps of {dt:g} s")
+    return Run._made(drive, time, outputs, state, f"{_named(taken, drive)}, steps of {dt:g} s")
 
 
 def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, samples: int) -> Array:
@@ -293,9 +308,9 @@ def simulate_adaptively(
 ) -> Run:
     """Runs a drive through a command in steps as long as a tolerance allows.
 
-    The steps are those of `simulate`'s exponential method. Each ends where a side stops, breaks away or turns round, and where
-    the twist does; two of half the length tell its error. Samples lie anywhere within steps: there a step of part of the
-    length gives the state, as exactly as at the ends.
+    The steps are those of `simulate`'s exponential method. Each ends where a side stops, breaks away or turns round; two of
+    half the length tell its error. Samples lie anywhere within steps: there a step of part of the length gives the state, as
+    exactly as at the ends.
 
     Args:
         drive, command, load_torque, temperature, start, progress: as for `simulate`
@@ -342,7 +357,7 @@ def simulate_adaptively(
             done, accepted, rejected = done + len(within), accepted + taken, rejected + given_up
     _check_meaning(samples, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
-    return Run(_columns(samples, outputs), output_units(drive), state, f"{_named('exponential', drive)}, {kept}")
+    return Run._made(drive, samples, outputs, state, f"{_named('exponential', drive)}, {kept}")
 
 
 def differentiate(
@@ -429,7 +444,7 @@ def check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
 
 def output_units(drive: PositionDrive) -> dict[str, str]:
     """The unit of the time and of each output of a drive."""
-    return {name: unit for name, unit, _ in _core.outputs} | {"time": "s", "command": drive.control.command_unit}
+    return {"time": "s"} | {name: unit for name, unit, _ in _core.outputs} | {"command": drive.control.command_unit}
 
 
 def too_coarse(dt: float, twist: float, fastest: float) -> str:
