@@ -149,6 +149,18 @@ def test_the_first_sample_is_the_start_and_the_last_the_end() -> None:
     assert run["command"] == pytest.approx(command(0.0105).value(run["time"]), rel=1e-12)
 
 
+@pytest.mark.parametrize("simulate", [sw.simulate, sw.simulate_adaptively])
+def test_a_run_is_what_a_recording_of_its_columns_would_be(simulate: Callable[..., sw.Run]) -> None:
+    """Which checks and freezes all that comes in; runs that are made here skip it, runs that are made by hand do not."""
+    run = simulate(DRIVE, sw.scenario.constant(0.02, 0.01))
+    checked = sw.Recording({name: run[name].copy() for name in run.names}, run.units, run.title)
+    assert run == checked
+    assert list(run.units.items()) == list(checked.units.items())
+    assert not any(run[name].flags.writeable for name in run.names)
+    with pytest.raises(ValueError, match="is not finite"):
+        sw.Run({"time": np.array([0.0, np.nan])}, {"time": "s"}, run.end, run.method)
+
+
 def test_columns_have_their_units_and_the_command_that_of_the_controller() -> None:
     run = sw.simulate(DRIVE, command(0.01))
     assert {name: run.unit(name) for name in COLUMNS if name != "command"} == {
