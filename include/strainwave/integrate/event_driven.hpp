@@ -42,21 +42,23 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
 /// How many events a step may hold before they count as chattering.
 inline constexpr int most_events = 16;
 
-/// A step at whose end, `there`, a margin lies below zero. Each stretch ends where a side stops or breaks away; that side is put
-/// exactly at rest or set sliding, and the next begins. Where events chatter, what is left of the step is one of Moreau and Jean's.
+/// Leads a step that ended `there`, where a margin lies below zero, to its right end. Each stretch ends where a side stops or
+/// breaks away; that side is put exactly at rest or set sliding, and the next begins. Where events chatter, what is left of the
+/// step is one of Moreau and Jean's.
 template <class S, class Drive, class Smooth>
-constexpr typename Drive::Standing step_through_events(const Drive& drive, typename Drive::Standing here,
-                                                       typename Drive::Standing there, const Interval<S>& u, const S& dt,
-                                                       const Smooth& smooth) {
+constexpr void lead_through_events(const Drive& drive, const typename Drive::Standing& from, typename Drive::Standing& there,
+                                   const Interval<S>& u, const S& dt, const Smooth& smooth) {
+    auto here = from;
     S done{0.0};
     const auto reach = [&](const S& fraction) { return smooth(drive, here, u.part(done, fraction, dt), (fraction - done) * dt); };
     for (int events = 0;; ++events) {
         const S margin = drive.margin(there);
         const auto crosses = margin < S(0.0);
-        if (!any(crosses)) return there;
+        if (!any(crosses)) return;
         if (events == most_events) {
             const auto end = moreau_jean_step(drive, here, u.part(done, S(1.0), dt), (S(1.0) - done) * dt);
-            return drive.standing(chosen<S>(crosses, end, there.state), u.end);
+            there = drive.standing(chosen<S>(crosses, end, there.state), u.end);
+            return;
         }
         const auto at = [&](const S& fraction) { return drive.margin(reach(fraction)); };
         const S moment = crossing(at, done, drive.margin(here), margin);
@@ -73,7 +75,7 @@ template <class S, class Drive, class Smooth>
 constexpr typename Drive::Standing held_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
                                              const S& dt, const Smooth& smooth) {
     auto there = smooth(drive, from, u, dt);
-    if (any(drive.margin(there) < S(0.0))) there = step_through_events(drive, from, there, u, dt, smooth);
+    if (any(drive.margin(there) < S(0.0))) lead_through_events(drive, from, there, u, dt, smooth);
     return there;
 }
 
