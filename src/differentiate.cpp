@@ -11,9 +11,9 @@ constexpr int width = 8;
 using Slope = Dual<width>;
 
 /// The same set with its parameters number `first` and following as the numbers that derivatives are taken by.
-template <class M, int n>
-M seeded(const Parts& parts, const std::vector<int>& parameters, std::size_t first) {
-    return assembled<M, Dual<n>>(parts.shape, [&](int number) {
+template <template <class> class Model, int n>
+Model<Dual<n>> seeded(const Parts& parts, const std::vector<int>& parameters, std::size_t first) {
+    return assembled<Model<Dual<n>>, Dual<n>>(parts.shape, [&](int number) {
         Dual<n> x(parts.numbers[number]);
         for (std::size_t p = first; p < first + n && p < parameters.size(); ++p)
             if (parameters[p] == number) x.slope[p - first] = 1.0;
@@ -70,7 +70,7 @@ template <int n>
 void differentiate_by(const Parts& parts, const Course& course, const std::vector<int>& parameters, std::size_t first, double* out,
                       double* slopes, std::size_t kept, const Pause& pause) {
     using Scalar = Dual<n>;
-    const auto dual = seeded<AnyPositionDrive<Scalar>, n>(parts, parameters, first);
+    const auto dual = seeded<AnyPositionDrive, n>(parts, parameters, first);
     Writer<n> record(first, parameters.size(), kept + 1, out, slopes);
     const Input<Scalar> at_start = interval<Scalar>(course.inputs).start;
     record(dual.output(dual.standing(dual.rest(), at_start), at_start));
@@ -94,7 +94,7 @@ void differentiate(const Drive& drive, const Course& course, const std::vector<i
 
 void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {
     constexpr int rows = motions + channels;
-    const auto dual = seeded<AnyPositionDrive<Slope>, width>(parts_of(drive), {}, 0);
+    const auto dual = seeded<AnyPositionDrive, width>(parts_of(drive), {}, 0);
     for (int first = 0; first < motions + driving; first += width) {
         const auto state = sought<AnyPositionDrive<Slope>::State>(flattened<double>(x), 0, motions, first);
         const auto input = sought<Input<Slope>>(flattened<double>(u), motions, driving, first);
@@ -115,7 +115,7 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
     const Parts parts = parts_of(gear);
     const std::size_t shift = parameters.size();
     for (std::size_t first = 0; first <= shift; first += width) {
-        const auto dual = seeded<AnyGear<Slope>, width>(parts, parameters, first);
+        const auto dual = seeded<AnyGear, width>(parts, parameters, first);
         const auto point = [&](std::size_t i) {
             Slope x(twist[i]);
             if (i > 0 && shift < first + width) x.slope[shift - first] = 1.0;
@@ -135,7 +135,7 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
                           double* out, double* slopes) {
     const Parts parts = parts_of(gear);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
-        const auto law = compiled(seeded<AnyGear<Slope>, width>(parts, parameters, first).friction_input);
+        const auto law = compiled(seeded<AnyGear, width>(parts, parameters, first).friction_input);
         for (std::size_t i = 0; i < n; ++i) {
             const Slope torque = friction::steady(law, friction::Contact<Slope>{Slope(speed[i])});
             out[i] = torque.value;

@@ -366,14 +366,11 @@ struct PositionDrive {
     constexpr State arriving(const State& x, const Motion& end, const Flow& now, const S& dt) const {
         State y = x;
         y.motion = end;
-        friction::Arrival<S> input{x.motion.input_speed * input_inertia() + now.input_balance * dt, x.sliding_input};
-        if (input_sticks())
-            input = friction::arrival(x.sliding_input, x.motion.input_speed * input_inertia(), now.input_balance * dt,
-                                      hold_input(now) * dt, [&](const S& sense) { return input_friction(x, now, sense) * dt; });
-        friction::Arrival<S> output{x.motion.output_speed * inertia_of(load) + now.output_balance * dt, x.sliding_output};
-        if (output_sticks())
-            output = friction::arrival(x.sliding_output, x.motion.output_speed * inertia_of(load), now.output_balance * dt,
-                                       hold_output(now) * dt, [&](const S& sense) { return output_friction(x, now, sense) * dt; });
+        const auto input = arrival(input_sticks(), x.sliding_input, x.motion.input_speed, input_inertia(), now.input_balance * dt,
+                                   hold_input(now) * dt, [&](const S& sense) { return input_friction(x, now, sense) * dt; });
+        const auto output =
+            arrival(output_sticks(), x.sliding_output, x.motion.output_speed, inertia_of(load), now.output_balance * dt,
+                    hold_output(now) * dt, [&](const S& sense) { return output_friction(x, now, sense) * dt; });
         y.sliding_input = input.sliding;
         y.sliding_output = output.sliding;
         y.motion.input_speed = input.momentum / input_inertia();
@@ -548,6 +545,15 @@ private:
         const S root = sqrt(max(slope * slope - S(4.0) * bend * begin, S(0.0)));
         const S at = S(2.0) * abs(begin) / max(root - sense * slope, S(smallest));
         return x.held_twist + at * (begin + at * (S(0.5) * slope + at * bend * S(1.0 / 3.0)));
+    }
+
+    /// How a side moves after the impulse `push`, be it one that `can_stick`.
+    template <class Friction>
+    static constexpr friction::Arrival<S> arrival(bool can_stick, const S& sliding, const S& speed, const S& inertia, const S& push,
+                                                  const S& hold, const Friction& friction) {
+        const S momentum = speed * inertia;
+        if (!can_stick) return {momentum + push, sliding};
+        return friction::arrival(sliding, momentum, push, hold, friction);
     }
 
     /// A side that sticks does not accelerate.
