@@ -54,7 +54,7 @@ struct Queue {
     double first() const { return next < end ? *next : unbounded; }
 };
 
-/// Instants from three series: whatever is within `tolerance` of its neighbour is one.
+/// Instants from three series: whatever is within `tolerance` of its neighbour is one. Which are samples, and the longest step.
 nb::tuple course_of(const Numbers& steps, const Numbers& samples, const Numbers& breaks, double tolerance) {
     const std::size_t most = steps.size() + samples.size() + breaks.size();
     std::vector<double> instants(most);
@@ -80,7 +80,9 @@ nb::tuple course_of(const Numbers& steps, const Numbers& samples, const Numbers&
     auto flags = array<std::uint8_t>({count});
     std::copy_n(instants.begin(), count, out.data());
     std::copy_n(sampled.begin(), count, flags.data());
-    return nb::make_tuple(out, flags);
+    double longest = 0.0;
+    for (std::size_t i = 1; i < count; ++i) longest = std::max(longest, instants[i] - instants[i - 1]);
+    return nb::make_tuple(out, flags, longest);
 }
 
 }  // namespace
@@ -108,8 +110,9 @@ void bind_course(nb::module_& core) {
              "0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.");
     core.def("course", &course_of, nb::arg("steps"), nb::arg("samples"), nb::arg("breaks"), nb::arg("tolerance"),
              nb::sig("def course(steps: " SW_ARRAY ", samples: " SW_ARRAY ", breaks: " SW_ARRAY
-                     ", tolerance: float) -> tuple[" SW_ARRAY ", numpy.typing.NDArray[numpy.uint8]]"),
-             "All instants in order, whatever is within `tolerance` of its neighbour being one, and which of them are samples.");
+                     ", tolerance: float) -> tuple[" SW_ARRAY ", numpy.typing.NDArray[numpy.uint8], float]"),
+             "All instants in order, whatever is within `tolerance` of its neighbour being one, which of them are samples, and the "
+             "longest step from one to the next.");
 }
 
 }  // namespace strainwave::host

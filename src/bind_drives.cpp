@@ -48,13 +48,10 @@ Drive::State run_one(const Drive& drive, const Drive::State& start, const Number
     return simulate(drive, start, request.course, method, place, out.shape(1), pause);
 }
 
-nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
-                         double relative, double absolute, long most_steps, const Numbers& samples, const Outputs& out,
-                         std::size_t first, const nb::object& progress) {
-    if (instants.size() < 2 || inputs.size() != 3 * driving * (instants.size() - 1))
-        throw nb::value_error("a course of n > 0 steps has n + 1 instants and inputs of shape (n, 3, 4)");
-    const std::vector<std::uint8_t> none(instants.size() - 1);
-    const Course course{instants.data(), inputs.data(), none.data(), none.size()};
+nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Signal& command, const Signal& load_torque,
+                         const Signal& temperature, const Numbers& ends, double relative, double absolute, long most_steps,
+                         const Numbers& samples, const Outputs& out, std::size_t first, const nb::object& progress) {
+    if (ends.size() < 2) throw nb::value_error("steps lead from one instant to another");
     double* const place = place_in(out, first, samples.size());
     const Pause pause = pausing(progress);
     Drive::State end;
@@ -62,8 +59,8 @@ nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Nu
     const auto simulate = kernels().simulate_adaptively;
     {
         nb::gil_scoped_release free;
-        end = simulate(drive, start, course, {relative, absolute}, most_steps, {samples.data(), samples.size()}, place,
-                       out.shape(1), steps, pause);
+        end = simulate(drive, start, {command, load_torque, temperature}, {ends.data(), ends.size()}, {relative, absolute},
+                       most_steps, {samples.data(), samples.size()}, place, out.shape(1), steps, pause);
     }
     return nb::make_tuple(end, steps.accepted, steps.rejected);
 }
@@ -366,12 +363,23 @@ void bind_drives(nb::module_& core) {
                 return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
             };
             const Interval<double> u{at(0.0), at(0.5), at(1.0)};
-            return self.standing(step<double>(self, self.consistent(state), u, dt), u.end).state;  // as at the end of a run
+            const auto before = self.standing(self.consistent(state), u.start);
+            check_bounds<double>(self, before, 0.0);
+            const auto after = self.standing(step<double>(self, before.state, u, dt), u.end);  // as at the end of a run
+            check_bounds<double>(self, after, dt);
+            double sum = 0.0;
+            const auto numbers = flattened<double>(after.state);
+            for (int i = 0; i < numbers.size(); ++i) sum += 0.0 * numbers[i];  // 0 as long as all are finite
+            if (sum != 0.0) {
+                PyErr_SetString(PyExc_FloatingPointError, "the step diverged; take a smaller dt or check the parameters");
+                throw nb::python_error();
+            }
+            return after.state;
         },
         nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
         nb::arg("temperature") = friction::room_temperature, nb::arg("dt"),
-        "The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, and for a `dt` or a "
-        "`temperature` that is not positive.");
+        "The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, for a `dt` or a "
+        "`temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.");
 
     nb::list outputs;
     const Output<double> output{};
@@ -392,14 +400,15 @@ void bind_drives(nb::module_& core) {
              nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE
                      ", method: Method, " SW_OUTPUTS SW_PROGRESS ") -> State"),
              "The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on.");
-    core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"),
-             nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"), nb::arg("samples"), nb::arg("out").noconvert(),
-             nb::arg("first"), nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: " SW_ARRAY
-                     ", inputs: " SW_ARRAY ", relative: float, absolute: float, most_steps: int, samples: " SW_ARRAY
-                     ", " SW_OUTPUTS SW_PROGRESS ") -> tuple[State, int, int]"),
-             "The state at the end, steps taken and steps given up; the outputs at `samples` [s] go to `out`, shape (channels, "
-             "samples), from sample `first` on.");
+    core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("command"), nb::arg("load_torque"),
+             nb::arg("temperature"), nb::arg("ends"), nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"),
+             nb::arg("samples"), nb::arg("out").noconvert(), nb::arg("first"), nb::arg("progress").none() = nb::none(),
+             nb::sig("def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, command: Signal, "
+                     "load_torque: Signal, temperature: Signal, ends: " SW_ARRAY
+                     ", relative: float, absolute: float, most_steps: int, samples: " SW_ARRAY ", " SW_OUTPUTS SW_PROGRESS
+                     ") -> tuple[State, int, int]"),
+             "The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; "
+             "the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.");
     core.def(
         "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("instants"), nb::arg("inputs"),
         nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("largest"), nb::arg("threads"),
@@ -409,13 +418,11 @@ void bind_drives(nb::module_& core) {
             ", " SW_COURSE ", recorded: collections.abc.Sequence[int], fastest: float, largest: float, threads: int, "
             "out: " SW_ARRAY SW_PROGRESS ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY
             ", dict[int, str]]"),
-        "Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and "
-        "neither "
-        "its outputs nor its twist are larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to "
+        "Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no "
+        "output, recorded or not, is larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to "
         "there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape "
-        "(numbers, members), "
-        "takes "
-        "the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.");
+        "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at "
+        "rest are not run.");
     core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
              nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
              "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");

@@ -13,11 +13,12 @@ namespace {
 using Times = Pack<lanes>;
 
 /// Adds a wave, A sin(2 pi (f t + g t^2 / 2) + phi), and its rate.
-void add(const Wave& wave, const Times& t, Times& value, Times& rate) {
-    const Times turned = (Times(0.5 * wave.sweep) * t + Times(wave.frequency)) * t;
-    const SinCos<Times> at = sincos(Times(2.0 * pi) * (turned - rint(turned)) + Times(wave.phase));
-    value = value + Times(wave.amplitude) * at.sin;
-    rate = rate + Times(2.0 * pi * wave.amplitude) * (Times(wave.sweep) * t + Times(wave.frequency)) * at.cos;
+template <class S>
+void add(const Wave& wave, const S& t, S& value, S& rate) {
+    const S turned = (S(0.5 * wave.sweep) * t + S(wave.frequency)) * t;
+    const SinCos<S> at = sincos(S(2.0 * pi) * (turned - rint(turned)) + S(wave.phase));
+    value = value + S(wave.amplitude) * at.sin;
+    rate = rate + S(2.0 * pi * wave.amplitude) * (S(wave.sweep) * t + S(wave.frequency)) * at.cos;
 }
 
 /// The piece that holds at an instant, or just before it.
@@ -25,6 +26,16 @@ std::size_t piece_at(const Signal& signal, double instant, Side side) {
     const auto second = signal.start.begin() + 1, end = signal.start.end();
     const auto next = side == Side::before ? std::lower_bound(second, end, instant) : std::upper_bound(second, end, instant);
     return std::size_t(next - second);
+}
+
+/// A signal, and its rate, by one of its pieces.
+struct Value {
+    double value, rate;
+};
+Value along(const Signal& signal, std::size_t piece, double instant) {
+    Value at{(instant - signal.start[piece]) * signal.slope[piece] + signal.level[piece], signal.slope[piece]};
+    for (const Wave& wave : signal.waves) add(wave, instant, at.value, at.rate);
+    return at;
 }
 
 /// As many as a pack holds.
@@ -65,10 +76,12 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
     const auto ends = instants + 1, last = ends + steps;
     const auto& starts = signal.start;  // of pieces, at which the left limits are others
     const auto within = std::upper_bound(starts.begin(), starts.end(), *instants);
+    auto taken = instants;  // the end of the step before it is of the first piece that begins there, if several do but for rounding
     for (auto piece = within; piece != starts.end() && *piece <= *(last - 1); ++piece) {
         const auto end = std::lower_bound(ends, last, *piece);
         // A jump of another signal just beside this one may have taken the end of the step.
-        if (*end - *piece > 1e-6 * (*end - *(end - 1))) continue;
+        if (end == taken || *end - *piece > 1e-6 * (*end - *(end - 1))) continue;
+        taken = end;
         evaluate(signal, &*piece, 1, Side::before, value, rate);
         put(3 * std::size_t(end - ends) + 2, 0);
     }
@@ -85,6 +98,20 @@ void evaluate(const Signal& signal, const double* instants, std::size_t count, S
     evaluate_together(signal, last, side, last_values, last_rates);
     std::copy(last_values, last_values + rest, values + whole);
     std::copy(last_rates, last_rates + rest, rates + whole);
+}
+
+Unbroken::Unbroken(const Signals& signals_, double begin_)
+    : signals(signals_),
+      begin(begin_),
+      command(piece_at(signals.command, begin, Side::after)),
+      load_torque(piece_at(signals.load_torque, begin, Side::after)),
+      temperature(piece_at(signals.temperature, begin, Side::after)) {}
+
+Input<double> Unbroken::at(double fraction, double dt) const {
+    const double instant = begin + fraction * dt;
+    const Value commanded = along(signals.command, command, instant);
+    return {commanded.value, commanded.rate, along(signals.load_torque, load_torque, instant).value,
+            along(signals.temperature, temperature, instant).value};
 }
 
 void lay_out(const Signals& signals, const double* instants, std::size_t steps, double* inputs) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <strainwave/integrate/interval.hpp>
+
 #include <cstddef>
 #include <vector>
 
@@ -25,6 +27,19 @@ void evaluate(const Signal& signal, const double* instants, std::size_t count, S
 /// What drives a drive, one signal each.
 struct Signals {
     const Signal &command, &load_torque, &temperature;
+};
+
+/// The inputs from one instant until before the next at which one of them jumps: exactly, at any fraction of the way.
+class Unbroken {
+    const Signals signals;
+    const double begin;
+    const std::size_t command, load_torque, temperature;  ///< which piece of each holds
+
+public:
+    Unbroken(const Signals& signals_, double begin_);
+
+    Input<double> at(double fraction, double dt) const;
+    Interval<double> part(double from, double to, double dt) const { return {at(from, dt), at(0.5 * (from + to), dt), at(to, dt)}; }
 };
 
 /// The inputs of a course through instants[0..steps], as `Course` holds them: the right limits at the start of a step, the left at

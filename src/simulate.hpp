@@ -36,7 +36,7 @@ struct Verdict {
     double twist = 0.0;                    ///< largest recorded, rad
     double fastest = 0.0;                  ///< what steps had to follow up to that twist, rad/s
     double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
-    bool sound = false;                    ///< whether it ran, and all that was recorded and the twist mean something
+    bool sound = false;                    ///< whether it ran, and all outputs at all samples mean something
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
     std::string problem{};                 ///< why it did not begin, if it did not
 };
@@ -70,9 +70,10 @@ struct Instants {
     std::size_t count;
 };
 
-/// One trajectory in at most `most` steps, as long as a tolerance allows, none longer than those of its course. Writes channel c at
-/// wanted.at[k] to out[c * samples + k]. Throws OutOfBounds, ToleranceMissed, StepsSpent.
-Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
+/// One trajectory in at most `most` steps, as long as a tolerance allows, that end at all of `ends`, of which the first is its
+/// begin and between which no signal jumps. Writes channel c at wanted.at[k] to out[c * samples + k]. `pause` is called with the
+/// number of ends reached. Throws OutOfBounds, ToleranceMissed, StepsSpent.
+Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Signals& signals, const Instants& ends,
                                  const integrate::Tolerance& tolerance, long most, const Instants& wanted, double* out,
                                  std::size_t samples, Steps& steps, const Pause& pause);
 

@@ -155,8 +155,8 @@ private:
         const auto record = [&](const Output<S>& output) {
             const auto values = flattened<S>(output);
             rows.add(values);
-            for (const int channel : recorded) sound = select(S(largest) >= abs(values[channel]), sound, S(0.0));
-            twist = select(abs(output.twist) < twist, twist, abs(output.twist));  // keeps what is not a number
+            for (int c = 0; c < channels; ++c) sound = select(S(largest) >= abs(values[c]), sound, S(0.0));
+            twist = max(twist, abs(output.twist));
         };
         const Input<S> at_start = interval<S>(course.inputs).start;
         record(drive.output(drive.standing(drive.rest(), at_start), at_start));
@@ -164,7 +164,6 @@ private:
             if (stopping) throw Stopped{};
         });
         rows.flush();
-        sound = select(S(largest) >= twist, sound, S(0.0));
         tell(select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.fastest(twist)), sound);
     }
 

@@ -49,34 +49,34 @@ namespace {
 
 /// A run whose samples lie anywhere within its steps.
 template <class Compiled>
-typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled::State x, const Course& course,
-                                        const integrate::Tolerance& tolerance, long most, const Instants& wanted, Writer& record,
-                                        Steps& steps, const Pause& pause) {
+typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled::State x, const Signals& signals,
+                                        const Instants& ends, const integrate::Tolerance& tolerance, long most,
+                                        const Instants& wanted, Writer& record, Steps& steps, const Pause& pause) {
     using Standing = typename Compiled::Standing;
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
     const auto smooth = called_step<double, Compiled>;
-    integrate::Adaptive<double, Compiled, decltype(smooth)> adaptive(drive, smooth, tolerance,
-                                                                     1e-2 * (course.instants[1] - course.instants[0]));
+    integrate::Adaptive<double, Compiled, decltype(smooth), Unbroken> adaptive(drive, smooth, tolerance,
+                                                                               1e-2 * (ends.at[1] - ends.at[0]));
     long taken = 0;
     Pauses pauses(pause);
-    for (std::size_t i = 0; i < course.steps; ++i) {
-        const Interval<double> u = interval<double>(course.inputs + 3 * driving * i);
-        const double begin = course.instants[i], dt = course.instants[i + 1] - begin;
-        const Standing start = drive.standing(x, u.start);
+    for (std::size_t i = 0; i + 1 < ends.count; ++i) {
+        const double begin = ends.at[i], dt = ends.at[i + 1] - begin;
+        const Unbroken u(signals, begin);
+        const Standing start = drive.standing(x, u.at(0.0, dt));
         if (has_bounds) check_bounds<double>(drive, start, begin);
         const auto within = [&](double done, double to, const Standing& end, const auto& standing_at) {
             if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
             pauses(taken++, i);
             if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
-            const double until = to < 1.0 ? begin + to * dt : course.instants[i + 1];
+            const double until = to < 1.0 ? begin + to * dt : ends.at[i + 1];
             while (record.k < wanted.count && wanted.at[record.k] <= until) {
                 const double at = clip((wanted.at[record.k] - begin) / dt, done, to);
                 record(drive.output(standing_at(at), u.at(at, dt)));
             }
         };
         x = adaptive.through(start, u, dt, within).state;
-        if (adaptive.gave_up()) throw ToleranceMissed{begin, course.instants[i + 1]};
+        if (adaptive.gave_up()) throw ToleranceMissed{begin, ends.at[i + 1]};
     }
     steps = {adaptive.accepted, adaptive.rejected};
     return x;
@@ -84,12 +84,12 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
 
 }  // namespace
 
-Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Course& course,
+Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Signals& signals, const Instants& ends,
                                  const integrate::Tolerance& tolerance, long most, const Instants& wanted, double* out,
                                  std::size_t samples, Steps& steps, const Pause& pause) {
     Writer record{out, samples};
     const auto runner = [&]<bool, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        return run_adaptively(compiled, from, course, tolerance, most, wanted, record, steps, pause);
+        return run_adaptively(compiled, from, signals, ends, tolerance, most, wanted, record, steps, pause);
     };
     return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
 }

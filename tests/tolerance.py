@@ -30,7 +30,7 @@ import numpy as np
 import strainwave as sw
 from strainwave import _core
 
-from tests.laws.test_gear import DRIVE, PLACES, cannot_create_energy, has_memory
+from tests.laws.test_gear import PLACES, cannot_create_energy, has_memory
 from tests.stress import model
 
 LOOSEST, TIGHTEST = 1e-4, 1e-7
@@ -57,7 +57,7 @@ class Excited:
     @classmethod
     def drawn(cls, number: int) -> Excited:
         random = np.random.default_rng(number)
-        while not calm(drive := DRIVE.replace(gear=model(sw.Gear, random))):
+        while not calm(drive := model(sw.drives.PositionDrive, random)):
             pass
         acting = random.uniform(1.0, 48.0), random.uniform(10.0, 100.0), random.normal(0.0, 10.0)
         return cls(drive, *acting, math.exp(random.uniform(math.log(TIGHTEST), math.log(LOOSEST))))

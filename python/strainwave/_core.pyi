@@ -55,9 +55,9 @@ def grid(step: float, duration: float, tolerance: float) -> numpy.typing.NDArray
     0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.
     """
 
-def course(steps: numpy.typing.NDArray[numpy.float64], samples: numpy.typing.NDArray[numpy.float64], breaks: numpy.typing.NDArray[numpy.float64], tolerance: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8]]:
+def course(steps: numpy.typing.NDArray[numpy.float64], samples: numpy.typing.NDArray[numpy.float64], breaks: numpy.typing.NDArray[numpy.float64], tolerance: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8], float]:
     """
-    All instants in order, whatever is within `tolerance` of its neighbour being one, and which of them are samples.
+    All instants in order, whatever is within `tolerance` of its neighbour being one, which of them are samples, and the longest step from one to the next.
     """
 
 class Gear:
@@ -346,14 +346,14 @@ def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: num
     The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on.
     """
 
-def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[State, int, int]:
+def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, command: Signal, load_torque: Signal, temperature: Signal, ends: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[State, int, int]:
     """
-    The state at the end, steps taken and steps given up; the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.
+    The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.
     """
 
 def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, largest: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
     """
-    Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and neither its outputs nor its twist are larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.
+    Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.
     """
 
 def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float:

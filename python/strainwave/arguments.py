@@ -43,12 +43,14 @@ def seconds(name: str, value: object) -> float:
     return number(name, value, "s", low=0.0)
 
 
-def whole(name: str, value: object, low: int) -> int:
-    """A whole number that is `low` or more."""
+def whole(name: str, value: object, low: int, high: int = 2**63 - 1) -> int:
+    """A whole number from `low` to `high`."""
     if not isinstance(value, Integral) or isinstance(value, bool):
         raise TypeError(f"{name} must be a whole number, not {shortened(value)}")
     if value < low:
         raise ValueError(f"{name} = {value} must be {low} or more")
+    if value > high:
+        raise ValueError(f"{name} = {value} must be {high} or less")
     return int(value)
 
 

@@ -84,5 +84,5 @@ class PositionDrive:
 
     def step(self, state: strainwave._core.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave._core.State:
         """
-        The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, and for a `dt` or a `temperature` that is not positive.
+        The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
         """

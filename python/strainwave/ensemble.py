@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     import pyarrow
 
 Array = NDArray[np.float64]
+MOST_THREADS = 2**31 - 1  # that the core can count
 OUTPUTS = [name for name, _, _ in _core.outputs]
 SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 PART = 64 << 20  # bytes of output that a part of the files holds at most, where one pack does not need more
@@ -89,7 +90,8 @@ class Ensemble:
         """What `simulate_to` wrote to a folder, all of it, also where it was interrupted: the members that were done."""
         import pyarrow.parquet as parquet
 
-        parts = sorted(Path(folder, "members").glob("part-*.parquet"))  # written after their samples
+        written = Path(folder, "members").glob("part-*.parquet")  # after their samples
+        parts = sorted(written, key=lambda part: (len(part.name), part.name))  # of a million and more parts, too
         if not parts:
             raise ValueError(f"{folder} holds no ensemble: there is no members/part-*.parquet")
         tables = [parquet.read_table(Path(folder, "samples", part.name)) for part in parts]
@@ -116,7 +118,6 @@ class _Plan:
     course: Course
     inputs: Array
     recorded: list[str]
-    dt: float
     threads: int
 
     @classmethod
@@ -133,10 +134,10 @@ class _Plan:
         arguments.drive(drive)
         numbers, values = _checked(drive, parameters)
         recorded = _outputs(record)
-        threads = available_threads() if threads is None else arguments.whole("threads", threads, 1)
+        threads = available_threads() if threads is None else arguments.whole("threads", threads, 1, MOST_THREADS)
         dt = arguments.seconds("dt", dt)
         course = excitation.course(dt, dt if sample is None else arguments.seconds("sample", sample))
-        return cls(drive, numbers, values, course, excitation.over(course), recorded, dt, threads)
+        return cls(drive, numbers, values, course, excitation.over(course), recorded, threads)
 
     @property
     def members(self) -> int:
@@ -163,14 +164,14 @@ class _Plan:
             self.inputs,
             self.course.samples[1:],
             channels,
-            COARSEST / self.dt,
+            COARSEST / self.course.longest,
             LARGEST,
             self.threads,
             outputs,
             shown,  # type: ignore[arg-type]
         )
         failures = self.failures(outputs, sound, twists, fastest, refusals)
-        _tell_of_bristles(self.dt, on_bristles)
+        _tell_of_bristles(self.course.longest, on_bristles)
         outputs[:, list(failures), :] = np.nan
         units = output_units(self.drive)
         return Ensemble(
@@ -186,14 +187,14 @@ class _Plan:
     ) -> dict[int, str]:
         """Why members have no result, as `simulate` would say it of each alone."""
         found = dict(refusals)
-        coarse = fastest > COARSEST / self.dt
+        coarse = fastest > COARSEST / self.course.longest
         at_rest = coarse & (twists == 0.0)  # such members are not run
         sound = at_rest | ran
         for member in np.flatnonzero(~sound | coarse).tolist():
             if member not in found and not sound[member]:
-                found[member] = diverged(self.time, self.recorded, outputs[:, member], remedy(self.dt))
+                found[member] = diverged(self.time, self.recorded, outputs[:, member], remedy(self.course.longest))
             elif member not in found:
-                found[member] = too_coarse(self.dt, float(twists[member]), float(fastest[member]))
+                found[member] = too_coarse(self.course.longest, float(twists[member]), float(fastest[member]))
         return dict(sorted(found.items()))
 
 

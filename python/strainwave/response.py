@@ -186,7 +186,7 @@ class _Sines:
             state = _core.simulate(
                 self.drive, state, course.instants, inputs, course.samples[1:], _core.Method.exponential, outputs, 1
             )
-            run = recording(self.drive, course, outputs, step)
+            run = recording(self.drive, course, outputs)
             yield {name: run[name] for name in run.names if name != "time"}
 
 

@@ -45,6 +45,9 @@ class Derivatives:
         derivative: Array = self.values[list(self.parameters).index(path), outputs.index(output)]
         return derivative
 
+    def __reduce__(self) -> tuple[type[Derivatives], tuple[object, ...]]:
+        return Derivatives, (self.run, dict(self.parameters), self.values)
+
     def __repr__(self) -> str:
         return f"<Derivatives of {len(self.run)} samples by {', '.join(self.parameters)}>"
 
@@ -90,8 +93,8 @@ def derivatives(
     places = chosen("parameters", drive, parameters)
     if not places:
         raise ValueError("parameters must name at least one number")
-    warn_of_bristles(drive, dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
+    warn_of_bristles(drive, min(dt, interval))
     run, values = differentiate(drive, command, [each.number for each in places], dt, interval, load_torque, temperature)
     endless = [each.path for each, slopes in zip(places, values, strict=True) if not np.isfinite(slopes).all()]
     if endless:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,16 +23,19 @@ COARSEST = 1.0  # step times angular frequency of a drive's own motion
 ROOM_TEMPERATURE = 293.15  # K
 LARGEST = 1e15  # of all that is recorded: no angle beyond is told to within a radian
 _TWIST = [name for name, _, _ in _core.outputs].index("twist")
-LONGEST, SHORTEST = 5e-3, 1e-6  # s, of the stretches over which inputs are known at start, middle and end
+STRETCH = 5e-3  # s, after which an adaptive step ends at the latest
+PER_PERIOD = 5.0  # such steps in a period of an input, at the least
+MOST_INSTANTS = 1e9  # what memory could hold
 CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
 
 
 @dataclass(frozen=True)
 class Course:
-    """A stretch of time cut into steps: where they end, and which ends are samples of the recording."""
+    """A stretch of time cut into steps: where they end, which ends are samples of the recording, and the longest step [s]."""
 
     instants: Array
     samples: NDArray[np.uint8]
+    longest: float
 
     @classmethod
     def through(cls, duration: float, dt: float, samples: float | Array, breaks: Array) -> Course:
@@ -41,10 +44,11 @@ class Course:
         Where neither asks for more, steps are exactly `dt`; the last may be shorter.
         """
         apart = float(np.min(np.diff(samples))) if isinstance(samples, np.ndarray) else samples
-        nearest = 1e-9 * min(dt, apart, duration)
+        nearest = max(1e-9 * min(dt, apart, duration), 4.0 * float(np.spacing(duration)))
         if not isinstance(samples, np.ndarray):
             samples = grid(samples, duration, nearest)
-        return cls(*_core.course(grid(dt, duration, nearest), samples, np.sort(breaks), nearest))
+        instants, sampled, longest = _core.course(grid(dt, duration, nearest), samples, np.sort(breaks), nearest)
+        return cls(instants, sampled, min(longest, dt))  # longer by rounding
 
     @property
     def times(self) -> Array:
@@ -55,7 +59,7 @@ class Course:
     def chunks(self) -> Iterator[Course]:
         """The same course in pieces that follow each other."""
         for start in range(0, len(self.instants) - 1, CHUNK):
-            yield Course(self.instants[start : start + CHUNK + 1], self.samples[start : start + CHUNK + 1])
+            yield Course(self.instants[start : start + CHUNK + 1], self.samples[start : start + CHUNK + 1], self.longest)
 
 
 @dataclass(frozen=True)
@@ -88,33 +92,16 @@ class Excitation:
         breaks = np.concatenate([signal.breaks for signal in signals if isinstance(signal, Scenario)])
         return Course.through(self.command.duration, dt, dt if samples is None else samples, breaks)
 
-    def instants(self, rtol: float) -> Array:
-        """Ends of stretches over which what a step knows of the inputs between start, middle and end is within `rtol`."""
+    def ends(self) -> Array:
+        """Where adaptive steps must end [s]: wherever an input jumps, and so often that none is as long as a period of one."""
         signals = [signal for signal in (self.command, self.load_torque, self.temperature) if isinstance(signal, Scenario)]
-        breaks = np.unique(np.concatenate([[0.0, self.command.duration], *(signal.breaks for signal in signals)]))
-        ends = np.unique(np.concatenate((breaks, grid(LONGEST, self.command.duration, 1e-9 * LONGEST))))
-        ends = ends[np.append(True, np.diff(ends) > 1e-12 * self.command.duration)]
-        while len(coarse := self._coarse(ends, rtol)):
-            ends = np.sort(np.append(ends, 0.5 * (ends[coarse] + ends[coarse + 1])))
+        duration = self.command.duration
+        fastest = max((abs(w.frequency + t * w.sweep) for s in signals for w in s.waves for t in (0.0, duration)), default=0.0)
+        regular = grid(1.0 / max(1.0 / STRETCH, PER_PERIOD * fastest), duration, 1e-9 * STRETCH)
+        ends = np.unique(np.concatenate([regular, *(signal.breaks for signal in signals)]))
+        if isinstance(self.temperature, Scenario):
+            check_temperature(float(min(self.temperature.value(ends).min(), self.temperature.value_before(ends).min())))
         return ends
-
-    def _coarse(self, ends: Array, rtol: float) -> NDArray[np.intp]:
-        """The stretches within which a step misses an input by more than `rtol` of the largest it is.
-
-        Looked for at places that no wave has in common.
-        """
-        start, span = ends[:-1], np.diff(ends)
-        missed = np.zeros(len(start), dtype=bool)
-        for signal in (self.command, self.load_torque, self.temperature):
-            if not isinstance(signal, Scenario):
-                continue
-            begin, middle, end = signal.value(start), signal.value(start + 0.5 * span), signal.value_before(ends[1:])
-            bow = 2.0 * (begin - 2.0 * middle + end)
-            places = (0.1371, 0.2718, 0.4093, 0.6180, 0.7321, 0.8862)
-            values = np.array([signal.value(start + place * span) for place in places])
-            known = np.array([begin + place * ((end - begin - bow) + place * bow) for place in places])
-            missed |= np.abs(values - known).max(axis=0) > max(rtol, 1e-13) * max(np.abs(values).max(), np.abs(begin).max())
-        return np.flatnonzero(missed & (span > SHORTEST))
 
     @cached_property
     def signals(self) -> tuple[_core.Signal, _core.Signal, _core.Signal]:
@@ -167,6 +154,9 @@ class Run(Recording):
         run._hold(_columns(time, outputs), output_units(drive), _title(method))
         run._came_about(end, method)
         return run
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Run, (dict(self.columns), dict(self.units), self.end, self.method)
 
     def _came_about(self, end: _core.State, method: str) -> None:
         object.__setattr__(self, "end", end)
@@ -240,10 +230,10 @@ def simulate(
     arguments.drive(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    state = drive.rest() if start is None else arguments.state("start", start)
+    state = _beginning_at(drive, start)
     excitation = Excitation(command, load_torque, temperature)
-    longest = min(dt, interval, command.duration)
-    if method is None and longest * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
+    course = excitation.course(dt, interval)
+    if method is None and course.longest * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
         return simulate_adaptively(
             drive,
             command,
@@ -254,8 +244,7 @@ def simulate(
             progress=progress,
         )
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
-        check_resolution(drive, dt, 0.0)
-    course = excitation.course(dt, interval)
+        check_resolution(drive, course.longest, 0.0)
     taken = method or "exponential"
     time = course.times
     outputs, first = beginning(drive, state, excitation, len(time)), 1
@@ -265,11 +254,16 @@ def simulate(
             inputs, keep = excitation.over(chunk), chunk.samples[1:]
             state = _core.simulate(drive, state, chunk.instants, inputs, keep, _core.Method[taken], outputs, first, report)
             first += int(np.count_nonzero(keep))
-    _check_meaning(time, outputs, remedy(dt))
+    _check_meaning(time, outputs, remedy(course.longest))
     if method != "rosenbrock":
-        check_resolution(drive, dt, _largest_twist(outputs))
-    warn_of_bristles(drive, longest)
-    return Run._made(drive, time, outputs, state, f"{_named(taken, drive)}, steps of {dt:g} s")
+        check_resolution(drive, course.longest, _largest_twist(outputs))
+    warn_of_bristles(drive, course.longest)
+    return Run._made(drive, time, outputs, state, f"{_named(taken, drive)}, steps of {course.longest:g} s")
+
+
+def _beginning_at(drive: PositionDrive, start: _core.State | None) -> _core.State:
+    """The state a run begins in, its sides sliding or not as their friction has it."""
+    return drive.rest() if start is None else _core.consistent(drive, arguments.state("start", start))
 
 
 def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, samples: int) -> Array:
@@ -340,21 +334,15 @@ def simulate_adaptively(
     atol = arguments.number("atol", atol, low=0.0)
     sample = arguments.seconds("sample", sample)
     most_steps = arguments.whole("most_steps", most_steps, 1)
-    state = drive.rest() if start is None else arguments.state("start", start)
+    state = _beginning_at(drive, start)
     excitation = Excitation(command, load_torque, temperature)
-    samples = grid(sample, command.duration, 1e-9 * sample)
-    instants = excitation.instants(rtol)
-    outputs, done, accepted, rejected = beginning(drive, state, excitation, len(samples)), 1, 0, 0
-    with progressing(progress, len(instants) - 1) as shown:
-        for first in range(0, len(instants) - 1, CHUNK):
-            chunk = Course(instants[first : first + CHUNK + 1], np.empty(0, np.uint8))
-            report = None if shown is None else lambda done, begun=first, show=shown: show(begun + done)
-            within = samples[(samples > chunk.instants[0]) & (samples <= chunk.instants[-1])]
-            inputs, left = excitation.over(chunk), most_steps - accepted
-            state, taken, given_up = _core.simulate_adaptively(
-                drive, state, chunk.instants, inputs, rtol, atol, left, within, outputs, done, report
-            )
-            done, accepted, rejected = done + len(within), accepted + taken, rejected + given_up
+    samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
+    ends = excitation.ends()
+    outputs = beginning(drive, state, excitation, len(samples))
+    with progressing(progress, len(ends) - 1) as shown:
+        state, accepted, rejected = _core.simulate_adaptively(
+            drive, state, *excitation.signals, ends, rtol, atol, most_steps, samples[1:], outputs, 1, shown
+        )
     _check_meaning(samples, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
     return Run._made(drive, samples, outputs, state, f"{_named('exponential', drive)}, {kept}")
@@ -379,10 +367,10 @@ def differentiate(
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
     excitation = Excitation(command, load_torque, temperature)
-    check_resolution(drive, dt, 0.0)
     course = excitation.course(dt, samples)
+    check_resolution(drive, course.longest, 0.0)
     outputs, slopes = _core.differentiate(drive, course.instants, excitation.over(course), course.samples[1:], list(numbers))
-    return recording(drive, course, outputs, dt), slopes
+    return recording(drive, course, outputs), slopes
 
 
 def check_temperature(lowest: float) -> None:
@@ -394,14 +382,18 @@ def grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
     if step < np.spacing(duration):
         raise ValueError(f"steps of {step:g} s cannot be told apart within {duration:g} s")
+    if duration > MOST_INSTANTS * step:
+        raise MemoryError(
+            f"{duration / step:.3g} steps of {step:g} s in {duration:g} s are more than memory holds; take longer ones"
+        )
     return _core.grid(step, duration, tolerance)
 
 
-def recording(drive: PositionDrive, course: Course, outputs: Array, dt: float) -> Recording:
+def recording(drive: PositionDrive, course: Course, outputs: Array) -> Recording:
     """What a run recorded, shape (channels, samples), if its numbers mean anything."""
     time = course.times
-    _check_meaning(time, outputs, remedy(dt))
-    check_resolution(drive, dt, _largest_twist(outputs))
+    _check_meaning(time, outputs, remedy(course.longest))
+    check_resolution(drive, course.longest, _largest_twist(outputs))
     return Recording(_columns(time, outputs), output_units(drive), title="simulation")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import strainwave as sw
@@ -92,6 +94,112 @@ def test_double_pack_and_dual_run_one_trajectory(drive: PositionDrive, seed: int
 def test_the_swing_makes_a_set_valued_side_stick_and_slip(name: str, side: str) -> None:
     stuck = sw.simulate(DRIVES[name], SWING, DT, sample=SAMPLE)[f"{side}_speed"] == 0.0
     assert np.count_nonzero(np.diff(stuck)) >= 4
+
+
+PLACES = ("friction_input", "friction_mesh", "friction_output")
+OTHER_LAWS: dict[str, dict[str, Any]] = {
+    "plain_ratio": {"kinematics": sw.kinematics.PlainRatio(reduction=80.0)},
+    "misalignment": {
+        "kinematic_error": sw.kinematic_error.Misalignment(
+            offset=1e-5,
+            housing_eccentricity=2e-5,
+            housing_direction=0.3,
+            housing_tilt_x=1e-2,
+            housing_tilt_y=2e-2,
+            generator_eccentricity=1e-5,
+            generator_direction=1.1,
+            generator_tilt_x=1e-2,
+            generator_tilt_y=3e-2,
+        )
+    },
+    "linear": {"stiffness": sw.stiffness.Linear(k=1.2e4)},
+    "piecewise": {"stiffness": sw.stiffness.Piecewise(k1=8e3, k2=2e3, knee=5e-5)},
+    "three_segment": {"stiffness": sw.stiffness.ThreeSegment(k1=8e3, k2=1e4, k3=1.3e4, t1=0.4, t2=0.9)},
+    "multi_compliance": {"stiffness": sw.stiffness.MultiCompliance(reduction=100.0)},
+    "fading_memory": {"hysteresis": sw.hysteresis.FadingMemory(stiffness=[3e3, 1e3], forgetting=[5e3, 2e3])},
+    "bouc_wen": {"hysteresis": sw.hysteresis.BoucWen(stiffness=4e3, saturation=0.4, sharpness=1.5, shape=0.6)},
+    "preisach": {
+        "hysteresis": sw.hysteresis.Preisach(density=sw.hysteresis.PowerDensity(limit=3e-4, saturation=0.5, exponent=1.5))
+    },
+    "regimes": {
+        "hysteresis": sw.hysteresis.Regimes(
+            positive_unloading=4e3,
+            negative_loading=1e3,
+            negative_unloading=4.5e3,
+            positive_loading=1.5e3,
+            onset=0.05,
+            lost_motion=1e-4,
+        )
+    },
+    "position_dependent": {
+        "friction_input": sw.friction.PositionDependent(
+            quadratic=1e-4,
+            linear=1e-3,
+            constant=0.02,
+            cosine=[0.002],
+            sine=[0.003],
+            static_ratio=1.2,
+            speed_factor=0.3,
+            reference_speed=1.0,
+            viscous=5e-5,
+            domain_start=-20.0,
+            domain_end=20.0,
+        )
+    },
+    "load_dependent": {
+        "friction_mesh": sw.friction.LoadDependent(
+            driving_forward=0.2, driving_reverse=0.25, backdriving_forward=0.3, backdriving_reverse=0.35
+        )
+    },
+    "torque_efficiency": {
+        "friction_mesh": sw.friction.TorqueEfficiency(average_loss=0.2, difference_loss=0.05, presliding=1e-3, viscous=0.1)
+    },
+    "maxwell_slip_friction": {
+        "friction_input": sw.friction.MaxwellSlipFriction(
+            stiffness=[2.0, 1.0],
+            share=[0.6, 0.4],
+            coulomb=0.02,
+            breakaway=0.03,
+            stribeck_speed=2.0,
+            attraction=0.5,
+            viscous=5e-5,
+        )
+    },
+    "cyclic": {"friction_input": sw.friction.Cyclic(law=SMOOTH.gear.friction_input, order=[2.0], amplitude=[0.2], phase=[0.3])},
+    "thermal": {
+        "friction_input": sw.friction.Thermal(
+            law=SMOOTH.gear.friction_input, dry_fall=0.01, viscous_fall=0.02, reference_temperature=300.0
+        )
+    },
+}
+
+
+def test_every_law_of_a_gear_that_has_numbers_has_its_derivatives_looked_at() -> None:
+    families = ("kinematics", "kinematic_error", "stiffness", "hysteresis")
+    of_drives = {getattr(drive.gear, part).name for drive in DRIVES.values() for part in (*families, *PLACES)}
+    known = {name for family in (*families, "friction") for name in _core.families[family]}
+    assert known - of_drives - set(OTHER_LAWS) == {"strain_wave"}
+
+
+@pytest.mark.parametrize("law", OTHER_LAWS.values(), ids=OTHER_LAWS)
+def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: dict[str, Any]) -> None:
+    """Through stick, slip and reversals, to a part in 1e5 of the largest of each output: kinks let differences show no more."""
+    drive = SMOOTH.replace(gear=SMOOTH.gear.replace(**law))
+    (part,) = law
+    base, known = numbers(drive), [path for path, *_ in _core.parameters(drive)]
+    own = [i for i, path in enumerate(known) if path.startswith(f"gear.{part}.") and ".domain_" not in path]
+    run, slopes = differentiate(drive, SWING, own, DT, SAMPLE)
+    for i, slope in zip(own, slopes, strict=True):
+        h = 1e-5 * abs(base[i])
+        pair = []
+        for sign in (1.0, -1.0):
+            varied = base.copy()
+            varied[i] += sign * h
+            pair.append(columns(sw.simulate(_core.with_numbers(drive, varied), SWING, DT, sample=SAMPLE)))
+        shown = (pair[0] - pair[1]) / (2.0 * h)
+        size, rounding = np.abs(slope).max(axis=1), 1e-12 * scales(drive, run)[:, 0] / h
+        assert np.any(size > 1e3 * rounding), known[i]
+        assert np.all(np.abs(slope - shown) <= (1e-5 * size + rounding)[:, None]), known[i]
 
 
 @every_drive

@@ -333,11 +333,16 @@ def test_the_reason_is_that_of_the_member_alone(kind: str) -> None:
     assert str(alone.value) == reason
 
 
-def test_a_member_whose_twist_alone_diverged_is_told_too() -> None:
+def test_a_member_of_which_nothing_that_is_recorded_diverged_is_told_too() -> None:
     drive, path, good, bad, _ = FAILING["diverged"]
     with pytest.warns(EnsembleWarning):
         runs = sw.simulate_many(drive, RISE, {path: [good, bad]}, 5e-4, record=["command"])
-    assert runs.failures == {1: "the simulation diverged; take a smaller dt (now 0.0005 s) or check the parameters"}
+    said = "the simulation diverged; take a smaller dt (now 0.0005 s) or check the parameters"
+    assert runs.failures == {1: said}
+    isolated = DRIVE.replace(control=sw.control.OpenLoop(), motor=DRIVE.motor.replace(resistance=1e16))
+    with pytest.warns(EnsembleWarning):  # of all outputs only the voltage is beyond all bounds
+        runs = sw.simulate_many(isolated, RISE, {"control.gain": [1.0, 1e18]}, 5e-4, record=["torque"])
+    assert runs.failures == {1: said}
 
 
 # Progress and interruption

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 from typing import Any
 
@@ -90,6 +91,13 @@ def test_steps_too_coarse_at_rest_are_refused_as_they_are_of_a_run() -> None:
         sw.simulate(drive, volts)
     with pytest.raises(FloatingPointError, match=re.escape(str(refusal.value))):
         sw.derivatives(drive, volts, ["load.inertia"])
+
+
+def test_derivatives_go_through_a_pickle() -> None:
+    found = sw.derivatives(DRIVE, command(0.05), ["motor.resistance", "load.inertia"], sample=1e-3)
+    again = pickle.loads(pickle.dumps(found))
+    assert np.array_equal(again.values, found.values)
+    assert (again.run, again.parameters) == (found.run, found.parameters)
 
 
 def test_what_there_is_not_is_refused_with_what_there_is() -> None:

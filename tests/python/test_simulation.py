@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import os
+import pickle
 import re
 import signal
 import threading
@@ -78,6 +80,36 @@ def test_jumps_of_two_signals_at_one_instant_but_for_rounding_are_seen_by_the_ne
     assert inputs[:, :, 2].tolist() == 3 * [[0.0] * 3] + 2 * [[2.0] * 3]
 
 
+@pytest.mark.parametrize("second", [0.1 * 3, 0.3 + 1e-13])
+def test_two_jumps_of_one_signal_at_one_instant_but_for_rounding_are_seen_by_the_next_step_alone(second: float) -> None:
+    twice = sw.scenario.step(1.0, duration=0.5, start=0.3) + sw.scenario.step(2.0, duration=0.5, start=second)
+    excitation = Excitation(twice)
+    inputs = excitation.over(excitation.course(0.1, None))
+    assert inputs[:, :, 0].tolist() == 3 * [[0.0] * 3] + 2 * [[3.0] * 3]
+
+
+@pytest.mark.parametrize(("dt", "sample", "duration"), [(1e-4, 3e-4, 649.5), (1e-4, 1e-3, 600.0003)])
+def test_a_long_run_has_no_slivers_and_no_sample_twice(dt: float, sample: float, duration: float) -> None:
+    """Multiples of steps and of samples are apart by rounding, which is more than a share of a step then."""
+    course = Course.through(duration, dt, sample, np.empty(0))
+    assert np.diff(course.instants).min() > 1e-3 * dt
+    assert len(course.times) == math.ceil(duration / sample * (1.0 - 1e-12)) + 1
+
+
+def test_steps_are_judged_by_how_long_they_are() -> None:
+    """However long they may be: here samples and the end cut them."""
+    fast = DRIVE.replace(load=sw.loads.Inertia(inertia=1e-4), control=sw.control.OpenLoop())
+    volts = sw.scenario.constant(5.0, 2e-3)
+    with pytest.raises(FloatingPointError, match="too coarse"):
+        sw.simulate(fast, volts, 2e-4)
+    short = sw.simulate(fast, volts, 2e-4, sample=2e-5)
+    assert short.method == sw.simulate(fast, volts, 2e-5).method
+    assert short["torque"] == pytest.approx(sw.simulate(fast, volts, 2e-5)["torque"], rel=1e-9)
+    assert not sw.simulate_many(fast, volts, {"load.inertia": [1e-4]}, 2e-4, sample=2e-5).failures
+    assert sw.derivatives(fast, volts, ["load.inertia"], 2e-4, sample=2e-5).run["torque"].tolist() == short["torque"].tolist()
+    assert len(sw.simulate(fast, sw.scenario.constant(5.0, 2e-5), 2e-4)) == 2
+
+
 @pytest.mark.parametrize("steps", [255, 256, 257, 512])
 def test_a_jump_is_seen_wherever_inputs_are_laid_out_in_pieces(steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
     jump = steps * 2.0**-10
@@ -115,6 +147,19 @@ def test_steps_and_samples_longer_than_the_run_end_with_it(dt: float, sample: fl
 def test_a_step_by_hand_is_given_numbers_that_mean_something(inputs: dict[str, float], words: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(words)}$"):
         DRIVE.step(DRIVE.rest(), **{"dt": 1e-3} | inputs)
+
+
+def test_a_step_by_hand_is_refused_where_a_run_is() -> None:
+    narrow = sw.friction.PositionDependent(domain_start=-10.0, domain_end=9.3)
+    bounded = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=narrow))
+    rest = bounded.rest()
+    turned = rest.replace(motion=rest.motion.replace(input_speed=1e3), turns=2.0)
+    with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = .* outside of \[-10, 9\.3\]"):
+        bounded.step(turned, dt=1e-4)
+    with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = .* first at t = 0\.0001 s"):
+        bounded.step(turned.replace(turns=1.0, motion=turned.motion.replace(input_angle=3.0)), dt=1e-4)
+    with pytest.raises(FloatingPointError, match=r"^the step diverged; take a smaller dt"):
+        DRIVE.step(DRIVE.rest(), command=1e308, dt=1e308)
 
 
 def test_inputs_are_the_left_limits_at_the_end_of_a_step() -> None:
@@ -460,6 +505,27 @@ def test_an_hour_of_steps_loses_no_angle_speed_or_twist() -> None:
 
 
 # What a run may start from, and at which steps
+
+
+@pytest.mark.parametrize("simulate", [sw.simulate, sw.simulate_adaptively])
+def test_the_first_sample_of_a_run_from_the_end_of_another_drive_is_that_of_its_own_friction(
+    simulate: Callable[..., sw.Run],
+) -> None:
+    running = DRIVE.replace(control=sw.control.OpenLoop())
+    smooth = running.replace(gear=DRIVE.gear.replace(friction_input=sw.friction.Viscous(viscous=1e-4)))
+    sticking = running.replace(gear=DRIVE.gear.replace(friction_input=sw.friction.Coulomb(coulomb=0.02)))
+    backwards = sw.scenario.constant(-20.0, 0.1)
+    run = simulate(sticking, backwards, start=sw.simulate(smooth, backwards).end)
+    assert run["input_speed"][0] < 0.0
+    assert run["friction_input"][0] == run["friction_input"][1] == -0.02
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda run: pickle.loads(pickle.dumps(run))])
+def test_a_copy_of_a_run_is_one(copied: Callable[[sw.Run], sw.Run]) -> None:
+    run = sw.simulate(DRIVE, HELD)
+    again = copied(run)
+    assert same(again, run)
+    assert (again.end, again.method, again.title) == (run.end, run.method, run.title)
 
 
 def test_a_start_in_motion_slides_whatever_the_state_says_of_sliding() -> None:

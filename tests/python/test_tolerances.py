@@ -168,6 +168,25 @@ def test_an_input_that_varies_within_a_step_is_followed() -> None:
     assert difference(sw.simulate_adaptively(SMOOTH, command(0.1), rtol=1e-7, load_torque=load), exact) < 1e-6
 
 
+@pytest.mark.parametrize(
+    ("period", "width", "duration"),
+    [(0.3, 0.05, 0.4), (0.1 * 3, 0.05, 0.4), (0.3 - 1e-15, 0.05, 0.4), (0.7, 0.1, 0.8), (0.09, 0.01, 0.1), (0.02, 1e-14, 0.1)],
+)
+def test_inputs_jump_anywhere(period: float, width: float, duration: float) -> None:
+    """A rounding beside where steps end anyway, and before the end: 0.7 + 0.1 is less than 0.8."""
+    pulse = sw.scenario.pulse_train(0.01, period, width, duration)
+    exact = sw.simulate(SMOOTH, pulse, 2e-6, sample=1e-3)
+    assert difference(sw.simulate_adaptively(SMOOTH, pulse, rtol=1e-7), exact) < 1e-6
+
+
+@pytest.mark.parametrize("frequency", [800.0, 12345.6])
+def test_an_input_faster_than_the_drive_is_not_overlooked(frequency: float) -> None:
+    """Of 800 Hz a step of 5 ms would see nothing but zeros."""
+    load = sw.scenario.sine(20.0, frequency, 0.05)
+    exact = sw.simulate(SMOOTH, command(0.05), 1e-6, sample=1e-3, load_torque=load)
+    assert difference(sw.simulate_adaptively(SMOOTH, command(0.05), rtol=1e-5, load_torque=load), exact) < 1e-4
+
+
 def test_what_cannot_be_a_tolerance_is_refused() -> None:
     for rtol in (0.0, 1e-12, 0.1, float("nan")):
         with pytest.raises(ValueError, match=r"^rtol = .* must lie in \[1e-11, 0\.01\]$"):
@@ -190,3 +209,5 @@ def test_a_run_that_needs_more_steps_than_allowed_says_how_far_they_led_and_what
         sw.simulate_adaptively(DRIVE, command(0.1), most_steps=taken - 1)
     with pytest.raises(ValueError, match=r"^most_steps = 0 must be 1 or more$"):
         sw.simulate_adaptively(DRIVE, command(0.1), most_steps=0)
+    with pytest.raises(ValueError, match=r"^most_steps = 10{30} must be 9223372036854775807 or less$"):
+        sw.simulate_adaptively(DRIVE, command(0.1), most_steps=10**30)

@@ -12,9 +12,9 @@ struct Tolerance {
 
 /// Steps as long as a tolerance allows, taken by `smooth`, which knows no events and is of fourth order; by Moreau and Jean's
 /// scheme where events chatter. The error of two steps is told by one of twice their length. A step ends where a side stops, breaks
-/// away or turns round. Between its ends a step is known as exactly as there: by a step of part of its length. For scalars that are
-/// plain numbers.
-template <class S, class Drive, class Smooth>
+/// away or turns round. Between its ends a step is known as exactly as there: by a step of part of its length. `Inputs` tells what
+/// drives the drive at a fraction of an interval, and over a part of it. For scalars that are plain numbers.
+template <class S, class Drive, class Smooth, class Inputs = Interval<S>>
 class Adaptive {
     using Standing = typename Drive::Standing;
     static constexpr int n = size_of<S, typename Drive::Motion> + 1;
@@ -38,7 +38,7 @@ public:
     /// The drive after the interval `u` of `dt` [s]. Calls within(done, to, end, at) for each step taken: between which fractions
     /// of the interval, where the drive stands at its end, and a function that tells where at any fraction in between.
     template <class Within>
-    constexpr Standing through(Standing from, const Interval<S>& u, const S& dt, const Within& within) {
+    constexpr Standing through(Standing from, const Inputs& u, const S& dt, const Within& within) {
         S done{0.0};
         while (done < S(1.0)) {
             if (drive.sets_off(from)) from = drive.released(from, u.at(done, dt));
@@ -85,12 +85,13 @@ private:
     constexpr bool chatters() const { return events >= most_events; }
 
     /// Whether a step of some `length` [s] that misses so much may stand, be it as one of the shortest; and how long the next one
-    /// is. What an event has `cut` says nothing of longer ones.
+    /// is. What an event has `cut` says nothing of longer ones, nor does what the end of the interval has made much shorter.
     constexpr bool stands(const S& error, const S& length, bool cut) {
+        const S most_growth(4.0);
         // An error of what is not a number is larger than any; a step must not become nothing.
-        const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), S(4.0)) : S(0.2);
+        const S factor = error < S(1e4) ? clip(S(0.9) * exp(S(-0.25) * log(max(error, S(1e-3)))), S(0.2), most_growth) : S(0.2);
         const bool kept = error <= S(1.0), last = next <= S(shortest);
-        if (!cut || !kept) next = max(length * factor, S(shortest));
+        if (!kept || !(cut || most_growth * length < next)) next = max(length * factor, S(shortest));
         ++(kept || last ? accepted : rejected);
         if (kept || last) missed = kept ? 0 : missed + 1;
         return kept || last;
@@ -101,17 +102,17 @@ private:
         Standing whole, half, end;
         S begin, middle, to;
     };
-    constexpr Trial trial(const Standing& from, const Interval<S>& u, const S& dt, const S& begin, const S& to) const {
+    constexpr Trial trial(const Standing& from, const Inputs& u, const S& dt, const S& begin, const S& to) const {
         const S middle = S(0.5) * (begin + to);
         const Standing half = stretch(from, u, dt, begin, middle);
         return {stretch(from, u, dt, begin, to), half, stretch(half, u, dt, middle, to), begin, middle, to};
     }
     /// Where the drive stands on the way of a trial.
-    constexpr Standing along(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt, const S& at) const {
+    constexpr Standing along(const Standing& from, const Trial& tried, const Inputs& u, const S& dt, const S& at) const {
         if (at == tried.to) return tried.end;
         return at < tried.middle ? stretch(from, u, dt, tried.begin, at) : stretch(tried.half, u, dt, tried.middle, at);
     }
-    constexpr Standing stretch(const Standing& from, const Interval<S>& u, const S& dt, const S& begin, const S& end) const {
+    constexpr Standing stretch(const Standing& from, const Inputs& u, const S& dt, const S& begin, const S& end) const {
         const Interval<S> part = u.part(begin, end, dt);
         const S length = (end - begin) * dt;
         if (chatters()) return drive.standing(moreau_jean_step(drive, from, part, length), part.end);
@@ -125,7 +126,7 @@ private:
         S met{0.0};
     };
     /// The first on the way of a trial; its end if there is none.
-    constexpr Stop stop(const Standing& from, const Trial& tried, const Interval<S>& u, const S& dt) const {
+    constexpr Stop stop(const Standing& from, const Trial& tried, const Inputs& u, const S& dt) const {
         if (const Look look = closest(from, tried.half, u, dt, tried.begin, tried.middle); look.margin < S(0.0)) {
             // An event within the shortest time of a step is one at once.
             const S soon = min(tried.begin + S(shortest) / dt, look.at);
@@ -145,7 +146,7 @@ private:
     };
     /// Where between two fractions a margin is first seen to be used up, if at all: where the torque turns over, for there friction
     /// that grows with it holds nothing, be it for a moment; or at the end.
-    constexpr Look closest(const Standing& start, const Standing& end, const Interval<S>& u, const S& dt, const S& from,
+    constexpr Look closest(const Standing& start, const Standing& end, const Inputs& u, const S& dt, const S& from,
                            const S& to) const {
         const S before = start.flow.mesh.torque, after = end.flow.mesh.torque;
         if (before * after < S(0.0) && drive.sticks(start.state)) {
@@ -158,7 +159,7 @@ private:
         return {to, drive.margin(end)};
     }
     /// The fraction of the interval behind `from` at which a margin that is used up at a look came to be so.
-    constexpr S moment(const Standing& start, const Look& look, const Interval<S>& u, const S& dt, const S& from) const {
+    constexpr S moment(const Standing& start, const Look& look, const Inputs& u, const S& dt, const S& from) const {
         const S way = look.at - from;
         const auto at = [&](const S& fraction) { return drive.margin(stretch(start, u, dt, from, from + fraction * way)); };
         return from + crossing(at, S(0.0), drive.margin(start), look.margin) * way;

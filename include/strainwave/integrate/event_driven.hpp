@@ -32,8 +32,7 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
     }
     S x = b;
     if constexpr (differentiates<S>) {  // the moment moves with the parameters: implicit function theorem
-        const S h(1e-4), now = margin(x);
-        const S slope = detached((S(4.0) * margin(x + h) - S(3.0) * now - margin(x + S(2.0) * h)) / (S(2.0) * h));
+        const S now = margin(x), slope = derivative(margin, x, now);
         x = select(crosses & (abs(slope) > S(smallest)), x - (now - detached(now)) / slope, x);
     }
     return x;
