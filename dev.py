@@ -146,7 +146,11 @@ CHECKS: dict[str, tuple[Sequence[str], dict[str, str], Sequence[str]]] = {
     "address": (
         ["libasan.so", "libubsan.so"],
         {"ASAN_OPTIONS": "detect_leaks=0"},  # the interpreter's own
-        ["tests/laws", "tests/agreement", "tests/published", "-k", "not compilers and not cuda"],  # not those that only compile
+        [
+            *("tests/laws", "tests/agreement", "tests/published"),
+            *(f"tests/python/test_{of}.py" for of in ("methods", "tolerances", "sticking", "sensitivity", "linear", "steady")),
+            *("-k", "not compilers and not cuda and not chatter and not event_is_found"),  # not those that compile themselves
+        ],
     ),
     "thread": (
         ["libtsan.so"],

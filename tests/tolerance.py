@@ -3,8 +3,8 @@
     python -m tests.tolerance                      two hundred drives compared, some minutes on one core
     python -m tests.tolerance --drives 1000 --first 5000
 
-A drive has one motor and load and any gear of `tests.stress`, all models at all places, that reduces the speed, makes no
-energy and has nothing faster than `FASTEST`; and a tolerance of its own, from 1e-7 to 1e-4. It is run to that and compared
+A drive is any of `tests.stress`, all models at all places, controlled or not, whose gear reduces the speed, makes no energy
+and has nothing faster than `FASTEST`; and a tolerance of its own, from 1e-7 to 1e-4. It is run to that and compared
 with a run ten thousand times as tight: what is recorded of the motion, and the torque of friction that rests on bristles, which
 is all that shows them. That of set-valued friction jumps at events, where any shift in time is as large as the jump.
 
@@ -49,7 +49,7 @@ class Excited:
     """A drive, what acts on it, and the tolerance it is to keep."""
 
     drive: sw.drives.PositionDrive
-    volts: float
+    amplitude: float  # of the command
     frequency: float
     load_torque: float
     rtol: float
@@ -64,10 +64,15 @@ class Excited:
 
     def run(self, share: float = 1.0, change: float = 0.0, most_steps: int = MOST_STEPS) -> sw.Recording:
         """To a share of the tolerance, its inputs changed by a share."""
-        command = sw.scenario.sine(self.volts * (1.0 + change), self.frequency, DURATION)
+        command = sw.scenario.sine(self.amplitude * (1.0 + change), self.frequency, DURATION)
         load = self.load_torque * (1.0 - change)
         limits: dict[str, Any] = {"rtol": self.rtol * share, "atol": ATOL, "most_steps": most_steps}
         return sw.simulate_adaptively(self.drive, command, sample=1e-3, load_torque=load, **limits)
+
+    def run_in_steps(self, dt: float) -> sw.Recording:
+        """In steps of `dt` [s]."""
+        command = sw.scenario.sine(self.amplitude, self.frequency, DURATION)
+        return sw.simulate(self.drive, command, dt, sample=1e-3, load_torque=self.load_torque, method="exponential")
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -47,11 +47,12 @@ def whole(name: str, value: object, low: int, high: int = 2**63 - 1) -> int:
     """A whole number from `low` to `high`."""
     if not isinstance(value, Integral) or isinstance(value, bool):
         raise TypeError(f"{name} must be a whole number, not {shortened(value)}")
-    if value < low:
+    given = int(value)
+    if given < low:
         raise ValueError(f"{name} = {value} must be {low} or more")
-    if value > high:
+    if given > high:
         raise ValueError(f"{name} = {value} must be {high} or less")
-    return int(value)
+    return given
 
 
 def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -129,6 +129,7 @@ def _signal(given: Scenario | float) -> _core.Signal:
 
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
 METHODS: tuple[Method, ...] = get_args(Method)
+MOST_FOR_ONE = 1000  # adaptive steps in the place of a fixed one that bristles are too fast for
 FASTEST_ON_BRISTLES = 2.0  # step times angular frequency of a shaft on its bristles, beyond which fixed steps are in doubt
 
 
@@ -192,12 +193,13 @@ def simulate(
         sample: distance of samples in the recording [s]; `dt` if not given
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K], for friction that depends on it
-        start: where the drive starts, as `end` of another run; at rest, untwisted, if not given
+        start: where the drive starts, as `end` of another run of a drive with the same models, for a state says nothing of what
+            its numbers belong to; at rest, untwisted, if not given
         method: "exponential", a Runge-Kutta method of fourth order that lets bristles relax exactly; "rosenbrock", a W-method
             of third order for shafts that rest on stiff bristles without turning round; "moreau_jean", time-stepping of second
             order that looks for no events, however many there are. If not given it is the first, unless a shaft vibrates on
             its bristles faster than steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its
-            tolerances.
+            tolerances, up to a thousand for each of `dt`.
         progress: show a progress bar
 
     Returns:
@@ -241,6 +243,7 @@ def simulate(
             load_torque=load_torque,
             temperature=temperature,
             start=start,
+            most_steps=MOST_FOR_ONE * (len(course.instants) - 1),
             progress=progress,
         )
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped

@@ -49,6 +49,7 @@ SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for what can 
         (STRIBECKS, SWING, "exponential", 4.0),
         (SMOOTH, RISE, "rosenbrock", 3.0),
         (SMOOTH, RISE, "moreau_jean", 2.0),
+        (STRIBECKS, SWING, "moreau_jean", 2.0),
     ],
     ids=[
         "exponential",
@@ -58,6 +59,7 @@ SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for what can 
         "exponential, both sides sticking, Stribeck",
         "rosenbrock",
         "moreau_jean",
+        "moreau_jean, both sides sticking, Stribeck",
     ],
 )
 def test_each_method_converges_with_its_order(

@@ -15,7 +15,7 @@ from strainwave import _core
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, SMOOTH, STICKING, command
-from tests.tolerance import COLUMNS, difference, until, verdict
+from tests.tolerance import COLUMNS, Excited, difference, until, verdict
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
@@ -150,6 +150,24 @@ def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> Non
     """By four drives from each; `python -m tests.tolerance` takes two hundred, and says what is set aside and why."""
     verdicts = until(4, map(verdict, count(first)))
     assert [one for one in verdicts if one.missed] == []
+
+
+@pytest.mark.parametrize("first", range(0, 60, 15))
+def test_what_fixed_steps_of_random_drives_approach_is_what_adaptive_ones_give(first: int) -> None:
+    """Another way to the same; of first order only where a controller at its limit switches."""
+    compared = 0
+    for number in range(first, first + 15):
+        random = Excited.drawn(number)
+        try:
+            exact = random.run(1e-2)
+            wide, narrow = (random.run_in_steps(dt) for dt in (4e-6, 1e-6))
+        except (ValueError, FloatingPointError):  # told, and not this test's matter
+            continue
+        errors = [difference(run, exact, random.columns) for run in (wide, narrow)]
+        assert errors[1] < max(0.7 * errors[0], 1e-5), number
+        assert errors[1] < 0.02, number
+        compared += 1
+    assert compared >= 4
 
 
 @pytest.mark.parametrize("sample", [1e-3, 7e-5, 0.03])
