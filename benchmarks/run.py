@@ -7,7 +7,7 @@
 
 single       one trajectory of the reference drive: error and time of all solvers
 ensemble     many reference drives at once: trajectories a second
-stick_slip   the same drive with friction that really sticks: error and time of all solvers, and what events cost
+stick_slip   the same drive with friction that really sticks: error and time of what leads from event to event, and their cost
 scaling      time over steps, members and Maxwell elements
 files        ever more members run to files: time, memory and files
 overhead     what a call, storing and derivatives cost, and a process that imports the package or shows its help

@@ -94,8 +94,8 @@ def derivatives(
     if not places:
         raise ValueError("parameters must name at least one number")
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    warn_of_bristles(drive, min(dt, interval))
     run, values = differentiate(drive, command, [each.number for each in places], dt, interval, load_torque, temperature)
+    warn_of_bristles(drive, min(dt, interval, command.duration))
     endless = [each.path for each, slopes in zip(places, values, strict=True) if not np.isfinite(slopes).all()]
     if endless:
         raise FloatingPointError(f"derivatives by {', '.join(endless)} are not finite, though the run is")

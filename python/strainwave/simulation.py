@@ -98,10 +98,13 @@ class Excitation:
         duration = self.command.duration
         fastest = max((abs(w.frequency + t * w.sweep) for s in signals for w in s.waves for t in (0.0, duration)), default=0.0)
         regular = grid(1.0 / max(1.0 / STRETCH, PER_PERIOD * fastest), duration, 1e-9 * STRETCH)
-        ends = np.unique(np.concatenate([regular, *(signal.breaks for signal in signals)]))
+        return np.unique(np.concatenate([regular, *(signal.breaks for signal in signals)]))
+
+    def check_temperature(self, ends: Array) -> None:
+        """Refuses a temperature that is not positive, at eight places between all `ends`."""
         if isinstance(self.temperature, Scenario):
-            check_temperature(float(min(self.temperature.value(ends).min(), self.temperature.value_before(ends).min())))
-        return ends
+            between = ends[:-1] + np.diff(ends) * np.arange(8)[:, None] / 8
+            check_temperature(float(min(self.temperature.value(between).min(), self.temperature.value_before(ends).min())))
 
     @cached_property
     def signals(self) -> tuple[_core.Signal, _core.Signal, _core.Signal]:
@@ -129,7 +132,7 @@ def _signal(given: Scenario | float) -> _core.Signal:
 
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
 METHODS: tuple[Method, ...] = get_args(Method)
-MOST_FOR_ONE = 1000  # adaptive steps in the place of a fixed one that bristles are too fast for
+MOST_FOR_ONE, MOST_STEPS = 1000, 100_000  # adaptive steps for each fixed one that bristles are too fast for, and of a short run
 FASTEST_ON_BRISTLES = 2.0  # step times angular frequency of a shaft on its bristles, beyond which fixed steps are in doubt
 
 
@@ -199,7 +202,7 @@ def simulate(
             of third order for shafts that rest on stiff bristles without turning round; "moreau_jean", time-stepping of second
             order that looks for no events, however many there are. If not given it is the first, unless a shaft vibrates on
             its bristles faster than steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its
-            tolerances, up to a thousand for each of `dt`.
+            tolerances; at most a thousand for each of `dt`, or a hundred thousand if that is more.
         progress: show a progress bar
 
     Returns:
@@ -214,7 +217,7 @@ def simulate(
             `command`, `method` is not known, or the drive leaves the range in which one of its parts is valid; says which,
             where and when
         FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration or what damps it; says when, and
-            what would do
+            what would do. Where bristles ask for adaptive steps, as `simulate_adaptively`
 
     Warns:
         RuntimeWarning: a `method` was asked for whose steps cannot follow a shaft on its bristles
@@ -232,7 +235,7 @@ def simulate(
     arguments.drive(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    state = _beginning_at(drive, start)
+    state = drive.rest() if start is None else arguments.state("start", start)
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, interval)
     if method is None and course.longest * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
@@ -243,7 +246,7 @@ def simulate(
             load_torque=load_torque,
             temperature=temperature,
             start=start,
-            most_steps=MOST_FOR_ONE * (len(course.instants) - 1),
+            most_steps=max(MOST_STEPS, MOST_FOR_ONE * (len(course.instants) - 1)),
             progress=progress,
         )
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
@@ -264,15 +267,13 @@ def simulate(
     return Run._made(drive, time, outputs, state, f"{_named(taken, drive)}, steps of {course.longest:g} s")
 
 
-def _beginning_at(drive: PositionDrive, start: _core.State | None) -> _core.State:
-    """The state a run begins in, its sides sliding or not as their friction has it."""
-    return drive.rest() if start is None else _core.consistent(drive, arguments.state("start", start))
-
-
 def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, samples: int) -> Array:
-    """Room for the outputs of a run, shape (channels, samples), that of the start filled in."""
+    """Room for the outputs of a run, shape (channels, samples), that of the start filled in.
+
+    There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from.
+    """
     outputs = np.empty((len(_core.outputs), samples))
-    outputs[:, :1] = _core.now(drive, state, excitation.first())
+    outputs[:, :1] = _core.now(drive, _core.consistent(drive, state), excitation.first())
     return outputs
 
 
@@ -337,10 +338,11 @@ def simulate_adaptively(
     atol = arguments.number("atol", atol, low=0.0)
     sample = arguments.seconds("sample", sample)
     most_steps = arguments.whole("most_steps", most_steps, 1)
-    state = _beginning_at(drive, start)
+    state = drive.rest() if start is None else arguments.state("start", start)
     excitation = Excitation(command, load_torque, temperature)
     samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
     ends = excitation.ends()
+    excitation.check_temperature(ends)
     outputs = beginning(drive, state, excitation, len(samples))
     with progressing(progress, len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
@@ -383,11 +385,9 @@ def check_temperature(lowest: float) -> None:
 
 def grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
-    if step < np.spacing(duration):
-        raise ValueError(f"steps of {step:g} s cannot be told apart within {duration:g} s")
     if duration > MOST_INSTANTS * step:
-        raise MemoryError(
-            f"{duration / step:.3g} steps of {step:g} s in {duration:g} s are more than memory holds; take longer ones"
+        raise ValueError(
+            f"{duration:g} s are more than {MOST_INSTANTS:g} steps of {step:g} s; take longer steps or slower inputs"
         )
     return _core.grid(step, duration, tolerance)
 

@@ -27,7 +27,7 @@ COULOMB = sw.friction.Coulomb(coulomb=3.0, breakaway=4.0, viscous=0.5)
 NOISE = sw.kinematic_error.Stochastic(
     amplitude=1.5e-5, seed=11, load_sensitivity=0.02, speed_sensitivity=0.01, insertion_depth=1e-3, depth_sensitivity=50.0
 )
-SMOOTH = DRIVE.replace(
+BRISTLE = DRIVE.replace(
     gear=DRIVE.gear.replace(
         input_inertia=1e-5,
         kinematic_noise=NOISE,
@@ -37,10 +37,10 @@ SMOOTH = DRIVE.replace(
     control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05),
 )  # no number of it is zero, so that each can be varied by a share of itself
 DRIVES = {
-    "bristle": SMOOTH,
-    "stribeck at the input": SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=STRIBECK)),
-    "coulomb at the output": SMOOTH.replace(gear=SMOOTH.gear.replace(friction_output=COULOMB)),
-    "both": SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=STRIBECK, friction_output=COULOMB)),
+    "bristle": BRISTLE,
+    "stribeck at the input": BRISTLE.replace(gear=BRISTLE.gear.replace(friction_input=STRIBECK)),
+    "coulomb at the output": BRISTLE.replace(gear=BRISTLE.gear.replace(friction_output=COULOMB)),
+    "both": BRISTLE.replace(gear=BRISTLE.gear.replace(friction_input=STRIBECK, friction_output=COULOMB)),
 }
 SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for a set-valued side to stick at its turns
 
@@ -165,10 +165,12 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             viscous=5e-5,
         )
     },
-    "cyclic": {"friction_input": sw.friction.Cyclic(law=SMOOTH.gear.friction_input, order=[2.0], amplitude=[0.2], phase=[0.3])},
+    "cyclic": {
+        "friction_input": sw.friction.Cyclic(law=BRISTLE.gear.friction_input, order=[2.0], amplitude=[0.2], phase=[0.3])
+    },
     "thermal": {
         "friction_input": sw.friction.Thermal(
-            law=SMOOTH.gear.friction_input, dry_fall=0.01, viscous_fall=0.02, reference_temperature=300.0
+            law=BRISTLE.gear.friction_input, dry_fall=0.01, viscous_fall=0.02, reference_temperature=300.0
         )
     },
 }
@@ -184,7 +186,7 @@ def test_every_law_of_a_gear_that_has_numbers_has_its_derivatives_looked_at() ->
 @pytest.mark.parametrize("law", OTHER_LAWS.values(), ids=OTHER_LAWS)
 def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: dict[str, Any]) -> None:
     """Through stick, slip and reversals, to a part in 1e5 of the largest of each output: kinks let differences show no more."""
-    drive = SMOOTH.replace(gear=SMOOTH.gear.replace(**law))
+    drive = BRISTLE.replace(gear=BRISTLE.gear.replace(**law))
     (part,) = law
     base, known = numbers(drive), [path for path, *_ in _core.parameters(drive)]
     own = [i for i, path in enumerate(known) if path.startswith(f"gear.{part}.") and ".domain_" not in path]

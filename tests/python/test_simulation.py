@@ -283,6 +283,20 @@ def test_a_temperature_below_absolute_zero_is_refused(temperature: sw.scenario.S
         sw.simulate(DRIVE, command(0.1), temperature=temperature)
 
 
+def test_a_temperature_that_dips_below_absolute_zero_between_steps_is_refused() -> None:
+    dipping = sw.scenario.sine(300.0, 40.0, 0.1, phase=0.3) + sw.scenario.constant(299.0, 0.1)
+    for simulate in (sw.simulate, sw.simulate_adaptively):
+        with pytest.raises(ValueError, match=r"^temperature = -[\d.]+ K must lie in \(0, inf\)"):
+            simulate(DRIVE, command(0.1), temperature=dipping)
+
+
+def test_more_steps_than_can_be_are_refused() -> None:
+    for duration, frequency in ((6e6, 0.0), (1.0, 3e8)):
+        voltage = sw.scenario.sine(1.0, frequency, duration)
+        with pytest.raises(ValueError, match=r" s are more than 1e\+09 steps of .* s; take longer steps or slower inputs$"):
+            sw.simulate_adaptively(DRIVE, voltage)
+
+
 def test_a_run_that_leaves_all_bounds_is_no_result_though_its_numbers_are_finite() -> None:
     """An output pushed by 1.9e17 rad/s2."""
     acceleration, inertia = 1.9e17, 1e-3

@@ -197,6 +197,20 @@ def test_inputs_jump_anywhere(period: float, width: float, duration: float) -> N
     assert difference(sw.simulate_adaptively(SMOOTH, pulse, rtol=1e-7), exact) < 1e-6
 
 
+@pytest.mark.parametrize("other", [0.3, 0.1 * 3, 0.3 - 1e-16])
+def test_two_inputs_jump_at_one_instant_but_for_rounding(other: float) -> None:
+    """Command and load, and a temperature that friction depends on."""
+    thermal = sw.friction.Thermal(law=SMOOTH.gear.friction_input, viscous_fall=0.02)
+    drive = SMOOTH.replace(gear=SMOOTH.gear.replace(friction_input=thermal))
+    pulse = sw.scenario.step(0.01, 0.4, start=0.3)
+    acting = {
+        "load_torque": sw.scenario.step(5.0, 0.4, start=other),
+        "temperature": sw.scenario.constant(293.0, 0.4) + sw.scenario.step(30.0, 0.4, start=other),
+    }
+    exact = sw.simulate(drive, pulse, 2e-6, sample=1e-3, **acting)
+    assert difference(sw.simulate_adaptively(drive, pulse, rtol=1e-7, **acting), exact) < 1e-6
+
+
 @pytest.mark.parametrize("frequency", [800.0, 12345.6])
 def test_an_input_faster_than_the_drive_is_not_overlooked(frequency: float) -> None:
     """Of 800 Hz a step of 5 ms would see nothing but zeros."""

@@ -13,7 +13,7 @@ struct Tolerance {
 /// Steps as long as a tolerance allows, taken by `smooth`, which knows no events and is of fourth order; by Moreau and Jean's
 /// scheme where events chatter. The error of two steps is told by one of twice their length. A step ends where a side stops, breaks
 /// away or turns round. Between its ends a step is known as exactly as there: by a step of part of its length. `Inputs` tells what
-/// drives the drive at a fraction of an interval, and over a part of it. For scalars that are plain numbers.
+/// drives the drive at a fraction of an interval, and over a part of it, as an Interval does. For scalars that are plain numbers.
 template <class S, class Drive, class Smooth, class Inputs = Interval<S>>
 class Adaptive {
     using Standing = typename Drive::Standing;

@@ -83,12 +83,17 @@ struct Dual {
     }
     friend constexpr Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
     friend constexpr Dual detached(const Dual& x) { return Dual(x.value); }
-    /// The derivative of f by its argument at x, where its value is known: what an argument with a slope of one more adds.
+    /// The derivative of f by its argument at x, where its value is known: what an argument with a slope of one more adds to any
+    /// derivative, least rounded in the smallest.
     template <class F>
     friend constexpr Dual derivative(const F& f, const Dual& x, const Dual& f_of_x) {
         Dual steeper = x;
         steeper.slope += 1.0;
-        return Dual(f(steeper).slope[0] - f_of_x.slope[0]);
+        const Dual f_of_steeper = f(steeper);
+        int least = 0;
+        for (int i = 1; i < n; ++i)
+            if (!(strainwave::abs(f_of_x.slope[i]) >= strainwave::abs(f_of_x.slope[least]))) least = i;
+        return Dual(f_of_steeper.slope[least] - f_of_x.slope[least]);
     }
     friend Dual rint(const Dual& x) { return Dual(strainwave::rint(x.value)); }
     friend Dual exp(const Dual& x) {
