@@ -173,12 +173,14 @@ def sanitized(check: str, tests: Sequence[str]) -> int:
     shutil.copytree(ROOT / "python" / "strainwave", site / "strainwave", dirs_exist_ok=True)
     packages = next(BIN.parent.glob("lib/python*/site-packages"))
     libraries, told, worthwhile = CHECKS[check]
+    bare = PYTHON, "-S"  # else the interpreter, of each worker too, would find the editable package first
     return attempt(
-        *(PYTHON, "-S", "-m", "pytest"),  # without -S the interpreter would find the editable package first
-        *("--numprocesses", "auto", "--dist", "worksteal"),
+        *(*bare, "-m", "pytest"),
+        *("--dist", "worksteal", "--tx", f"{os.cpu_count()}*popen//python={' '.join(map(str, bare))}"),
         *(tests or worthwhile),
         LD_PRELOAD=":".join(library(name) for name in libraries),
         PYTHONPATH=f"{site}:{packages}",
+        STRAINWAVE_IS_IN=str(site),
         **told,
     )
 

@@ -1,5 +1,10 @@
 """What holds for all tests."""
 
+import os
+from pathlib import Path
+
+import pytest
+import strainwave
 from hypothesis import settings
 
 # How long an example takes says more about the machine than about the example. The examples are the same on each run, so that a
@@ -7,3 +12,10 @@ from hypothesis import settings
 settings.register_profile("strainwave", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None, derandomize=False)
 settings.load_profile("strainwave")
+
+
+def pytest_configure() -> None:
+    """What is compiled to be checked must be what is imported, or the check is of nothing."""
+    wanted, found = os.environ.get("STRAINWAVE_IS_IN"), Path(strainwave.__file__)
+    if wanted and not found.is_relative_to(wanted):
+        raise pytest.UsageError(f"the tests are to be of the package in {wanted}, not of {found}")
