@@ -46,7 +46,7 @@ def test_what_is_tolerated_besides_is_kept_and_saves_steps(drive: sw.drives.Posi
 def resolvable(drive: sw.drives.PositionDrive, rtol: float, voltage: float = 12.0) -> sw.Run:
     try:
         excited = sw.scenario.sine(voltage, 50.0, 0.02)
-        return sw.simulate_adaptively(drive, excited, rtol=rtol, load_torque=2.0, most_steps=100_000)
+        return sw.simulate_adaptively(drive, excited, rtol=rtol, load_torque=2.0, most_steps=10_000)
     except (ValueError, FloatingPointError) as error:  # said, and not this test's matter
         assume(
             not any(
