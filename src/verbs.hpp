@@ -423,6 +423,30 @@ Values friction_trace(const M& m, nb::handle time, nb::handle speed, double angl
     return out;
 }
 
+/// A speed [rad/s] so slow that no rate shows beside a torque and every time [s] has passed that a law relaxes in. A power of two:
+/// a displacement over it, times it, is the displacement again.
+inline constexpr double quasistatic_speed = 0x1p-500;
+
+template <class M>
+Values friction_quasistatic(const M& m, nb::handle displacement, double angle, nb::handle load, nb::handle temperature) {
+    const auto path = steps_of(displacement, "displacement", "rad");
+    const Series loads(load, "load", path.size()), temperatures(temperature, "temperature", path.size());
+    const auto law = compiled(m);
+    typename M::State state{};
+    double sense = 0.0;
+    auto [out, torque] = like(path);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const double step = i > 0 ? path.data()[i] - path.data()[i - 1] : 0.0;
+        if (step != 0.0) sense = sign(step);
+        const friction::Contact<double> at{0.0, sense, turned(angle + path.data()[i]), loads[i], temperatures[i]};
+        check_domain(M::name, domain<double>(law, at));
+        if (step != 0.0)
+            state = friction::advance(law, state, at.moving(sense * quasistatic_speed), std::abs(step) / quasistatic_speed);
+        torque[i] = friction::set_valued(law) ? sense * friction::hold(law, at) : friction::torque(law, state, at);
+    }
+    return out;
+}
+
 template <class M>
 void friction_verbs(nb::class_<M>& c) {
     using Contact = friction::Contact<double>;
@@ -458,6 +482,17 @@ void friction_verbs(nb::class_<M>& c) {
                   nb::arg("temperature") = friction::room_temperature, nb::arg("state") = State{},
                   nb::sig(SW_TRACE ", state: State = ...) -> " SW_ARRAY), doc);
         }
+        c.def(
+            "quasistatic", &friction_quasistatic<M>, nb::arg("displacement"), nb::arg("angle") = 0.0, nb::arg("load") = 0.0,
+            nb::arg("temperature") = friction::room_temperature,
+            nb::sig("def quasistatic(self, displacement: " SW_NUMBERS ", angle: float = 0.0, load: " SW_NUMBER_OR
+                    " = 0.0, temperature: " SW_NUMBER_OR " = 293.15) -> " SW_ARRAY),
+            "Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit "
+            "of infinite slowness.\n\n"
+            "No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of "
+            "the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact "
+            "over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] "
+            "are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.");
         if constexpr (requires(const M& m) { m.passivity(); })
             c.def(
                 "check", [](const M& m) { check_passivity(m); },

@@ -89,6 +89,13 @@ class Viscous:
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
         """
 
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
 class Coulomb:
     """
     Static, Coulomb and viscous friction, set-valued at rest: it sticks exactly.
@@ -181,6 +188,13 @@ class Coulomb:
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
         """
 
 class Stribeck:
@@ -280,6 +294,13 @@ class Stribeck:
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
         """
 
 class PositionDependent:
@@ -433,6 +454,13 @@ class PositionDependent:
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
         """
 
     odd: bool = True
@@ -592,6 +620,13 @@ class LuGre:
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
         """
 
     def check(self) -> None:
@@ -771,6 +806,13 @@ class MaxwellSlipFriction:
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
         """
 
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
     def check(self) -> None:
         """
         Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.
@@ -881,6 +923,13 @@ class LoadDependent:
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
         """
 
     odd: bool = False
@@ -1028,6 +1077,13 @@ class TorqueEfficiency:
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
         """
 
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
     odd: bool = True
 
 class Cyclic:
@@ -1168,6 +1224,13 @@ class Cyclic:
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
         """
 
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
 class Thermal:
     """
     Friction that falls as the gear warms up.
@@ -1302,4 +1365,11 @@ class Thermal:
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
         `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
         """
