@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal, Protocol
@@ -13,12 +13,19 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments, loads, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
+from strainwave.identify.branches import monotone, thinned, turning_points
 from strainwave.recording import Recording
+from strainwave.scenario import Scenario
 from strainwave.simulation import differentiate
 
 Array = NDArray[np.float64]
 ENCODERS = ("input_angle", "output_angle")
 HANGING = 0.02  # rad: where gravity is nothing beside friction
+RESTING = 0.02  # of the largest speed: a log that starts faster does not start at rest
+STILL = 1e-3  # of the range measured: what moves less stands still
+TABLE = 1_000  # speeds of either sign in a table, at most
+SENSIBLE = (1e-9, 1e9)  # the largest of a quantity that was measured on a gear, in SI units, lies between
+COMPARED = 20_000  # samples of a log, at most: of a longer one every so many, the command in full
 
 
 @dataclass(frozen=True)
@@ -67,18 +74,23 @@ class FrictionTable:
     Args:
         speed: input speed [rad/s], shape (n,)
         torque: friction torque [N.m], of the sign of the speed, shape (n,)
+        samples: how many were measured; more than are left in `speed` where each is the mean of several neighbours
     """
 
     speed: Array
     torque: Array
+    samples: int = 0
     channels = ("torque",)
     units = ("N.m",)
     nuisances: ClassVar[tuple[Nuisance, ...]] = ()
 
     @classmethod
     def of(cls, recording: Recording) -> FrictionTable:
-        """From columns speed and torque; a torque given as a magnitude takes the sign of its speed."""
-        speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
+        """From columns speed and torque of the input; a torque given as a magnitude takes the sign of its speed.
+
+        Of a long table, means over neighbouring speeds are taken.
+        """
+        speed, torque = _sensible(recording, "speed", "rad/s"), _sensible(recording, "torque", "N.m")
         if np.any(speed == 0.0):
             row = int(np.argmin(np.abs(speed)))
             raise ValueError(f"sample {row} has speed 0: a table of steady sliding cannot say what holds at rest; leave it out")
@@ -86,7 +98,18 @@ class FrictionTable:
             torque = np.sign(speed) * torque
         if np.sum(speed * torque) <= 0.0:
             raise ValueError("the torque drives the motion instead of opposing it; give it the sign of the speed")
-        return cls(speed, torque)
+        sides = [np.flatnonzero(side)[np.argsort(speed[side], kind="stable")] for side in (speed < 0.0, speed > 0.0)]
+        neighbours = [thinned(speed[side], torque[side], samples=TABLE) for side in sides if len(side)]
+        if len(speed) > TABLE:
+            speed, torque = (np.concatenate(each) for each in zip(*neighbours, strict=True))
+        return cls(speed, torque, len(recording))
+
+    @classmethod
+    def of_output(cls, recording: Recording, gear: Gear) -> FrictionTable:
+        """From columns speed and torque of the output, as a joint measures its friction, referred to the input by the ratio."""
+        ratio = abs(gear.kinematics.ratio)
+        speed, torque = ratio * recording.values("speed", "rad/s"), recording.values("torque", "N.m") / ratio
+        return cls.of(Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}))
 
     @property
     def measured(self) -> Array:
@@ -99,17 +122,23 @@ class FrictionTable:
 
 @dataclass(frozen=True)
 class TorsionLoop:
-    """Torque over twist along a path, slow enough that only spring and hysteresis speak.
+    """Torque over twist along a path, slow enough that only spring, hysteresis and friction at rest speak.
 
     Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement. A linear spring cannot
-    tell them apart; for it the zero of the twist is taken as known.
+    tell them apart; for it the zero of the twist is taken as known. A path that never turns back, a single branch, tells neither:
+    it is taken to begin with an unloaded gear at the zeros of both axes.
+
+    At the input, with the output locked, the friction of the wave generator is inside the loop: the model's `friction_input` at
+    rest, times the ratio.
 
     Args:
         twist: twist at the output [rad], shape (n,), monotone between its points
-        torque: torque at the output [N.m], shape (n,)
+        torque: torque referred to the output [N.m], shape (n,)
         history: cyclic, if the same path had been run before; virgin, if the gear had not been loaded before
         torque_zero: where a fit starts to look for the zero of the torque [N.m]
         twist_zero: zero of the twist, if it is known [rad]
+        input_ratio: ratio of the gear if it was measured at the input, None if at the output
+        samples: how many were measured; more than are left in `twist` where each is the mean of several
     """
 
     twist: Array
@@ -117,6 +146,8 @@ class TorsionLoop:
     history: Literal["cyclic", "virgin"] = "cyclic"
     torque_zero: float = 0.0
     twist_zero: float | None = None
+    input_ratio: float | None = None
+    samples: int = 0
     channels = ("torque",)
     units = ("N.m",)
 
@@ -124,24 +155,28 @@ class TorsionLoop:
     def of(cls, recording: Recording, gear: Gear) -> TorsionLoop:
         """From columns twist and torque at the output, or input_angle and input_torque with the output locked.
 
-        What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque.
+        What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque. A long
+        recording is thinned to the means of equal stretches.
         """
-        if at_input(recording):
-            ratio = gear.kinematics.ratio
-            return cls(recording.values("input_angle", "rad") / ratio, ratio * recording.values("input_torque", "N.m"))
-        return cls(recording.values("twist", "rad").copy(), recording.values("torque", "N.m").copy())
+        ratio = gear.kinematics.ratio if at_input(recording) else None
+        if ratio is not None:
+            angle, input_torque = _sensible(recording, "input_angle", "rad"), _sensible(recording, "input_torque", "N.m")
+            twist, torque = angle / ratio, ratio * input_torque
+        else:
+            twist, torque = _sensible(recording, "twist", "rad"), _sensible(recording, "torque", "N.m")
+        twist, torque = thinned(twist, torque)
+        loop = cls(twist, torque, input_ratio=ratio, samples=len(recording))
+        return replace(loop, history="virgin", twist_zero=0.0) if loop.single_branch else loop
 
     def __post_init__(self) -> None:
-        turns = np.diff(np.sign(np.diff(self.twist[np.flatnonzero(np.diff(self.twist, prepend=np.nan))])))
-        if np.ptp(self.twist) == 0.0 or not np.any(turns):
-            raise ValueError(
-                "the torsion loop has one branch only: its twist never turns back, so stiffness and hysteresis cannot be "
-                "told apart; a loop must load and unload"
-            )
-
+        if np.ptp(self.twist) == 0.0:
+            raise ValueError("the twist never changes: a torsion loop must load and unload the gear")
         span = float(np.ptp(self.twist) * np.ptp(self.torque))
         if np.cov(self.twist, self.torque)[0, 1] < 0.0:
-            raise ValueError("the torque falls as the twist grows; give both the same sense, as an elastic gear has them")
+            raise ValueError(
+                "the torque falls as the twist grows; give both the same sense, as an elastic gear has them: "
+                "reverse the sign of one of the two columns"
+            )
         closed = abs(self.twist[-1] - self.twist[0]) < 0.05 * np.ptp(self.twist)
         if closed and np.trapezoid(self.torque, self.twist) < -0.01 * span:
             raise ValueError("the loop gives energy instead of losing it; its samples must follow each other as measured")
@@ -152,8 +187,15 @@ class TorsionLoop:
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
+        if self.single_branch:
+            return ()
         torque = Nuisance("torque_zero", "N.m", self.torque_zero)
         return (torque,) if self.twist_zero is not None else (torque, Nuisance("twist_zero", "rad", self.middle))
+
+    @cached_property
+    def single_branch(self) -> bool:
+        """Whether the twist never turns back, so that stiffness and hysteresis cannot be told apart."""
+        return not turning_points(self.twist)
 
     @cached_property
     def middle(self) -> float:
@@ -166,12 +208,43 @@ class TorsionLoop:
         return np.concatenate(([0.0], path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
 
     def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        torque_zero, twist_zero = (*nuisances, self.twist_zero)[:2]
+        torque_zero, twist_zero = (0.0, 0.0) if self.single_branch else (*nuisances, self.twist_zero)[:2]
         n = len(self.twist)
         torque, slopes = _core.differentiate_loop(model, self.path(twist_zero), list(numbers))
         *by_numbers, by_shift = slopes[:, -n:]
         by_zeros = (np.ones(n), -by_shift)[: len(nuisances)]
-        return torque[np.newaxis, -n:] + torque_zero, np.stack((*by_numbers, *by_zeros))[:, np.newaxis]
+        predicted = torque[-n:] + torque_zero + self.friction(model)
+        by_numbers = [slope + self._friction_slope(model, number) for slope, number in zip(by_numbers, numbers, strict=True)]
+        return predicted[np.newaxis], np.stack((*by_numbers, *by_zeros))[:, np.newaxis]
+
+    def friction(self, model: Gear) -> Array:
+        """What friction at rest adds to the torque [N.m], shape (n,): the input's if measured there, none at a held output."""
+        return self._of_friction(model.friction_input)
+
+    def _of_friction(self, law: Any) -> Array:
+        if self.input_ratio is None:
+            return np.zeros_like(self.twist)
+        torque = self.input_ratio * law.quasistatic(self.input_ratio * self._displacement)
+        return np.asarray(torque[-len(self.twist) :])
+
+    def _friction_slope(self, model: Gear, number: int) -> Array:
+        """Derivative of `friction` by a number of the gear, by differences: torque at rest is all but linear in most of them."""
+        path, value, *_, low, high = _core.parameters(model)[number]
+        if self.input_ratio is None or not path.startswith("friction_input."):
+            return np.zeros_like(self.twist)
+        step = 1e-6 * max(abs(value), 1e-6)
+        ends = [min(value + step, high), max(value - step, low)]
+        numbers = [each[1] for each in _core.parameters(model)]
+        up, down = (
+            self.friction(_core.with_numbers(model, [*numbers[:number], end, *numbers[number + 1 :]])) for end in ends
+        )
+        return (up - down) / (ends[0] - ends[1])
+
+    @cached_property
+    def _displacement(self) -> Array:
+        """The path that friction sees [rad]: it must not turn at each wiggle of the noise, as a spring may."""
+        twist = monotone(self.twist)
+        return np.concatenate(([self.middle], twist, twist) if self.history == "cyclic" else ([0.0], twist))
 
     def virgin(self) -> TorsionLoop:
         """The same measurement, taken to be the first loading."""
@@ -191,18 +264,20 @@ class DriveLog:
     where it starts.
 
     Args:
-        time: instants [s], beginning with 0, shape (n,)
-        command: in the unit that the drive's control takes, shape (n,)
+        command: in the unit that the drive's control takes
+        time: instants to compare at [s], beginning with 0, shape (n,)
         channels: names of the columns to compare, as `simulate` names them
         measured: their values in the units of a simulation, shape (channels, n)
         dt: step of the simulation [s]
+        samples: how many were measured; of more than are compared, every so many is
     """
 
+    command: Scenario
     time: Array
-    command: Array
     channels: tuple[str, ...]
     measured: Array
     dt: float
+    samples: int
 
     @classmethod
     def of(
@@ -225,14 +300,19 @@ class DriveLog:
             raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
         _check_hanging(recording, drive, chosen)
         command = recording.values("command", drive.control.command_unit)
+        if drive.control.command_unit == "rad":
+            command = command - command[0]
         time = recording.time - recording.time[0]
-        interval = float(np.min(np.diff(time)))
+        measured = np.stack([_sensible(recording, name, known[name]) for name in chosen])
+        _check_rest(time, dict(zip(chosen, measured, strict=True)))
+        every = -(-len(time) // COMPARED)
         return cls(
-            time,
-            command - command[0] if drive.control.command_unit == "rad" else command.copy(),
+            scenario.table(time, command),
+            time[::every],
             chosen,
-            np.stack([recording.values(name, known[name]) for name in chosen]),
-            min(2e-4, interval) if dt is None else arguments.seconds("dt", dt),
+            measured[:, ::every],
+            min(2e-4, float(np.min(np.diff(time)))) if dt is None else arguments.seconds("dt", dt),
+            len(time),
         )
 
     @property
@@ -248,10 +328,15 @@ class DriveLog:
             if name in ENCODERS
         )
 
+    def stands_still(self, predicted: Array) -> bool:
+        """Whether a prediction, shape (channels, n), has no motion where the measurement has some."""
+        moving = [row for row, name in enumerate(self.channels) if name.endswith(("_angle", "_speed"))]
+        spans = [(float(np.ptp(predicted[row])), float(np.ptp(self.measured[row]))) for row in moving]
+        return bool(spans) and all(model < STILL * measured for model, measured in spans)
+
     def predict(self, model: PositionDrive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        command = scenario.table(self.time, self.command)
         names = [name for name, _, _ in _core.outputs]
-        run, slopes = differentiate(model, command, numbers, self.dt, self.time)
+        run, slopes = differentiate(model, self.command, numbers, self.dt, self.time)
         predicted = np.stack([run[name] for name in self.channels])
         by_zero = np.zeros((len(nuisances), *predicted.shape))
         encoders = [row for row, name in enumerate(self.channels) if name in ENCODERS]
@@ -261,18 +346,45 @@ class DriveLog:
         return predicted, np.concatenate((slopes[:, [names.index(name) for name in self.channels]], by_zero))
 
 
+def _sensible(recording: Recording, name: str, unit: str) -> Array:
+    """A column in another unit, of a size that an instrument could have read."""
+    values = recording.values(name, unit)
+    largest, (low, high) = float(np.abs(values).max()), SENSIBLE
+    if largest > high or 0.0 < largest < low:
+        raise ValueError(
+            f'column "{name}" goes up to {largest:.3g} {unit}; what is measured on a gear lies between {low:g} and {high:g} '
+            f"{unit}. Is its unit right? It is taken to be {recording.unit(name)}"
+        )
+    return values
+
+
 def _check_hanging(recording: Recording, drive: PositionDrive, channels: Sequence[str]) -> None:
     """A run starts at output angle 0; under gravity, so must the log."""
     if not isinstance(drive.load, loads.Pendulum) or drive.load.gravity_torque == 0.0:
         return
-    starts = {
-        name: float(recording.values(name, "rad")[0]) / (drive.gear.kinematics.ratio if name == "input_angle" else 1.0)
-        for name in channels
-        if name in ENCODERS
-    }
-    for name, start in starts.items():
-        if abs(start) > HANGING:
+    for name in (name for name in channels if name in ENCODERS):
+        per_output = drive.gear.kinematics.ratio if name == "input_angle" else 1.0
+        reading = float(recording.values(name, "rad")[0])
+        if abs(reading / per_output) > HANGING:
             raise ValueError(
-                f"a log under gravity must start with the arm hanging, at output angle 0; "
-                f"by {name} it starts at {start:.3g} rad"
+                f"a log under gravity must start with the arm hanging, at output angle 0; by {name} it starts at "
+                f"{reading / per_output:.3g} rad of the output. If it hangs there, and only the encoder counts from elsewhere, "
+                f"subtract {reading:.6g} rad from the column {name}; else record from where the arm hangs"
+            )
+
+
+def _check_rest(time: Array, columns: Mapping[str, Array]) -> None:
+    """A run starts at rest; so must the log."""
+    for name, values in columns.items():
+        if name.endswith("_angle"):
+            speed = np.diff(values) / np.diff(time)
+        elif name.endswith("_speed"):
+            speed = values
+        else:
+            continue
+        first, largest = abs(float(speed[0])), float(np.abs(speed).max())
+        if first > RESTING * largest + float(np.abs(np.diff(speed)).max(initial=0.0)):  # more than it gains in a sample
+            raise ValueError(
+                f"the drive log must start at rest: {name} starts at {first:.3g} rad/s, {100 * first / largest:.0f} % of its "
+                "largest speed; cut it to begin where the drive stands still, or record anew from rest"
             )

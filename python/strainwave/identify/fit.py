@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core
+from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
@@ -19,6 +19,7 @@ from strainwave.recording import Recording
 from strainwave.simulation import warn_of_bristles
 
 Array = NDArray[np.float64]
+ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
 DEGENERATE = 1e-10  # singular values below this share of the largest carry no information
 
 
@@ -31,8 +32,10 @@ class Estimate:
         unit: its unit
         start: value before the fit
         value: value after it
-        sigma: standard deviation; infinite where the data do not tell
+        sigma: half the width of the interval that holds the true value with 68 %, by Student's distribution: the standard
+            deviation where samples are many; infinite where the data do not tell
         at_limit: whether the fit ended at a limit of the parameter
+        freedom: independent samples beyond the number of unknowns [1]
     """
 
     path: str
@@ -41,6 +44,18 @@ class Estimate:
     value: float
     sigma: float
     at_limit: bool
+    freedom: float = np.inf
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
+        """The interval that holds the true value with this probability, if the model is right.
+
+        >>> low, high = Estimate("friction_input.coulomb", "N.m", 0.1, 0.02, 0.001, False, freedom=4.0).interval()
+        >>> round(low, 4), round(high, 4)
+        (0.0176, 0.0224)
+        """
+        confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
+        reach = self.sigma * _student(confidence, self.freedom) / _student(ONE_SIGMA, self.freedom)
+        return self.value - reach, self.value + reach
 
 
 @dataclass(frozen=True)
@@ -154,8 +169,11 @@ def fit(
     """
     _check_kinds(model, recording, loss)
     experiment = experiment_of(model, recording, channels, dt) if isinstance(recording, Recording) else recording
-    problem = _Problem(model, experiment, parameters("free", model, free), training)
+    places = parameters("free", model, free)
+    _check_branch(experiment, places)
+    problem = _Problem(model, experiment, places, training)
     start = problem.start()
+    _check_motion(experiment, problem.predict(start)[0])
     weights = 1.0 / _scale(experiment.measured[:, problem.training])
     passes = 1 if len(experiment.channels) == 1 else 2
     for _ in range(passes):
@@ -176,6 +194,26 @@ def _check_kinds(model: object, recording: object, loss: object) -> None:
         raise TypeError(f"recording must be a Recording, or an experiment made of one, not {recording!r}")
     if loss not in ("linear", "soft_l1"):
         raise ValueError(f"loss = {loss!r} must be linear or soft_l1")
+
+
+def _check_branch(experiment: Experiment, places: Sequence[Parameter]) -> None:
+    """Of a path that never turns back, a fit can take the whole for the spring, or for hysteresis."""
+    if isinstance(experiment, TorsionLoop) and experiment.single_branch:
+        if wrong := [place.path for place in places if not place.path.startswith("stiffness.")]:
+            raise ValueError(
+                f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} cannot be told from stiffness; "
+                "free parameters of gear.stiffness alone, or measure a loop that loads and unloads"
+            )
+
+
+def _check_motion(experiment: Experiment, predicted: Array) -> None:
+    """Where the model stands still, nothing changes with its parameters, and a fit would give its start back."""
+    if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):
+        raise ValueError(
+            "the model does not move under this command, though the drive did: nothing can be fitted from there. Start with less "
+            'friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see whether the unit of "command" '
+            "is right"
+        )
 
 
 def experiment_of(
@@ -231,7 +269,9 @@ class _Problem:
         self._last: tuple[bytes, tuple[Array, Array]] | None = None
 
     def start(self) -> Array:
-        return np.array([p.value for p in self.places] + [nuisance.start for nuisance in self.experiment.nuisances])
+        """Where the fit starts, within the limits of its parameters."""
+        inside = [min(max(p.value, p.low), p.high) for p in self.places]
+        return np.array(inside + [nuisance.start for nuisance in self.experiment.nuisances])
 
     def model_with(self, x: Array) -> Any:
         numbers = [value for _, value, *_ in _core.parameters(self.model)]
@@ -256,6 +296,7 @@ class _Problem:
 
         free_ends = [(-np.inf, np.inf)] * len(self.experiment.nuisances)
         low, high = np.array([(p.low, p.high) for p in self.places] + free_ends).reshape(-1, 2).T
+        inside = np.clip(start, low, high)
 
         def residuals(x: Array) -> Array:
             try:
@@ -268,8 +309,6 @@ class _Problem:
             _, slopes = self.predict(x)
             return (slopes * weights)[:, :, self.training].reshape(len(x), -1).T
 
-        inside = np.clip(start, low, high)
-        self.predict(inside)  # whatever is wrong with the start is told
         solution = least_squares(
             residuals,
             inside,
@@ -287,14 +326,14 @@ class _Problem:
         predicted, slopes = self.predict(x)
         residual = (self.experiment.measured - predicted)[:, self.training] * weights
         jacobian = (slopes * weights)[:, :, self.training].reshape(len(x), -1).T
-        covariance = _covariance(jacobian, residual)
+        covariance, freedom = _covariance(jacobian, residual)
         sigma = np.sqrt(np.diag(covariance))
         estimates = [
-            Estimate(p.path, p.unit, p.value, float(v), float(s), bool(v <= p.low or v >= p.high))
+            Estimate(p.path, p.unit, p.value, float(v), float(s), bool(v <= p.low or v >= p.high), freedom)
             for p, v, s in zip(self.places, x, sigma, strict=False)
         ]
         estimates += [
-            Estimate(nuisance.name, nuisance.unit, nuisance.start, float(v), float(s), False)
+            Estimate(nuisance.name, nuisance.unit, nuisance.start, float(v), float(s), False, freedom)
             for nuisance, v, s in zip(self.experiment.nuisances, x[len(self.places) :], sigma[len(self.places) :], strict=True)
         ]
         return Fit(
@@ -308,24 +347,34 @@ class _Problem:
         )
 
 
-def _covariance(jacobian: Array, residual: Array) -> Array:
-    """Covariance of the unknowns; infinite variance where some direction they take part in leaves the residuals unchanged.
+def _covariance(jacobian: Array, residual: Array) -> tuple[Array, float]:
+    """Covariance of the unknowns, and the degrees of freedom it rests on.
 
     Variance of the residuals over degrees of freedom, times how many samples hang together: residuals that are no white
-    noise tell less than their number.
+    noise tell less than their number. Widened, where these are few, so that one standard deviation holds the true value as often
+    as that of a normal distribution (Student 1908). Infinite variance where some direction that an unknown takes part in leaves
+    the residuals unchanged.
     """
     size = np.linalg.norm(jacobian, axis=0)
     scaled = jacobian / np.where(size > 0.0, size, 1.0)
     _, singular, directions = np.linalg.svd(scaled, full_matrices=False)
     dead = singular <= DEGENERATE * singular.max(initial=0.0)
-    freedom = max(residual.size - len(size), 1)
-    variance = float(np.sum(residual**2)) / freedom * max(_correlation_length(row) for row in residual)
+    together = max(_correlation_length(row) for row in residual)
+    variance = float(np.sum(residual**2)) / max(residual.size - len(size), 1) * together
+    freedom = max(residual.size / together - len(size), 1.0)
     inverse = np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, singular))
     root = directions.T * inverse
     covariance: Array = variance * (root @ root.T) / np.outer(np.where(size > 0.0, size, 1.0), np.where(size > 0.0, size, 1.0))
     undetermined = (np.abs(directions[dead]) > 1e-6).any(axis=0) | (size == 0.0)
     covariance[undetermined, undetermined] = np.inf
-    return covariance
+    return covariance * _student(ONE_SIGMA, freedom) ** 2, freedom
+
+
+def _student(confidence: float, freedom: float) -> float:
+    """Half the width of the interval that holds Student's variable with this probability."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, 0.5 + 0.5 * confidence))
 
 
 def _correlation_length(residual: Array) -> float:

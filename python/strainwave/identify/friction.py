@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,9 +54,9 @@ class Candidate:
 def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     """Fits the input friction of a gear to a table, with and without a fall of torque at low speed.
 
-    The law of `gear.friction_input` is kept; a purely viscous one becomes Coulomb's. A table that shows no fall towards
-    breakaway gives a law without one; of Coulomb's law, whose steady torque does not depend on breakaway, the ratio of
-    breakaway to Coulomb torque is kept.
+    The law of `gear.friction_input` is kept; a purely viscous one becomes Coulomb's, and Coulomb's becomes Stribeck's if the table
+    shows a fall from breakaway. A table that shows none gives a law without one; of Coulomb's law, whose steady torque does not
+    depend on breakaway, the ratio of breakaway to Coulomb torque is kept. Bristles are damped so little that they dissipate.
 
     Args:
         table: measured torque over speed
@@ -80,10 +80,21 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
         raise ValueError(f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}")
     candidates = [_straight(table, gear, gear.friction_input)]
     straight = candidates[0].fit.gear.friction_input
-    if isinstance(straight, friction.Stribeck | friction.LuGre) and speeds > len(FALLING) + 1:
-        candidates.append(_falling(table, gear, straight))
+    if speeds > len(FALLING) + 1:
+        falling = _falling(table, gear, straight)
+        law = falling.fit.gear.friction_input
+        if law.breakaway > law.coulomb:  # else the torque rises from rest on, and a line says as much
+            candidates.append(falling)
     best = min(candidate.error for candidate in candidates)
     return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates)))
+
+
+def dissipating(law: Any) -> Any:
+    """The law, with bristles damped half as much as dissipates in every motion, where they were damped more than that."""
+    if not isinstance(law, friction.LuGre) or law.breakaway <= law.coulomb or law.damping_fading > 0.0:
+        return law
+    most = law.viscous * law.coulomb / (law.breakaway - law.coulomb)
+    return law if law.bristle_damping <= most else law.replace(bristle_damping=0.5 * most)
 
 
 def _straight(table: FrictionTable, gear: Gear, known: Law) -> Candidate:
@@ -92,18 +103,27 @@ def _straight(table: FrictionTable, gear: Gear, known: Law) -> Candidate:
     coulomb, viscous = max(float(line[0]), 1e-3 * float(np.abs(table.torque).max())), max(float(line[1]), 0.0)
     start = gear.replace(friction_input=friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=viscous))
     candidate = _candidate("Coulomb and viscous", table, start, KINETIC)
-    law = friction.Coulomb() if isinstance(known, friction.Viscous) else known
+    law = friction.Coulomb(coulomb=coulomb, breakaway=coulomb) if isinstance(known, friction.Viscous) else known
     ratio = law.breakaway / law.coulomb if isinstance(law, friction.Coulomb) and law.coulomb > 0.0 else 1.0
-    written = law.replace(coulomb=candidate.coulomb, breakaway=ratio * candidate.coulomb, viscous=candidate.viscous)
+    found = {"coulomb": candidate.coulomb, "breakaway": ratio * candidate.coulomb, "viscous": candidate.viscous}
+    with warnings.catch_warnings(action="ignore", category=PassivityWarning):
+        written = dissipating(law.replace(**found))
     return replace(candidate, fit=replace(candidate.fit, model=gear.replace(friction_input=written)))
 
 
-def _falling(table: FrictionTable, gear: Gear, straight: friction.Stribeck | friction.LuGre) -> Candidate:
+def _falling(table: FrictionTable, gear: Gear, straight: Any) -> Candidate:
+    """Stribeck's fall, in the law of the gear or, where that has none, in Stribeck's."""
     speed = np.abs(table.speed[table.speed != 0.0])
     middle = float(np.sqrt(speed.min() * speed.max()))
-    with warnings.catch_warnings(action="ignore", category=PassivityWarning):  # a start need not be passive
-        start = straight.replace(breakaway=1.5 * straight.coulomb, stribeck_speed=middle)
-    return _candidate("with a fall at low speed", table, gear.replace(friction_input=start), FALLING)
+    falling = {"breakaway": 1.5 * straight.coulomb, "stribeck_speed": middle}
+    with warnings.catch_warnings(action="ignore", category=PassivityWarning):  # what is tried on the way need not be passive
+        if isinstance(straight, friction.Coulomb):
+            law = friction.Stribeck(coulomb=straight.coulomb, viscous=straight.viscous, **falling)
+        else:
+            law = straight.replace(**falling)
+        candidate = _candidate("with a fall at low speed", table, gear.replace(friction_input=law), FALLING)
+        found = candidate.fit.gear.replace(friction_input=dissipating(candidate.fit.gear.friction_input))
+    return replace(candidate, fit=replace(candidate.fit, model=found))
 
 
 def _candidate(name: str, table: FrictionTable, start: Gear, free: Sequence[str]) -> Candidate:

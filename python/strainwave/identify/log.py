@@ -17,7 +17,6 @@ Array = NDArray[np.float64]
 
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
 ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
-RESTING = 0.02  # of the largest speed: a log that starts faster does not start at rest
 
 
 @dataclass(frozen=True)
@@ -45,9 +44,8 @@ def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
         the fit to the first 70 % of the record, with its error on the rest
 
     Raises:
-        ValueError: the log does not start at rest, or is too short for the parameters
+        ValueError: the log is too short for the parameters
     """
-    _check_rest(log)
     training = log.time <= TRAINING_SHARE * log.time[-1]
     found = fit(drive, log, free, training=training)
     return LogFit(found, found.rms(held_out=True))
@@ -95,15 +93,3 @@ def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
     return kinematic_error.Fourier(
         order=ORDERS, amplitude=np.hypot(*weights.T).tolist(), phase=np.arctan2(weights[:, 1], weights[:, 0]).tolist()
     )
-
-
-def _check_rest(log: DriveLog) -> None:
-    for row, name in enumerate(log.channels):
-        if name.endswith("_angle"):
-            speed = np.diff(log.measured[row]) / np.diff(log.time)
-            first, largest = abs(float(speed[0])), float(np.abs(speed).max())
-            if first > RESTING * largest + float(np.abs(np.diff(speed)).max(initial=0.0)):  # more than it gains in a sample
-                raise ValueError(
-                    f"the drive log must start at rest: {name} starts at {first:.3g} rad/s, "
-                    f"{100 * first / largest:.0f} % of its largest speed"
-                )

@@ -7,25 +7,29 @@ exact derivatives then refine stiffness, breakaway and the spring together.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import hysteresis, stiffness
-from strainwave._core import Gear
+from strainwave import friction, hysteresis, stiffness
+from strainwave._core import Gear, PassivityWarning
 from strainwave.identify.experiment import TorsionLoop
 from strainwave.identify.fit import Fit, fit
+from strainwave.identify.friction import dissipating
 
 Array = NDArray[np.float64]
 
-SLIP_TWISTS = 14  # on a logarithmic grid; more cannot be told apart in any loop tried
+SLIPS = np.geomspace(5e-3, 0.95, 14)  # of half the span: twists tried for an element's slip; no loop tried tells more apart
 KNEES = 1.0 - np.geomspace(0.9, 0.012, 9)  # of half the span: places tried for the knees of a three-segment spring
 MOST_ELEMENTS = 6  # kept after the convex step
 NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
 SPRINGS = ("linear", "cubic", "three_segment")
+Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose breakaway a loop can tell
 
 
 @dataclass(frozen=True)
@@ -33,11 +37,15 @@ class Candidate:
     """One kind of gear fitted to a loop.
 
     Attributes:
-        name: its spring and the number of Maxwell elements
+        spring: its kind of spring
+        beside: what was fitted beside the spring
+        name: both, in words
         fit: the fit, of a gear with that spring and hysteresis
         error: rms of the residuals on the samples kept back [N.m]; on all, where none were
     """
 
+    spring: str
+    beside: Beside
     name: str
     fit: Fit
     error: float
@@ -53,13 +61,21 @@ def kept_back(n: int, blocks: int = 20, every: int = 4) -> NDArray[np.bool_]:
     return training
 
 
-def fit_loop(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None) -> list[Candidate]:
-    """Fits each kind of spring, in parallel with Maxwell-slip hysteresis, to a loop.
+def fit_loop(
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None, *, friction_measured: bool = False
+) -> list[Candidate]:
+    """Fits each kind of spring to a loop, and beside it what the loop can tell.
+
+    That is Maxwell-slip hysteresis, in parallel with the spring. Of a single branch it is nothing: the hysteresis of the gear is
+    kept. A loop from the input holds the friction of the wave generator too. Where this was measured, it is taken out. Where it
+    was not, the loop tells the sum of friction and hysteresis only; one of them is fitted, friction rather than hysteresis, and
+    the other is kept.
 
     Args:
         loop: measured torque over twist
-        gear: the gear to start from; its spring and hysteresis are replaced, the rest is kept
+        gear: the gear to start from; what is fitted is replaced, the rest is kept
         training: samples that take part, shape (n,); the rest validates
+        friction_measured: whether `gear.friction_input` was measured on this gear
 
     Returns:
         candidates, best first by the error on data kept back; of those within 5 % of it, or
@@ -69,39 +85,74 @@ def fit_loop(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None =
         ValueError: too few samples for any candidate
     """
     chosen = np.ones(len(loop.twist), bool) if training is None else training
-    candidates = [_candidate(loop, gear, chosen, spring) for spring in SPRINGS]
-    good = 1.05 * min(candidate.error for candidate in candidates) + NEGLIGIBLE * float(np.ptp(loop.torque))
+    asked = _asked(loop, gear, friction_measured)
+    candidates = [_candidate(loop, gear, chosen, spring, beside) for beside in asked for spring in SPRINGS]
+    best = min(candidates, key=lambda c: c.error)
+    good = 1.05 * best.error + NEGLIGIBLE * float(np.ptp(loop.torque))
+    candidates += _simpler(best, good, loop, gear, chosen)
     return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
 
 
-def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str) -> Candidate:
-    starts = [_start(gear, each, training, spring) for each in (loop, loop.virgin())]
-    start = min(starts, key=lambda s: s.error)
-    twist_zero = loop.middle if spring == "linear" else None
+def _simpler(
+    best: Candidate, good: float, loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_]
+) -> Iterator[Candidate]:
+    """The best candidate with one Maxwell element, two and so on, as long as this is fewer and not yet good."""
+    if not isinstance(best.beside, Elements):
+        return
+    chosen: tuple[float, ...] = ()
+    for _ in range(len(_pairs(best.fit.gear)) - 1):
+        sets = [Elements(tuple(sorted((*chosen, slip)))) for slip in best.beside.slips if slip not in chosen]
+        fewest = min(sets, key=lambda elements: _best_start(loop, gear, training, best.spring, elements).error)
+        yield (candidate := _candidate(loop, gear, training, best.spring, fewest))
+        if candidate.error <= good:
+            return
+        chosen = fewest.slips
+
+
+def _asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Beside]:
+    """What the loop is asked for beside the spring."""
+    if loop.single_branch:
+        return [Nothing()]
+    friction_inside = bool(np.any(loop.friction(gear))) and isinstance(gear.friction_input, Dry)
+    elements = Elements(tuple((half_span(loop) * SLIPS).tolist()))
+    return [elements] if friction_measured or not friction_inside else [Friction(), elements]
+
+
+def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str, beside: Beside) -> Candidate:
+    start = _best_start(loop, gear, training, spring, beside)
+    twist_zero = loop.middle if spring == "linear" else loop.twist_zero
     experiment = replace(start.loop, torque_zero=start.torque_zero, twist_zero=twist_zero)
-    found = _refined(start, experiment, training)
+    found = beside.finished(_refined(start, experiment, training, beside), gear)
     held_out = found.rms(held_out=True)[0]
-    return Candidate(_name(spring, found.gear), found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+    name = f"{spring.replace('_', '-')} spring{beside.words(found.gear)}"
+    return Candidate(spring, beside, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
 
 
-def _refined(start: _Start, loop: TorsionLoop, training: NDArray[np.bool_]) -> Fit:
+def _best_start(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str, beside: Beside) -> _Start:
+    """The start that fits best: with the history of a cycle, or with none."""
+    histories = [loop] if loop.single_branch else [loop, loop.virgin()]
+    return min((_start(gear, each, training, spring, beside) for each in histories), key=lambda start: start.error)
+
+
+def _refined(start: _Start, loop: TorsionLoop, training: NDArray[np.bool_], beside: Beside) -> Fit:
     """The fit, without elements that the loop cannot tell from the spring or from nothing.
 
     An element that never slips within the loop is a linear spring, and one that holds no torque is none.
     """
-    spring, elements = start.spring, start.hysteresis
-    half, span = 0.5 * float(np.ptp(loop.twist)), float(np.ptp(loop.torque))
+    gear = start.gear
+    half, span = half_span(loop), float(np.ptp(loop.torque))
     while True:
-        free = [f"stiffness.{field['name']}" for field in spring.fields]
-        free += ["hysteresis.stiffness", "hysteresis.breakaway"] if elements.stiffness else []
-        found = _in_order(fit(start.gear.replace(stiffness=spring, hysteresis=elements), loop, free, training=training))
-        fitted = _pairs(found.gear)
+        free = [f"stiffness.{field['name']}" for field in gear.stiffness.fields] + beside.free(gear)
+        found = _in_order(fit(gear, loop, free, training=training))
+        fitted = beside.elements(found.gear)
         slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < 0.99 * half * k]
         if len(slipping) == len(fitted):
             return found
-        assert isinstance(found.gear.stiffness, Spring)
-        spring = _stiffened(found.gear.stiffness, sum(k for k, f in fitted if f >= 0.99 * half * k))
+        spring = found.gear.stiffness
+        assert isinstance(spring, Spring)
+        spring = _stiffened(spring, sum(k for k, f in fitted if f >= 0.99 * half * k))
         elements = hysteresis.MaxwellSlip(stiffness=[k for k, _ in slipping], breakaway=[f for _, f in slipping])
+        gear = gear.replace(stiffness=spring, hysteresis=elements)
 
 
 def _pairs(gear: Gear) -> list[tuple[float, float]]:
@@ -122,11 +173,6 @@ def _stiffened(spring: Spring, k: float) -> Spring:
     return stiffness.ThreeSegment(k1=spring.k1 + k, k2=spring.k2 + k, k3=spring.k3 + k, t1=t1, t2=t2)
 
 
-def _name(spring: str, gear: Gear) -> str:
-    count = len(_pairs(gear))
-    return f"{spring.replace('_', '-')} spring with {count} Maxwell element{'s' if count != 1 else ''}"
-
-
 def _in_order(found: Fit) -> Fit:
     """The same curve with its knees in order: a second knee below the first is none."""
     spring = found.gear.stiffness
@@ -139,29 +185,154 @@ def _in_order(found: Fit) -> Fit:
 Spring = stiffness.Linear | stiffness.Cubic | stiffness.ThreeSegment
 
 
+# ---- What a loop is asked for beside the spring -----------------------------------------------------------------------
+
+
+class Beside(Protocol):
+    """A part of the gear that is fitted beside the spring, or none."""
+
+    def words(self, gear: Gear) -> str:
+        """For the name of the candidate."""
+        ...
+
+    def known(self, loop: TorsionLoop, gear: Gear) -> Array:
+        """Torque of the loop that is neither the spring's nor asked for [N.m], shape (n,)."""
+        ...
+
+    def columns(self, loop: TorsionLoop, gear: Gear) -> Array:
+        """What each positive parameter asked for contributes, shape (n, m)."""
+        ...
+
+    def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
+        """The gear with these parameters."""
+        ...
+
+    def free(self, gear: Gear) -> list[str]:
+        """Paths of the parameters asked for."""
+        ...
+
+    def elements(self, gear: Gear) -> list[tuple[float, float]]:
+        """Stiffness and breakaway of each Maxwell element asked for."""
+        ...
+
+    def finished(self, found: Fit, start: Gear) -> Fit:
+        """The fit with what follows from the parameters asked for."""
+        ...
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Maxwell elements in place of the gear's hysteresis, which begin to slip at some of these twists [rad]."""
+
+    slips: tuple[float, ...]
+
+    def words(self, gear: Gear) -> str:
+        count = len(_pairs(gear))
+        return f" with {count} Maxwell element{'s' if count != 1 else ''}"
+
+    def known(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return loop.friction(gear)
+
+    def columns(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return np.column_stack([_play(loop, slip) for slip in self.slips])
+
+    def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
+        return gear.replace(hysteresis=_elements(weights, np.array(self.slips)))
+
+    def free(self, gear: Gear) -> list[str]:
+        return ["hysteresis.stiffness", "hysteresis.breakaway"] if _pairs(gear) else []
+
+    def elements(self, gear: Gear) -> list[tuple[float, float]]:
+        return _pairs(gear)
+
+    def finished(self, found: Fit, start: Gear) -> Fit:
+        return found
+
+
+class Nothing:
+    """The spring alone; hysteresis and friction are as in the gear."""
+
+    def words(self, gear: Gear) -> str:
+        return ", hysteresis kept"
+
+    def known(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return loop.friction(gear) + _kept_hysteresis(loop, gear)
+
+    def columns(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return np.empty((len(loop.twist), 0))
+
+    def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
+        return gear
+
+    def free(self, gear: Gear) -> list[str]:
+        return []
+
+    def elements(self, gear: Gear) -> list[tuple[float, float]]:
+        return []
+
+    def finished(self, found: Fit, start: Gear) -> Fit:
+        return found
+
+
+class Friction:
+    """Breakaway of the friction at the input, with the hysteresis of the gear; Coulomb's torque keeps its ratio to it."""
+
+    def words(self, gear: Gear) -> str:
+        return " with friction at the input, hysteresis kept"
+
+    def known(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return _kept_hysteresis(loop, gear)
+
+    def columns(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return (loop.friction(gear) / gear.friction_input.breakaway)[:, np.newaxis]
+
+    def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
+        # while it is fitted, breakaway must not meet Coulomb's torque, below which it does not count
+        breakaway = max(float(weights[0]), 1e-3 * gear.friction_input.breakaway)
+        with warnings.catch_warnings(action="ignore", category=PassivityWarning):
+            return gear.replace(friction_input=gear.friction_input.replace(coulomb=0.0, breakaway=breakaway))
+
+    def free(self, gear: Gear) -> list[str]:
+        return ["friction_input.breakaway"]
+
+    def elements(self, gear: Gear) -> list[tuple[float, float]]:
+        return []
+
+    def finished(self, found: Fit, start: Gear) -> Fit:
+        known, breakaway = start.friction_input, found.gear.friction_input.breakaway
+        law = dissipating(known.replace(coulomb=known.coulomb / known.breakaway * breakaway, breakaway=breakaway))
+        return replace(found, model=found.gear.replace(friction_input=law))
+
+
+def _kept_hysteresis(loop: TorsionLoop, gear: Gear) -> Array:
+    return np.asarray(gear.hysteresis.trace(loop.path(0.0 if loop.single_branch else loop.middle))[-len(loop.twist) :])
+
+
+# ---- Where the refinement starts --------------------------------------------------------------------------------------
+
+
 @dataclass(frozen=True)
 class _Start:
-    """Where the refinement starts: the convex problem's answer."""
+    """The convex problem's answer."""
 
     gear: Gear
     loop: TorsionLoop
-    spring: Spring
-    hysteresis: hysteresis.MaxwellSlip
     torque_zero: float
     error: float
 
 
-def _start(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: str) -> _Start:
+def _start(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: str, beside: Beside) -> _Start:
     from scipy.optimize import nnls
 
-    half = 0.5 * float(np.ptp(loop.twist))
-    slips = half * np.geomspace(5e-3, 0.95, SLIP_TWISTS)
-    plays = np.column_stack([_play(loop, slip) for slip in slips])
+    middle = 0.0 if loop.single_branch else loop.middle
+    half = float(np.abs(loop.twist - middle).max())
+    sought = loop.torque - beside.known(loop, gear)
+    others = np.column_stack((beside.columns(loop, gear), _zero_columns(loop)))
     best: tuple[float, Array, tuple[float, ...]] | None = None
     for knees in _knees(spring, half):
-        columns = np.column_stack((_spring_columns(spring, loop.twist - loop.middle, half, knees), plays, _zero_columns(loop)))
+        columns = np.column_stack((_spring_columns(spring, loop.twist - middle, half, knees), others))
         try:
-            weights, residual = nnls(columns[training], loop.torque[training])
+            weights, residual = nnls(columns[training], sought[training])
         except RuntimeError:  # the active set cycles; other knees remain
             continue
         if best is None or residual < best[0]:
@@ -169,16 +340,21 @@ def _start(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: s
     if best is None:
         raise ValueError("no spring with Maxwell elements fits this loop")
     error, weights, knees = best
-    count = columns.shape[1] - len(slips) - 2
-    torque_zero = float(np.abs(loop.torque).max() * (weights[-2] - weights[-1]))
+    of_spring = columns.shape[1] - others.shape[1]
+    of_zeros = weights[len(weights) - _zero_columns(loop).shape[1] :]
+    level = float(np.abs(loop.torque).max())
+    started = beside.start(loop, gear, weights[of_spring : len(weights) - len(of_zeros)])
     return _Start(
-        gear,
+        started.replace(stiffness=_spring(spring, weights[:of_spring], half, knees)),
         loop,
-        _spring(spring, weights[:count], half, knees),
-        _elements(weights[count:-2], slips),
-        torque_zero,
+        level * float(of_zeros[0] - of_zeros[1]) if len(of_zeros) else 0.0,
         error,
     )
+
+
+def half_span(loop: TorsionLoop) -> float:
+    """Half of the twist that a loop goes through [rad]."""
+    return 0.5 * float(np.ptp(loop.twist))
 
 
 def _play(loop: TorsionLoop, slip: float) -> Array:
@@ -188,6 +364,9 @@ def _play(loop: TorsionLoop, slip: float) -> Array:
 
 
 def _zero_columns(loop: TorsionLoop) -> Array:
+    """What a zero of the torque contributes, either way; nothing where it is known."""
+    if loop.single_branch:
+        return np.empty((len(loop.twist), 0))
     level = np.full(len(loop.twist), np.abs(loop.torque).max())
     return np.column_stack((level, -level))
 

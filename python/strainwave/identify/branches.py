@@ -1,0 +1,73 @@
+"""Paths that go forth and back: where they truly turn, though they are noisy, and what is left of a long one."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SAMPLES = 2_000  # of a quasi-static path; more tell a fit nothing but the noise, which their means tell too
+SURE = 6.0  # standard deviations of the noise that a reversal must exceed
+SMALLEST = 0.02  # of the span: reversals below it are none of the test's
+
+
+def noise(values: Array) -> float:
+    """Standard deviation of white noise on a smooth series, by the median of its second differences."""
+    if len(values) < 3:
+        return 0.0
+    return float(np.median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6.0)))
+
+
+def turning_points(path: Array) -> list[int]:
+    """Samples at which a path turns back by more than its noise; those of its ends are none.
+
+    >>> turning_points(np.array([0.0, 1.0, 0.999, 2.0, 1.0, 0.0]))
+    [3]
+    """
+    least = max(SURE * noise(path), SMALLEST * float(np.ptp(path)))
+    turns: list[int] = []
+    low = high = 0
+    sense = 0
+    for i, value in enumerate(path.tolist()):
+        if value > path[high]:
+            high = i
+        if value < path[low]:
+            low = i
+        if sense >= 0 and value < path[high] - least:
+            if sense > 0:
+                turns.append(high)
+            sense, low = -1, i
+        elif sense <= 0 and value > path[low] + least:
+            if sense < 0:
+                turns.append(low)
+            sense, high = 1, i
+    return turns
+
+
+def monotone(path: Array) -> Array:
+    """The path with each branch running one way: what noise takes back, is left out.
+
+    >>> monotone(np.array([0.0, 1.0, 0.999, 2.0, 1.0, 1.001, 0.0])).tolist()
+    [0.0, 1.0, 1.0, 2.0, 1.0, 1.0, 0.0]
+    """
+    ends = [0, *turning_points(path), len(path) - 1]
+    clean = path.copy()
+    for first, last in zip(ends, ends[1:], strict=False):
+        branch = slice(first, last + 1)
+        onwards = np.maximum if path[last] > path[first] else np.minimum
+        clean[branch] = onwards.accumulate(path[branch])
+    return clean
+
+
+def thinned(*series: Array, samples: int = SAMPLES) -> tuple[Array, ...]:
+    """Long series as the means of equal stretches; short ones as they are.
+
+    >>> thinned(np.arange(6.0), samples=3)[0].tolist()
+    [0.5, 2.5, 4.5]
+    """
+    n = len(series[0])
+    if n <= samples:
+        return series
+    starts = np.linspace(0, n, samples + 1).astype(int)
+    return tuple(np.add.reduceat(values, starts[:-1]) / np.diff(starts) for values in series)
