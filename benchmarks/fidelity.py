@@ -29,7 +29,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.identify.experiment import FrictionTable, TorsionLoop
 from strainwave.identify.inverse_dynamics import regression
-from strainwave.identify.torsion import fit_loop, kept_back
+from strainwave.identify.torsion import fit_loop, held_out_blocks
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ class Score:
     model: str
     numbers: int
     fitted: float
-    kept_back: float
+    held_out_blocks: float
 
 
 # ---- Torsion loops ---------------------------------------------------------------------------------------------------
@@ -60,7 +60,7 @@ class Score:
 
 def torsion_scores(loop: TorsionLoop, spring: Any) -> list[Score]:
     """All kinds of hysteresis in parallel with one kind of spring; errors relative to the span of the torque."""
-    training = kept_back(len(loop.twist))
+    training = held_out_blocks(len(loop.twist))
     half, span = 0.5 * float(np.ptp(loop.twist)), float(np.ptp(loop.torque))
     secant = 0.5 * span / half
     spring = spring.replace(**{spring.fields[0]["name"]: 0.5 * secant})
@@ -68,7 +68,7 @@ def torsion_scores(loop: TorsionLoop, spring: Any) -> list[Score]:
     twin = fit_loop(loop, sw.Gear(), training)[0]
     scores.append(Score(f"MaxwellSlip, chosen by the twin: {twin.name}", len(twin.fit.estimates), *errors(twin.fit)))
     scores += [grid_score(loop, spring, rows, training) for rows in (4, 7, 10)]
-    return [Score(s.model, s.numbers, s.fitted / span, s.kept_back / span) for s in scores]
+    return [Score(s.model, s.numbers, s.fitted / span, s.held_out_blocks / span) for s in scores]
 
 
 def hysteresis_starts(half: float, span: float, secant: float) -> dict[str, list[Any]]:
@@ -126,7 +126,7 @@ def best_fit(name: str, spring: Any, starts: Sequence[Any], loop: TorsionLoop, t
 
 def spring_scores(loop: TorsionLoop) -> list[Score]:
     """All kinds of spring, in parallel with four Maxwell elements; errors relative to the span of the torque."""
-    training = kept_back(len(loop.twist))
+    training = held_out_blocks(len(loop.twist))
     half, span = 0.5 * float(np.ptp(loop.twist)), float(np.ptp(loop.torque))
     secant = 0.5 * span / half
     st, soft = sw.stiffness, 0.5 * secant
@@ -344,7 +344,7 @@ def warming_scores(folder: Path) -> list[Score]:
     current, speed, celsius = column("Current_J3"), column("Speed_J3"), column("Temperature_J3")
     moving = np.isfinite(current) & np.isfinite(celsius) & (np.abs(speed) > 0.05)
     current, speed, kelvin = current[moving], speed[moving], celsius[moving] + 273.15
-    training = kept_back(len(current))
+    training = held_out_blocks(len(current))
     reference = float(kelvin.mean())
     spread = float(np.std(current[training]))
     laws: dict[str, tuple[Law, list[float]]] = {
@@ -438,7 +438,7 @@ def joint_scores(file: Path) -> list[Score]:
 
 def table(title: str, scores: Sequence[Score]) -> str:
     lines = [f"\n### {title}\n", "| model | numbers | fitted [%] | kept back [%] |", "|---|---:|---:|---:|"]
-    lines += [f"| {s.model} | {s.numbers} | {100 * s.fitted:.2f} | {100 * s.kept_back:.2f} |" for s in scores]
+    lines += [f"| {s.model} | {s.numbers} | {100 * s.fitted:.2f} | {100 * s.held_out_blocks:.2f} |" for s in scores]
     return "\n".join(lines)
 
 
@@ -447,7 +447,7 @@ def loops_table(title: str, several: Sequence[Sequence[Score]]) -> str:
     heading = "| model | numbers | fitted, median [%] | kept back, median [%] | kept back, each [%] |"
     lines = [f"\n### {title}\n", heading, "|---|---:|---:|---:|---|"]
     for same in zip(*several, strict=True):
-        fitted, kept = (100 * np.array([getattr(score, name) for score in same]) for name in ("fitted", "kept_back"))
+        fitted, kept = (100 * np.array([getattr(score, name) for score in same]) for name in ("fitted", "held_out_blocks"))
         name = same[0].model.partition(":")[0]
         numbers = sorted({score.numbers for score in same})
         count = f"{numbers[0]}" if len(numbers) == 1 else f"{numbers[0]} to {numbers[-1]}"

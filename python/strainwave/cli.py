@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from strainwave.report.twin import Provenance
 
 REFUSED = 2  # exit code for input that cannot be used
+DOUBTED = 3  # exit code for measurements that speak against themselves: no gear is written
 
 app = typer.Typer(
     help="Strain wave gears: measurements in, a validated model of that gear out.",
@@ -33,14 +34,19 @@ app = typer.Typer(
 @app.command()
 def twin(
     gear: Annotated[str, typer.Option(help="Where to start: a catalogue set, as hfuc-25-100, or a gear file.")],
-    friction: Annotated[Path | None, typer.Option(help="Table of steady friction at the input: speed, torque.")] = None,
+    friction: Annotated[Path | None, typer.Option(help="Table of steady friction: speed, torque.")] = None,
     torsion: Annotated[
-        Path | None, typer.Option(help="Torsion loop: twist, torque; or input_angle, input_torque, output locked.")
+        Path | None,
+        typer.Option(help="Torsion loop or branch: twist, torque; or input_angle, input_torque with the output locked."),
     ] = None,
     log: Annotated[
         Path | None, typer.Option(help="Run from rest: time, command, position, output_angle, current … as measured.")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for gear.toml and report.html.")] = Path("twin"),
+    side: Annotated[
+        str | None, typer.Option(help="Where the friction table was measured, input or output; taken to be the input.")
+    ] = None,
+    accept: Annotated[bool, typer.Option("--accept", help="Write the gear though a measurement is doubted.")] = False,
     column: Annotated[
         list[str] | None, typer.Option(help="A column's name in your file, as speed='Motor Speed'; repeat as needed.")
     ] = None,
@@ -51,7 +57,8 @@ def twin(
     """Identify a gear from measurements.
 
     Measurements are CSV or Parquet files whose columns carry units, as speed [rad/s]. Any of them will do: each tells what it
-    can, a part of it is kept back to validate, and the report says what remains unknown.
+    can, a part of it is held out to validate, and the report says what remains unknown. Where a measurement cannot be what it
+    is taken for, or the model does not explain it, that is said first, no gear is written, and the exit code is 3.
     """
     from strainwave.gear_set import GearSet
     from strainwave.identify.measurement import COLUMNS, read_measurement
@@ -70,12 +77,20 @@ def twin(
             friction=recordings.get("friction"),
             torsion=recordings.get("torsion"),
             log=recordings.get("log"),
+            side=side,  # type: ignore[arg-type] # anything else is refused there
             sources={kind: path.name for kind, path in files.items()},
             progress=stage,
         )
         stage("report")
-        _write(out, found.gear_set, twin_report(found, provenance=_provenance(files.values())))
+        report = twin_report(found, provenance=_provenance(files.values()))
+        doubted = bool(found.doubts) and not accept
+        _write(out, None if doubted else found.gear_set, report)
+    _tell_doubts(found)
     _summarise(found, out)
+    if doubted:
+        print(f"wrote {out / 'report.html'} alone: no gear is written while a measurement is doubted; --accept writes it")
+        raise typer.Exit(DOUBTED)
+    print(f"wrote {out / 'gear.toml'} and {out / 'report.html'}")
 
 
 @app.command()
@@ -142,18 +157,26 @@ def _provenance(files: Iterable[Path]) -> Provenance:
     return Provenance.of(sorted(files), command=shlex.join(["strainwave", *sys.argv[1:]]), date=now)
 
 
-def _write(folder: Path, gear_set: GearSet, report: str) -> None:
+def _write(folder: Path, gear_set: GearSet | None, report: str) -> None:
     """Both files or none: each is written beside its place, then put there."""
     from strainwave.report.page import write
 
     folder.mkdir(parents=True, exist_ok=True)
     draft = folder / ".gear.part.toml"
     try:
-        gear_set.save(draft)
+        if gear_set is not None:
+            gear_set.save(draft)
         write(report, folder / "report.html")
-        os.replace(draft, folder / "gear.toml")
+        if gear_set is not None:
+            os.replace(draft, folder / "gear.toml")
     finally:
         draft.unlink(missing_ok=True)
+
+
+def _tell_doubts(found: Twin) -> None:
+    for doubt in found.doubts:
+        print(f"DOUBT: {doubt.source}: {doubt.what}")
+        print(f"  what to do: {doubt.remedy}")
 
 
 def _summarise(found: Twin, out: Path) -> None:
@@ -163,13 +186,13 @@ def _summarise(found: Twin, out: Path) -> None:
             f"{name} {error:.3g} {unit}"
             for name, unit, error in zip(experiment.channels, experiment.units, evidence.error, strict=True)
         ]
-        print(f"{evidence.source}: rms error on data kept back: {', '.join(errors)}")
-    unknown = [verdict.path for verdict in found.verdicts if verdict.state == "not identified"]
-    if unknown:
-        print(f"not identified: {', '.join(unknown)}")
+        print(f"{evidence.source}: rms error on data held out: {', '.join(errors)}")
+    fitted = [verdict for verdict in found.verdicts if verdict.state != "kept"]
+    width = max((len(verdict.path) for verdict in fitted), default=0)
+    for v in fitted:
+        print(f"  {v.path:{width}}  {v.value:11.5g} ± {v.sigma:<8.2g} {v.unit:12} {v.state}")
     for c in found.contradictions:
         print(f"contradiction: {c.path} = {c.earlier:g} {c.unit} ({c.earlier_source}) against {c.measured:.4g} ({c.source})")
-    print(f"wrote {out / 'gear.toml'} and {out / 'report.html'}")
 
 
 @contextmanager

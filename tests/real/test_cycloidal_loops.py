@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identify.experiment import TorsionLoop
-from strainwave.identify.torsion import fit_loop, kept_back
+from strainwave.identify.torsion import fit_loop, held_out_blocks
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cycloidal-loops"
 LOOPS = [
@@ -37,10 +37,10 @@ def measured(name: str) -> TorsionLoop:
 
 
 @pytest.mark.parametrize("name", LOOPS)
-def test_a_measured_loop_is_predicted_where_it_was_kept_back(name: str, record_property: Callable[[str, object], None]) -> None:
+def test_a_measured_loop_is_predicted_where_it_was_held_out(name: str, record_property: Callable[[str, object], None]) -> None:
     loop = measured(name)
     span = float(np.ptp(loop.torque))
-    best = fit_loop(loop, sw.Gear(), kept_back(len(loop.twist)))[0]
+    best = fit_loop(loop, sw.Gear(), held_out_blocks(len(loop.twist)))[0]
     held_out, trained = best.error / span, best.fit.rms()[0] / span
     record_property("held_out", held_out)
     print(f"\n{name}: {best.name}, rms error {100 * trained:.2f} % of the span, {100 * held_out:.2f} % kept back")
@@ -51,6 +51,6 @@ def test_a_measured_loop_is_predicted_where_it_was_kept_back(name: str, record_p
 
 def fit_without_hysteresis(loop: TorsionLoop) -> float:
     """Error of the best cubic curve through the training samples, on the samples kept back [N.m]."""
-    training, x = kept_back(len(loop.twist)), loop.twist / np.ptp(loop.twist)
+    training, x = held_out_blocks(len(loop.twist)), loop.twist / np.ptp(loop.twist)
     curve = np.polynomial.Polynomial.fit(x[training], loop.torque[training], 3)
     return float(np.sqrt(np.mean((loop.torque - curve(x))[~training] ** 2)))

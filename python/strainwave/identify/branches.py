@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +11,7 @@ Array = NDArray[np.float64]
 
 SAMPLES = 2_000  # of a quasi-static path; more tell a fit nothing but the noise, which their means tell too
 SURE = 6.0  # standard deviations of the noise that a reversal must exceed
+PRESLIDING = 0.02  # of the span: bristles bend by milliradians at the input before they slip (assumed)
 SMALLEST = 0.02  # of the span: reversals below it are none of the test's
 
 
@@ -53,11 +56,26 @@ def monotone(path: Array) -> Array:
     """
     ends = [0, *turning_points(path), len(path) - 1]
     clean = path.copy()
-    for first, last in zip(ends, ends[1:], strict=False):
+    for first, last in pairwise(ends):
         branch = slice(first, last + 1)
         onwards = np.maximum if path[last] > path[first] else np.minimum
         clean[branch] = onwards.accumulate(path[branch])
     return clean
+
+
+def slid(path: Array) -> NDArray[np.bool_]:
+    """Samples that are no less than a share of the span behind the last reversal; all before the first.
+
+    >>> slid(np.array([0.0, 0.5, 1.0, 0.99, 0.5, 0.0])).tolist()
+    [True, True, True, False, True, True]
+    """
+    turns = turning_points(path)
+    begun = np.zeros(len(path), int)
+    begun[turns] = turns
+    begun = np.maximum.accumulate(begun)  # the reversal before each sample
+    behind = np.abs(path - path[begun])
+    slides: NDArray[np.bool_] = (behind >= PRESLIDING * np.ptp(path)) | (behind == 0.0) | (begun == 0)
+    return slides
 
 
 def thinned(*series: Array, samples: int = SAMPLES) -> tuple[Array, ...]:

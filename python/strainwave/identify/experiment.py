@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments, loads, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
-from strainwave.identify.branches import monotone, thinned, turning_points
+from strainwave.identify.branches import monotone, slid, thinned, turning_points
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
 from strainwave.simulation import differentiate
@@ -125,8 +125,8 @@ class TorsionLoop:
     """Torque over twist along a path, slow enough that only spring, hysteresis and friction at rest speak.
 
     Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement. A linear spring cannot
-    tell them apart; for it the zero of the twist is taken as known. A path that never turns back, a single branch, tells neither:
-    it is taken to begin with an unloaded gear at the zeros of both axes.
+    tell them apart; for it the zero of the twist is taken as known. A path that never turns back, a single branch, tells
+    neither: it is taken to begin with an unloaded gear at the zeros of both axes.
 
     At the input, with the output locked, the friction of the wave generator is inside the loop: the model's `friction_input` at
     rest, times the ratio.
@@ -156,7 +156,8 @@ class TorsionLoop:
         """From columns twist and torque at the output, or input_angle and input_torque with the output locked.
 
         What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque. A long
-        recording is thinned to the means of equal stretches.
+        recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a reversal
+        is left out: there friction turns over while its bristles bend, over a distance that no loop tells.
         """
         ratio = gear.kinematics.ratio if at_input(recording) else None
         if ratio is not None:
@@ -165,6 +166,8 @@ class TorsionLoop:
         else:
             twist, torque = _sensible(recording, "twist", "rad"), _sensible(recording, "torque", "N.m")
         twist, torque = thinned(twist, torque)
+        if ratio is not None:
+            twist, torque = twist[settled := slid(twist)], torque[settled]
         loop = cls(twist, torque, input_ratio=ratio, samples=len(recording))
         return replace(loop, history="virgin", twist_zero=0.0) if loop.single_branch else loop
 
@@ -219,26 +222,24 @@ class TorsionLoop:
 
     def friction(self, model: Gear) -> Array:
         """What friction at rest adds to the torque [N.m], shape (n,): the input's if measured there, none at a held output."""
-        return self._of_friction(model.friction_input)
-
-    def _of_friction(self, law: Any) -> Array:
         if self.input_ratio is None:
             return np.zeros_like(self.twist)
-        torque = self.input_ratio * law.quasistatic(self.input_ratio * self._displacement)
+        torque = self.input_ratio * model.friction_input.quasistatic(self.input_ratio * self._displacement)
         return np.asarray(torque[-len(self.twist) :])
 
     def _friction_slope(self, model: Gear, number: int) -> Array:
-        """Derivative of `friction` by a number of the gear, by differences: torque at rest is all but linear in most of them."""
+        """Derivative of `friction` by a number of the gear, by differences: torque at rest is all but linear in most of them.
+
+        Towards where a breakaway counts beside an equal Coulomb torque: upwards, and downwards for the others.
+        """
         path, value, *_, low, high = _core.parameters(model)[number]
         if self.input_ratio is None or not path.startswith("friction_input."):
             return np.zeros_like(self.twist)
         step = 1e-6 * max(abs(value), 1e-6)
-        ends = [min(value + step, high), max(value - step, low)]
+        end = min(value + step, high) if path.endswith("breakaway") or value - step < low else value - step
         numbers = [each[1] for each in _core.parameters(model)]
-        up, down = (
-            self.friction(_core.with_numbers(model, [*numbers[:number], end, *numbers[number + 1 :]])) for end in ends
-        )
-        return (up - down) / (ends[0] - ends[1])
+        other = _core.with_numbers(model, [*numbers[:number], end, *numbers[number + 1 :]])
+        return (self.friction(other) - self.friction(model)) / (end - value)
 
     @cached_property
     def _displacement(self) -> Array:

@@ -54,7 +54,7 @@ class Estimate:
         (0.0176, 0.0224)
         """
         confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
-        reach = self.sigma * _student(confidence, self.freedom) / _student(ONE_SIGMA, self.freedom)
+        reach = self.sigma * student(confidence, self.freedom) / student(ONE_SIGMA, self.freedom)
         return self.value - reach, self.value + reach
 
 
@@ -115,8 +115,8 @@ class Fit:
         for name, unit, trained, held in zip(
             self.experiment.channels, self.experiment.units, self.rms(), self.rms(held_out=True), strict=True
         ):
-            kept_back = "" if np.isnan(held) else f", on data kept back {held:.4g} {unit}"
-            lines.append(f"residual of {name}: {trained:.4g} {unit} rms{kept_back}")
+            held_out = "" if np.isnan(held) else f", on data held out {held:.4g} {unit}"
+            lines.append(f"residual of {name}: {trained:.4g} {unit} rms{held_out}")
         return "\n".join(lines)
 
 
@@ -198,21 +198,21 @@ def _check_kinds(model: object, recording: object, loss: object) -> None:
 
 def _check_branch(experiment: Experiment, places: Sequence[Parameter]) -> None:
     """Of a path that never turns back, a fit can take the whole for the spring, or for hysteresis."""
-    if isinstance(experiment, TorsionLoop) and experiment.single_branch:
-        if wrong := [place.path for place in places if not place.path.startswith("stiffness.")]:
-            raise ValueError(
-                f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} cannot be told from stiffness; "
-                "free parameters of gear.stiffness alone, or measure a loop that loads and unloads"
-            )
+    wrong = [place.path for place in places if not place.path.startswith("stiffness.")]
+    if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
+        raise ValueError(
+            f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} cannot be told from stiffness; "
+            "free parameters of the stiffness alone, or measure a loop that loads and unloads"
+        )
 
 
 def _check_motion(experiment: Experiment, predicted: Array) -> None:
     """Where the model stands still, nothing changes with its parameters, and a fit would give its start back."""
     if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):
         raise ValueError(
-            "the model does not move under this command, though the drive did: nothing can be fitted from there. Start with less "
-            'friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see whether the unit of "command" '
-            "is right"
+            "the model does not move under this command, though the drive did: nothing can be fitted from there. Start with "
+            "less friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see whether the unit of the "
+            "command is right"
         )
 
 
@@ -351,27 +351,35 @@ def _covariance(jacobian: Array, residual: Array) -> tuple[Array, float]:
     """Covariance of the unknowns, and the degrees of freedom it rests on.
 
     Variance of the residuals over degrees of freedom, times how many samples hang together: residuals that are no white
-    noise tell less than their number. Widened, where these are few, so that one standard deviation holds the true value as often
-    as that of a normal distribution (Student 1908). Infinite variance where some direction that an unknown takes part in leaves
-    the residuals unchanged.
+    noise tell less than their number. Each unknown's is that for residuals of equal size or that for unequal ones, HC3 of
+    MacKinnon and White (1985), whichever is larger. Widened, where samples are few, so that one standard deviation holds the
+    true value as often as that of a normal distribution (Student 1908). Infinite variance where some direction that an unknown
+    takes part in leaves the residuals unchanged.
     """
     size = np.linalg.norm(jacobian, axis=0)
-    scaled = jacobian / np.where(size > 0.0, size, 1.0)
-    _, singular, directions = np.linalg.svd(scaled, full_matrices=False)
+    size = np.where(size > 0.0, size, 1.0)
+    left, singular, directions = np.linalg.svd(jacobian / size, full_matrices=False)
     dead = singular <= DEGENERATE * singular.max(initial=0.0)
     together = max(_correlation_length(row) for row in residual)
-    variance = float(np.sum(residual**2)) / max(residual.size - len(size), 1) * together
     freedom = max(residual.size / together - len(size), 1.0)
-    inverse = np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, singular))
-    root = directions.T * inverse
-    covariance: Array = variance * (root @ root.T) / np.outer(np.where(size > 0.0, size, 1.0), np.where(size > 0.0, size, 1.0))
-    undetermined = (np.abs(directions[dead]) > 1e-6).any(axis=0) | (size == 0.0)
+    root = directions.T * np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, singular))
+    even = float(np.sum(residual**2)) / max(residual.size - len(size), 1)
+    leverage = np.minimum(np.sum(left[:, ~dead] ** 2, axis=1), 1.0 - 1.0 / residual.size)
+    uneven = np.sum((root @ (left.T * (residual.ravel() / (1.0 - leverage)))) ** 2, axis=1)
+    covariance = even * (root @ root.T)
+    wider = np.sqrt(np.maximum(uneven / np.where(uneven > 0.0, np.diag(covariance), 1.0), 1.0))
+    covariance *= together * student(ONE_SIGMA, freedom) ** 2 * np.outer(wider / size, wider / size)
+    undetermined = (np.abs(directions[dead]) > 1e-6).any(axis=0) | ~np.any(jacobian, axis=0)
     covariance[undetermined, undetermined] = np.inf
-    return covariance * _student(ONE_SIGMA, freedom) ** 2, freedom
+    return covariance, freedom
 
 
-def _student(confidence: float, freedom: float) -> float:
-    """Half the width of the interval that holds Student's variable with this probability."""
+def student(confidence: float, freedom: float) -> float:
+    """Half the width of the interval that holds Student's variable with this probability.
+
+    >>> round(student(0.95, 4.0), 3)
+    2.776
+    """
     from scipy.special import stdtrit
 
     return float(stdtrit(freedom, 0.5 + 0.5 * confidence))

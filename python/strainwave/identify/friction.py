@@ -54,9 +54,10 @@ class Candidate:
 def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     """Fits the input friction of a gear to a table, with and without a fall of torque at low speed.
 
-    The law of `gear.friction_input` is kept; a purely viscous one becomes Coulomb's, and Coulomb's becomes Stribeck's if the table
-    shows a fall from breakaway. A table that shows none gives a law without one; of Coulomb's law, whose steady torque does not
-    depend on breakaway, the ratio of breakaway to Coulomb torque is kept. Bristles are damped so little that they dissipate.
+    The law of `gear.friction_input` is kept; a purely viscous one becomes Coulomb's, and Coulomb's becomes Stribeck's if the
+    table shows a fall from breakaway. A table that shows none gives a law without one; of Coulomb's law, whose steady torque
+    does not depend on breakaway, the ratio of breakaway to Coulomb torque is kept. Bristles are damped so little that they
+    dissipate.
 
     Args:
         table: measured torque over speed
@@ -82,8 +83,8 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
     straight = candidates[0].fit.gear.friction_input
     if speeds > len(FALLING) + 1:
         falling = _falling(table, gear, straight)
-        law = falling.fit.gear.friction_input
-        if law.breakaway > law.coulomb:  # else the torque rises from rest on, and a line says as much
+        estimates = {estimate.path.rpartition(".")[2]: estimate.value for estimate in falling.fit.estimates}
+        if estimates["breakaway"] > estimates["coulomb"]:  # else the torque rises from rest on, and a line says as much
             candidates.append(falling)
     best = min(candidate.error for candidate in candidates)
     return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates)))

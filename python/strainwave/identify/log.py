@@ -16,6 +16,8 @@ from strainwave.identify.fit import Fit, fit
 Array = NDArray[np.float64]
 
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
+ROUNDS = 4  # of fits after which breakaway has followed Coulomb's torque upwards
+HALVINGS = 12  # of a friction that no command overcomes
 ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
 
 
@@ -48,7 +50,25 @@ def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
     """
     training = log.time <= TRAINING_SHARE * log.time[-1]
     found = fit(drive, log, free, training=training)
+    for _ in range(ROUNDS):
+        law = innermost(found.gear.friction_input)
+        if not hasattr(law, "breakaway") or law.breakaway >= law.coulomb:
+            break
+        gear = found.gear.replace(friction_input=_with_breakaway(found.gear.friction_input, law.coulomb))
+        found = fit(found.model.replace(gear=gear), log, free, training=training)
     return LogFit(found, found.rms(held_out=True))
+
+
+def innermost(law: Any) -> Any:
+    """The law of friction that others modulate, or the law itself."""
+    return innermost(law.law) if hasattr(law, "law") else law
+
+
+def _with_breakaway(law: Any, breakaway: float) -> Any:
+    """A law of friction that breaks away at this torque, within others too."""
+    if hasattr(law, "law"):
+        return law.replace(law=_with_breakaway(law.law, breakaway))
+    return law.replace(breakaway=breakaway)
 
 
 def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool, torsion_known: bool) -> list[str]:
@@ -66,12 +86,32 @@ def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool
     return free
 
 
-def prepared(log: DriveLog, drive: PositionDrive) -> PositionDrive:
+def prepared(log: DriveLog, drive: PositionDrive, *, friction_known: bool) -> PositionDrive:
     """The drive with a gear whose laws have the parameters that the log can tell, started near the measurement."""
     gear = drive.gear.replace(friction_input=_with_coulomb(drive.gear.friction_input))
     if {"input_angle", "output_angle"} <= set(log.channels):
         gear = gear.replace(kinematic_error=_harmonics(log, gear.kinematics.ratio))
-    return drive.replace(gear=gear)
+    drive = drive.replace(gear=gear)
+    return drive if friction_known else _set_in_motion(log, drive)
+
+
+def _set_in_motion(log: DriveLog, drive: PositionDrive) -> PositionDrive:
+    """The drive with so little dry friction that it moves under the command of the log; as it is, if it never does."""
+    zeros = np.array([nuisance.start for nuisance in log.nuisances])
+    tried = drive
+    for _ in range(HALVINGS):
+        if not log.stands_still(log.predict(tried, [], zeros)[0]):
+            return tried
+        tried = tried.replace(gear=tried.gear.replace(friction_input=_with_dry(tried.gear.friction_input, 0.5)))
+    return drive
+
+
+def _with_dry(law: Any, factor: float) -> Any:
+    """A law of friction with its dry torque multiplied, within others too."""
+    if hasattr(law, "law"):
+        return law.replace(law=_with_dry(law.law, factor))
+    dry = {name: factor * getattr(law, name) for name in ("coulomb", "breakaway") if hasattr(law, name)}
+    return law.replace(**dry)
 
 
 def _with_coulomb(law: Any) -> Any:

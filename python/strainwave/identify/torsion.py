@@ -41,7 +41,7 @@ class Candidate:
         beside: what was fitted beside the spring
         name: both, in words
         fit: the fit, of a gear with that spring and hysteresis
-        error: rms of the residuals on the samples kept back [N.m]; on all, where none were
+        error: rms of the residuals on the samples held out [N.m]; on all, where none were
     """
 
     spring: str
@@ -51,8 +51,8 @@ class Candidate:
     error: float
 
 
-def kept_back(n: int, blocks: int = 20, every: int = 4) -> NDArray[np.bool_]:
-    """Samples that train: all but every fourth of twenty blocks, which are kept back to validate.
+def held_out_blocks(n: int, blocks: int = 20, every: int = 4) -> NDArray[np.bool_]:
+    """Samples that train: all but every fourth of twenty blocks, which are held out to validate.
 
     Whole blocks, because neighbours on a loop resemble each other too much to test one by the other.
     """
@@ -66,10 +66,10 @@ def fit_loop(
 ) -> list[Candidate]:
     """Fits each kind of spring to a loop, and beside it what the loop can tell.
 
-    That is Maxwell-slip hysteresis, in parallel with the spring. Of a single branch it is nothing: the hysteresis of the gear is
-    kept. A loop from the input holds the friction of the wave generator too. Where this was measured, it is taken out. Where it
-    was not, the loop tells the sum of friction and hysteresis only; one of them is fitted, friction rather than hysteresis, and
-    the other is kept.
+    That is Maxwell-slip hysteresis, in parallel with the spring. Of a single branch it is nothing: the hysteresis of the gear
+    is kept. A loop from the input holds the friction of the wave generator too. Where this was measured, it is taken out.
+    Where it was not, the loop tells the sum of friction and hysteresis only; one of them is fitted, friction rather than
+    hysteresis, and the other is kept.
 
     Args:
         loop: measured torque over twist
@@ -78,8 +78,8 @@ def fit_loop(
         friction_measured: whether `gear.friction_input` was measured on this gear
 
     Returns:
-        candidates, best first by the error on data kept back; of those within 5 % of it, or
-        within a thousandth of the span of the torque, the one with the fewest parameters
+        candidates, best first by the error on data held out; of those within 5 % of it, and a thousandth of the span of the
+        torque, the one with the fewest parameters
 
     Raises:
         ValueError: too few samples for any candidate
@@ -88,14 +88,12 @@ def fit_loop(
     asked = _asked(loop, gear, friction_measured)
     candidates = [_candidate(loop, gear, chosen, spring, beside) for beside in asked for spring in SPRINGS]
     best = min(candidates, key=lambda c: c.error)
-    good = 1.05 * best.error + NEGLIGIBLE * float(np.ptp(loop.torque))
+    good = float(np.hypot(1.05 * best.error, NEGLIGIBLE * np.ptp(loop.torque)))
     candidates += _simpler(best, good, loop, gear, chosen)
     return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
 
 
-def _simpler(
-    best: Candidate, good: float, loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_]
-) -> Iterator[Candidate]:
+def _simpler(best: Candidate, good: float, loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_]) -> Iterator[Candidate]:
     """The best candidate with one Maxwell element, two and so on, as long as this is fewer and not yet good."""
     if not isinstance(best.beside, Elements):
         return
@@ -284,13 +282,14 @@ class Friction:
         return _kept_hysteresis(loop, gear)
 
     def columns(self, loop: TorsionLoop, gear: Gear) -> Array:
-        return (loop.friction(gear) / gear.friction_input.breakaway)[:, np.newaxis]
+        return (loop.friction(gear) / _dry(gear).breakaway)[:, np.newaxis]
 
     def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
         # while it is fitted, breakaway must not meet Coulomb's torque, below which it does not count
-        breakaway = max(float(weights[0]), 1e-3 * gear.friction_input.breakaway)
+        law = _dry(gear)
+        breakaway = max(float(weights[0]), 1e-3 * law.breakaway)
         with warnings.catch_warnings(action="ignore", category=PassivityWarning):
-            return gear.replace(friction_input=gear.friction_input.replace(coulomb=0.0, breakaway=breakaway))
+            return gear.replace(friction_input=law.replace(coulomb=0.0, breakaway=breakaway))
 
     def free(self, gear: Gear) -> list[str]:
         return ["friction_input.breakaway"]
@@ -299,9 +298,16 @@ class Friction:
         return []
 
     def finished(self, found: Fit, start: Gear) -> Fit:
-        known, breakaway = start.friction_input, found.gear.friction_input.breakaway
+        known, breakaway = _dry(start), _dry(found.gear).breakaway
         law = dissipating(known.replace(coulomb=known.coulomb / known.breakaway * breakaway, breakaway=breakaway))
         return replace(found, model=found.gear.replace(friction_input=law))
+
+
+def _dry(gear: Gear) -> friction.Coulomb | friction.Stribeck | friction.LuGre:
+    """The friction at the input, whose breakaway a loop can tell."""
+    law = gear.friction_input
+    assert isinstance(law, Dry)
+    return law
 
 
 def _kept_hysteresis(loop: TorsionLoop, gear: Gear) -> Array:

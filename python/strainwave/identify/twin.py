@@ -5,76 +5,32 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from strainwave import _core
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.gear_set import NOT_GIVEN, Entry, GearSet
+from strainwave.identify.evidence import Doubt, Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop, at_input
-from strainwave.identify.fit import Estimate, Fit
+from strainwave.identify.explain import BETTER, allowed, causes, unexplained
+from strainwave.identify.fit import ONE_SIGMA, Estimate, Fit, student
 from strainwave.identify.friction import fit_friction
+from strainwave.identify.influence import influence
 from strainwave.identify.log import fit_log, free_parameters, prepared
-from strainwave.identify.measurement import Kind
-from strainwave.identify.torsion import fit_loop, kept_back
+from strainwave.identify.measurement import Kind, read_measurement
+from strainwave.identify.plausible import doubts_of_loop, doubts_of_table
+from strainwave.identify.torsion import Candidate, Friction, Nothing, fit_loop, held_out_blocks
+from strainwave.identify.verdict import Verdict, estimated, judged, known, numbers, verdicts
 from strainwave.recording import Recording
 
-Array = NDArray[np.float64]
-
-UNTOLD = 0.5  # relative standard deviation above which a parameter counts as not identified
-ENTANGLED = 0.98  # correlation above which two parameters cannot be told apart
 CONTRADICTION = 3.0  # standard deviations
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """One measurement and what became of it.
-
-    Attributes:
-        kind: friction, torsion or log
-        source: where the measurement came from
-        recording: the measurement
-        fit: the model fitted to it
-        held_out: measured less predicted where the data were kept back, shape (channels, m)
-        error: rms of `held_out`, shape (channels,), in the units of `fit.experiment`
-        candidates: name and held-out error of every model tried, best first
-        remarks: what the reader must know
-    """
-
-    kind: Kind
-    source: str
-    recording: Recording
-    fit: Fit
-    held_out: Array
-    error: Array
-    candidates: tuple[tuple[str, float], ...]
-    remarks: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What is known of one parameter of the twin, and why.
-
-    Attributes:
-        path: where it stands, as "gear.stiffness.k1"
-        unit: its unit
-        start: value in the starting set; not-a-number where the set had none
-        value: value in the twin
-        sigma: standard deviation; not-a-number for one that was kept
-        state: identified, not identified (though fitted), or kept from the starting set
-        why: the reason, or the source
-    """
-
-    path: str
-    unit: str
-    start: float
-    value: float
-    sigma: float
-    state: Literal["identified", "not identified", "kept"]
-    why: str
+SURE = 0.9973002039367398  # the share of a normal distribution within three
+TRIED = 2  # likely causes of a bad fit that are fitted, best first
+NAMES: dict[Kind, str] = {"friction": "friction table", "torsion": "torsion loop", "log": "drive log"}
+Measurement = Recording | str | Path
 
 
 @dataclass(frozen=True)
@@ -125,71 +81,92 @@ class Twin:
     verdicts: tuple[Verdict, ...]
     contradictions: tuple[Contradiction, ...]
 
+    @property
+    def doubts(self) -> tuple[Doubt, ...]:
+        """What speaks against the measurements as they were taken; to be settled before the twin is used."""
+        return tuple(doubt for evidence in self.evidence for doubt in evidence.doubts)
+
 
 def twin(
-    start: GearSet,
+    start: GearSet | str | Path,
     *,
-    friction: Recording | None = None,
-    torsion: Recording | None = None,
-    log: Recording | None = None,
+    friction: Measurement | None = None,
+    torsion: Measurement | None = None,
+    log: Measurement | None = None,
+    side: Literal["input", "output"] | None = None,
     sources: dict[Kind, str] | None = None,
     other_specimen: Collection[str] = (),
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Twin:
-    """Fits what each measurement can tell of a gear, validates on data kept back, and says what cannot be told.
+    """Fits what each measurement can tell of a gear, validates on data held out, and says what cannot be told.
+
+    A measurement may be a recording, or the path of a CSV or Parquet file.
 
     Args:
-        start: the set to start from: a catalogue set, or a file of one's own
-        friction: table with columns speed and torque, input side
-        torsion: loop with columns twist and torque, or input_angle and input_torque with the output locked
+        start: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
+        friction: table with columns speed and torque
+        torsion: loop, or a single loading branch, with columns twist and torque at the output, or input_angle and input_torque
+            with the output locked
         log: run of the drive from rest with columns time, command and measured outputs (input_angle, output_angle, current …);
             the start set must then have a motor and a load
+        side: where the friction table was measured; the input if not given, which is doubted if the gear it starts from speaks
+            against it
         sources: where each measurement came from, for the record
         other_specimen: measurements of another specimen than the starting set describes; these contradict nothing in it
         progress: called with the name of each stage as it begins
 
     Returns:
-        the twin with its evidence
+        the twin with its evidence; look at its `doubts` before it is used
 
     Raises:
+        TypeError: a measurement is none
         ValueError: no measurement, or one that cannot be used; says which and why
 
     >>> import numpy as np, strainwave as sw
     >>> speed = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0])
-    >>> table = sw.Recording({"speed": speed, "torque": 0.02 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
-    >>> found = sw.twin(sw.GearSet.read("hfuc-25-100"), friction=table)
-    >>> round(found.gear_set.gear.friction_input.viscous, 9)
-    0.0003
+    >>> table = sw.Recording({"speed": speed, "torque": 0.05 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
+    >>> found = sw.twin("hfuc-25-100", friction=table)
+    >>> round(found.gear_set.gear.friction_input.viscous, 9), found.doubts
+    (0.0003, ())
     """
-    if friction is None and torsion is None and log is None:
+    given: dict[Kind, Measurement | None] = {"friction": friction, "torsion": torsion, "log": log}
+    recordings = {kind: _recording(kind, measured) for kind, measured in given.items() if measured is not None}
+    if not recordings:
         raise ValueError("a twin needs at least one measurement: a friction table, a torsion loop or a drive log")
-    named = {"friction": "friction table", "torsion": "torsion loop", "log": "drive log"} | (sources or {})
-    gear = start.gear
-    evidence: list[Evidence] = []
-    if friction is not None:
-        progress("friction table")
-        with _naming(named["friction"]):
-            evidence.append(_from_friction(gear, friction, named["friction"]))
+    if side not in (None, "input", "output"):
+        raise ValueError(f"side = {side!r} must be input or output")
+    start = start if isinstance(start, GearSet) else GearSet.read(start)
+    named = NAMES | {kind: Path(path).name for kind, path in given.items() if isinstance(path, str | Path)} | (sources or {})
+    gear, evidence = start.gear, list[Evidence]()
+    for kind in _order(recordings):
+        progress(NAMES[kind])
+        with _naming(named[kind]):
+            evidence.append(_evidence(kind, recordings[kind], named[kind], start, gear, evidence, side, kind in other_specimen))
         gear = evidence[-1].fit.gear
-    if torsion is not None:
-        progress("torsion loop")
-        with _naming(named["torsion"]):
-            evidence.append(_from_torsion(gear, torsion, named["torsion"]))
-        gear = evidence[-1].fit.gear
-    if log is not None:
-        progress("drive log")
-        with _naming(named["log"]):
-            evidence.append(_from_log(start.drive.replace(gear=gear), log, named["log"], {e.kind for e in evidence}))
-        gear = evidence[-1].fit.gear
-    verdicts = _verdicts(start, gear, evidence)
-    found = replace(start, name=f"{start.name}, twin", gear=gear, sources=_sources(start, verdicts))
+    found = verdicts(start, gear, evidence)
     return Twin(
         start,
-        found,
+        replace(start, name=f"{start.name}, twin", gear=gear, sources=_sources(start, found)),
         tuple(evidence),
-        tuple(verdicts),
+        tuple(found),
         tuple(_contradictions(start, [e for e in evidence if e.kind not in other_specimen])),
     )
+
+
+def _recording(kind: Kind, given: Any) -> Recording:
+    if isinstance(given, str | Path):
+        return read_measurement(kind, given)
+    if not isinstance(given, Recording):
+        raise TypeError(f"{kind} must be a Recording or the path of a file, not {given!r}")
+    return given
+
+
+def _order(recordings: dict[Kind, Recording]) -> list[Kind]:
+    """What is needed to understand a measurement comes before it: friction before a loop that has it inside."""
+    torsion = recordings.get("torsion")
+    log_first = torsion is not None and at_input(torsion) and "friction" not in recordings
+    order: list[Kind] = ["friction", "log", "torsion"] if log_first else ["friction", "torsion", "log"]
+    return [kind for kind in order if kind in recordings]
 
 
 @contextmanager
@@ -201,159 +178,213 @@ def _naming(source: str) -> Iterator[None]:
         raise ValueError(f"{source}: {error}") from error
 
 
-def _from_friction(gear: Gear, recording: Recording, source: str) -> Evidence:
-    table = FrictionTable.of(recording)
+def _evidence(
+    kind: Kind,
+    recording: Recording,
+    source: str,
+    start: GearSet,
+    gear: Gear,
+    before: Sequence[Evidence],
+    side: str | None,
+    other_specimen: bool,
+) -> Evidence:
+    """What a measurement says of the gear as it is known so far."""
+    if kind == "friction":
+        return _from_friction(gear, recording, source, side, None if other_specimen else start.gear)
+    measured = {evidence.kind for evidence in before}
+    if kind == "torsion":
+        return _from_torsion(gear, recording, source, bool(measured & {"friction", "log"}), start.gear, not other_specimen)
+    return _from_log(start.drive.replace(gear=gear), recording, source, measured)
+
+
+def _from_friction(gear: Gear, recording: Recording, source: str, side: str | None, start: Gear | None) -> Evidence:
+    table = FrictionTable.of_output(recording, gear) if side == "output" else FrictionTable.of(recording)
     best, *others = fit_friction(table, gear)
     held_out = (table.torque - best.held_out)[np.newaxis]
     low, high = float(np.abs(table.speed).min()), float(np.abs(table.speed).max())
     remarks = [f"valid between {low:.4g} and {high:.4g} rad/s at the input; validated by leaving out speeds in turn"]
     if best.name == "Coulomb and viscous":
         remarks.append("no fall of torque towards low speed within this range: breakaway and Stribeck speed are not seen")
+    remarks += _thinned(table.samples, len(table.speed))
+    doubts = [*_not_explained(best.fit)]
+    if start is not None and side is None:
+        doubts = [*doubts_of_table(recording, best.fit, start)] or doubts
     return Evidence(
         "friction", source, recording, best.fit, held_out, np.array([best.error]),
-        tuple((c.name, c.error) for c in (best, *others)), tuple(remarks),
+        tuple((c.name, c.error) for c in (best, *others)), influence(best.fit), _shares(best.fit),
+        _doubts(source, doubts), remarks=tuple(remarks),
     )  # fmt: skip
 
 
-def _from_torsion(gear: Gear, recording: Recording, source: str) -> Evidence:
+def _from_torsion(
+    gear: Gear, recording: Recording, source: str, friction_measured: bool, start: Gear, same_specimen: bool
+) -> Evidence:
     loop = TorsionLoop.of(recording, gear)
-    best, *others = fit_loop(loop, gear, kept_back(len(loop.twist)))
+    best, *others = fit_loop(loop, gear, held_out_blocks(len(loop.twist)), friction_measured=friction_measured)
     remarks = [
         f"valid up to {np.abs(loop.torque).max():.4g} N·m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
     ]
-    if at_input(recording):
-        remarks.append("measured at the input with the output locked: friction of the wave generator is inside the loop")
+    remarks += [*_of_friction(loop, best, gear, friction_measured), *_thinned(loop.samples, len(loop.twist))]
+    if isinstance(best.beside, Nothing):
+        remarks.append(
+            "one branch only: it tells neither hysteresis nor zeros, so the hysteresis is kept, and the gear is taken to have "
+            "been unloaded at the zeros of both axes"
+        )
+    doubts = [*doubts_of_loop(best.fit, start, same_specimen=same_specimen)] or [*_not_explained(best.fit)]
     return Evidence(
         "torsion", source, recording, best.fit, best.fit.residuals[:, ~best.fit.training], best.fit.rms(held_out=True),
-        tuple((c.name, c.error) for c in (best, *others)), tuple(remarks),
+        tuple((c.name, c.error) for c in (best, *others)), influence(best.fit), _shares(best.fit),
+        _doubts(source, doubts), _shared(best, gear, loop, friction_measured), tuple(remarks),
     )  # fmt: skip
+
+
+def _of_friction(loop: TorsionLoop, best: Candidate, gear: Gear, friction_measured: bool) -> Iterator[str]:
+    """What a loop from the input has inside, and what became of it."""
+    if loop.input_ratio is None:
+        return
+    yield "measured at the input with the output locked: friction of the wave generator is inside the loop"
+    held = 0.5 * float(np.ptp(loop.friction(gear)))
+    if friction_measured:
+        yield f"the friction measured at the input, ±{held:.3g} N·m at the output, is taken out of it"
+    elif isinstance(best.beside, Friction):
+        yield (
+            "friction at the input was not measured: the loop tells the sum of friction and hysteresis only. Friction is "
+            "fitted, and the hysteresis kept; give a friction table to tell them apart"
+        )
+    elif held > 0.0:
+        yield (
+            "friction at the input was not measured: the loop tells the sum of friction and hysteresis only. Friction is "
+            f"kept, ±{held:.3g} N·m at the output, and the rest is hysteresis; give a friction table to tell them apart"
+        )
+    else:
+        yield "no friction at the input is known: all of it is fitted as hysteresis, of which a turning gear shows nothing"
+
+
+def _shared(best: Candidate, gear: Gear, loop: TorsionLoop, friction_measured: bool) -> dict[str, str]:
+    """Parameters that a loop from the input tells only together with what was kept."""
+    if loop.input_ratio is None or friction_measured or not np.any(loop.friction(gear)):
+        return {}
+    ratio = abs(loop.input_ratio)
+    if isinstance(best.beside, Friction):
+        why = f"the loop tells {ratio:g} x friction_input.breakaway and the torque of the hysteresis, which was kept, together"
+        return {"gear.friction_input.breakaway": why}
+    why = f"the loop tells the torque of the hysteresis and {ratio:g} x friction_input.breakaway, which was kept, together"
+    paths = [estimate.path for estimate in best.fit.estimates if estimate.path.startswith("hysteresis.breakaway")]
+    return {f"gear.{path}": why for path in paths}
 
 
 def _from_log(drive: PositionDrive, recording: Recording, source: str, known: set[Kind]) -> Evidence:
     log = DriveLog.of(recording, drive)
-    drive = prepared(log, drive)
+    drive = prepared(log, drive, friction_known="friction" in known)
     free = free_parameters(log, drive, friction_known="friction" in known, torsion_known="torsion" in known)
     found = fit_log(log, drive, free)
     both = {"input_angle", "output_angle"} <= set(log.channels)
-    remarks = [
-        "validated on the last 30 % of the record",
-        "standard deviations take the parameters kept as right; where these are wrong, those fitted here are off by more",
-    ]
+    remarks = ["validated on the last 30 % of the record", *_thinned(log.samples, len(log.time))]
     if not both:
         remarks.append("one encoder only: kinematic error and stiffness are not seen")
     name = ", ".join(path.removeprefix("gear.") for path in free) or "nothing free"
+    doubts = [*_not_explained(found.fit)]
+    if doubts:
+        doubts = [_with_cause(doubts[0][0], found.fit, recording, drive, free)]
     return Evidence(
         "log", source, recording, found.fit, found.fit.residuals[:, ~found.fit.training], found.error,
-        ((name, float(found.error[0])),), tuple(remarks),
+        ((name, float(found.error[0])),), influence(found.fit), _shares(found.fit),
+        _doubts(source, doubts), remarks=tuple(remarks),
     )  # fmt: skip
 
 
-def _path(evidence: Evidence, estimate: Estimate) -> str:
-    """Where an estimate stands in the gear; fits of a gear alone leave the first word out."""
-    return estimate.path if evidence.kind == "log" else f"gear.{estimate.path}"
+def _thinned(samples: int, taken: int) -> Iterator[str]:
+    if samples > taken:
+        yield f"of its {samples} samples the fit saw {taken}: means of neighbours, or every so many of a log"
 
 
-def _estimates(evidence: Sequence[Evidence]) -> dict[str, tuple[Evidence, int, Estimate]]:
-    """The free parameters of all fits, the latest of each."""
-    return {
-        _path(e, estimate): (e, i, estimate)
-        for e in evidence
-        for i, estimate in enumerate(e.fit.estimates[: len(e.fit.estimates) - len(e.fit.experiment.nuisances)])
-    }
+def _doubts(source: str, found: Sequence[tuple[str, str]]) -> tuple[Doubt, ...]:
+    return tuple(Doubt(source, what, remedy) for what, remedy in found)
 
 
-def _parameters(gear: Gear) -> dict[str, tuple[float, str]]:
-    return {f"gear.{path}": (value, unit) for path, value, unit, *_ in _core.parameters(gear)}
+def _shares(found: Fit) -> dict[str, float]:
+    """Channels of which the model leaves too much unexplained."""
+    shares = zip(found.experiment.channels, unexplained(found).tolist(), allowed(found).tolist(), strict=True)
+    return {name: share for name, share, most in shares if share > most}
 
 
-def _verdicts(start: GearSet, gear: Gear, evidence: Sequence[Evidence]) -> list[Verdict]:
-    before, estimates = _parameters(start.gear), _estimates(evidence)
-    verdicts = []
-    for path, (value, unit) in _parameters(gear).items():
-        # the elements of a fitted sequence are new ones: their places say nothing of the old
-        known = path in before and not ("[" in path and path in estimates)
-        earlier = before[path][0] if known else np.nan
-        if path in estimates:
-            e, index, estimate = estimates[path]
-            reason = _why_not(e, index, estimate)
-            state: Literal["identified", "not identified"] = "not identified" if reason else "identified"
-            verdicts.append(Verdict(path, unit, earlier, value, estimate.sigma, state, reason or e.source))
-        else:
-            entry = start.sources.get(path)
-            why = "no measurement given speaks of it" + (f"; {entry.source}" if entry is not None else "")
-            if path not in before:
-                why = "set by the method of the fit beside it"
-            elif value != earlier:
-                why = "follows from the parameters fitted beside it; no measurement given speaks of it"
-            verdicts.append(Verdict(path, unit, earlier, value, np.nan, "kept", why))
-    return verdicts
+def _not_explained(found: Fit) -> Iterator[tuple[str, str]]:
+    if shares := _shares(found):
+        told = ", ".join(f"{100.0 * share:.0f} % of the variation of {name}" for name, share in shares.items())
+        yield (
+            f"the model does not explain it: {told} is left. Nothing is identified from it",
+            "look at the plot; see whether signs, units, sides, ratio and zeros are right",
+        )
 
 
-def _why_not(evidence: Evidence, index: int, estimate: Estimate) -> str:
-    """Why the data do not tell a parameter; empty where they do."""
-    if not np.isfinite(estimate.sigma):
-        return f"{evidence.source} stays the same when it changes"
-    if estimate.at_limit:
-        return f"ended at the limit of what it may be; {evidence.source} pulls it beyond"
-    if ".phase[" in estimate.path:
-        if estimate.sigma > UNTOLD:
-            return f"standard deviation is {estimate.sigma:.2g} rad"
-    elif estimate.sigma > UNTOLD * abs(estimate.value):
-        return "standard deviation exceeds half the value"
-    correlation = np.abs(evidence.fit.correlation[index])
-    correlation[index] = 0.0
-    partner = int(np.nanargmax(correlation)) if np.isfinite(correlation).any() else index
-    if correlation[partner] > ENTANGLED:
-        other = evidence.fit.estimates[partner].path
-        return f"cannot be told apart from {other}: correlation {evidence.fit.correlation[index, partner]:+.3f}"
-    return ""
+def _with_cause(what: str, found: Fit, recording: Recording, drive: PositionDrive, free: list[str]) -> tuple[str, str]:
+    """The doubt with the mistake that would explain it, if one does."""
+    before = float(unexplained(found).max())
+    for cause in causes(recording, drive)[:TRIED]:
+        log = DriveLog.of(cause.recording, cause.drive)
+        again = fit_log(log, prepared(log, cause.drive, friction_known=False), free).fit
+        if not _shares(again):
+            return f"{what}. {cause.what[0].upper()}{cause.what[1:]}: then it is explained", cause.remedy
+        if float(unexplained(again).max()) < BETTER * before:
+            return f"{what}. Perhaps {cause.what}: then less is left", cause.remedy
+    return (
+        what,
+        "no single mistake in sign, unit, side or ratio explains it; look at the plot, and at what is known of the drive",
+    )
 
 
-def _sources(start: GearSet, verdicts: Sequence[Verdict]) -> dict[str, Entry]:
-    numbers = _parameters(
-        start.gear
-    )  # the rest of the drive, and counts of teeth, are no numbers of the gear that a fit can touch
-    sources = {path: entry for path, entry in start.sources.items() if path not in numbers}
-    for verdict in verdicts:
+def _sources(start: GearSet, found: Sequence[Verdict]) -> dict[str, Entry]:
+    # the rest of the drive, and counts of teeth, are no numbers of the gear that a fit can touch
+    of_gear = numbers(start.gear)
+    sources = {path: entry for path, entry in start.sources.items() if path not in of_gear}
+    words = {"identified": "identified from", "identified in combination": "identified in combination:"}
+    for verdict in found:
         if verdict.state == "kept" and verdict.value == verdict.start and verdict.path in start.sources:
             sources[verdict.path] = start.sources[verdict.path]
         elif verdict.state == "kept":
             sources[verdict.path] = Entry(source=f"assumed: {verdict.why}")
         else:
-            prefix = "identified from " if verdict.state == "identified" else "fitted but not identified: "
+            prefix = words.get(verdict.state, "fitted but not identified:")
             uncertainty = verdict.sigma if np.isfinite(verdict.sigma) else None
-            sources[verdict.path] = Entry(source=prefix + verdict.why, uncertainty=uncertainty)
+            sources[verdict.path] = Entry(source=f"{prefix} {verdict.why}", uncertainty=uncertainty)
     return sources
 
 
 def _contradictions(start: GearSet, evidence: Sequence[Evidence]) -> list[Contradiction]:
     """Identified parameters that a measured or published starting value excludes. Assumed values contradict nothing."""
-    before, found = _parameters(start.gear), []
-    for path, (e, index, estimate) in _estimates(evidence).items():
-        if path in before and "[" not in path and not _why_not(e, index, estimate):
-            found.append(_compared(path, *before[path], start.sources[path], estimate, e))
+    before, found, sources = numbers(start.gear), [], known(start, evidence)
+    for path, (e, index, estimate) in estimated(evidence).items():
+        if judged(e, index, sources)[0] != "identified":
+            continue
+        kept = float(np.linalg.norm([*e.influence.doubt(index, sources, e.prefix).values(), 0.0]))
+        if path in before and "[" not in path:
+            found.append(_compared(path, *before[path], start.sources[path], estimate, kept, e))
         elif path.startswith("gear.stiffness.") and index == 0 and path not in before:
-            found.append(_compared_springs(start, estimate, e))
+            found.append(_compared_springs(start, estimate, kept, e))
     return [contradiction for contradiction in found if contradiction is not None]
 
 
 def _compared(
-    path: str, earlier: float, unit: str, entry: Entry, estimate: Estimate, evidence: Evidence
+    path: str, earlier: float, unit: str, entry: Entry, estimate: Estimate, kept: float, evidence: Evidence
 ) -> Contradiction | None:
-    """The contradiction between an earlier value and an estimate, if there is one."""
+    """The contradiction between an earlier value and an estimate, if there is one.
+
+    `kept` is what the parameters kept add to the uncertainty of the estimate.
+    """
     if entry.source.startswith("assumed") or entry.source == NOT_GIVEN:
         return None
-    doubt = np.hypot(estimate.sigma, np.hypot((entry.spread or 0.0) * earlier, entry.uncertainty or 0.0))
+    few = student(SURE, estimate.freedom) / student(ONE_SIGMA, estimate.freedom) / CONTRADICTION
+    doubt = np.linalg.norm([few * estimate.sigma, kept, (entry.spread or 0.0) * earlier, entry.uncertainty or 0.0])
     distance = abs(estimate.value - earlier) / doubt if doubt > 0.0 else np.inf
     if distance <= CONTRADICTION:
         return None
     return Contradiction(path, unit, earlier, entry, estimate.value, estimate.sigma, float(distance), evidence.source)
 
 
-def _compared_springs(start: GearSet, estimate: Estimate, evidence: Evidence) -> Contradiction | None:
+def _compared_springs(start: GearSet, estimate: Estimate, kept: float, evidence: Evidence) -> Contradiction | None:
     """Springs of different kinds, compared by their stiffness at zero twist, if that is the first parameter of the earlier."""
     name = start.gear.stiffness.fields[0]["name"]
     earlier, first = start.gear.stiffness.tangent(0.0), f"gear.stiffness.{name}"
     if earlier != getattr(start.gear.stiffness, name):
         return None
-    return _compared(f"gear.{estimate.path}", earlier, estimate.unit, start.sources[first], estimate, evidence)
+    return _compared(f"gear.{estimate.path}", earlier, estimate.unit, start.sources[first], estimate, kept, evidence)

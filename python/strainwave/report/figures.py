@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-    from strainwave.identify.twin import Evidence, Twin
+    from strainwave.identify.evidence import Evidence
+    from strainwave.identify.twin import Twin
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -39,7 +40,7 @@ LIGHT = {
     "rule": "#d8dee4",
     "measured": "#2166ac",
     "model": "#c2410c",
-    "kept-back": "#7b3fa0",
+    "held-out": "#7b3fa0",
     "earlier": "#80650a",
 }
 DARK = {
@@ -48,10 +49,10 @@ DARK = {
     "rule": "#38414b",
     "measured": "#7ab8ff",
     "model": "#ff9f6b",
-    "kept-back": "#d3a4ff",
+    "held-out": "#d3a4ff",
     "earlier": "#e0c15c",
 }
-RUNS = (("model", "-", 2.0), ("measured", "--", 1.5), ("kept-back", ":", 1.3))  # colours and lines of runs, in turn
+RUNS = (("model", "-", 2.0), ("measured", "--", 1.5), ("held-out", ":", 1.3))  # colours and lines of runs, in turn
 STRETCHES = 300  # of a long record, each drawn by its extremes: about two to a pixel
 MARKED = 150  # samples up to which each is drawn as a point
 WIDE = 100.0  # ratio of speeds beyond which their axis is logarithmic
@@ -92,7 +93,7 @@ def friction_table(evidence: Evidence) -> str:
         torque, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))
         _friction_points(torque, evidence)
         _friction_law(torque, evidence, evidence.fit.gear.friction_input, "model", color=LIGHT["model"])
-        _residual(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["kept-back"])
+        _residual(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["held-out"])
         _label(torque, "friction torque", "N.m")
         _label(residual, "measured − predicted from the other speeds", "N.m", "input speed", "rad/s")
         _legend(torque)
@@ -105,10 +106,10 @@ def torsion_loop(evidence: Evidence) -> str:
 
     def draw(figure: Figure) -> None:
         loop, residual = figure.subplots(2, 1, height_ratios=(2.8, 1.0))
-        sample, kept_back = np.arange(1.0, len(evidence.fit.training) + 1.0), ~evidence.fit.training
+        sample, held_out = np.arange(1.0, len(evidence.fit.training) + 1.0), ~evidence.fit.training
         _loop(loop, evidence)
         _residual(residual, sample, evidence.fit.residuals[0], color=LIGHT["ink"])
-        _shade(residual, sample, kept_back)
+        _shade(residual, sample, held_out)
         _label(loop, "torque at the output", "N.m", "twist at the output", "rad")
         _label(residual, "measured − modelled", "N.m", "sample", "1")
         _legend(loop)
@@ -251,7 +252,7 @@ def _loop(axes: Axes, evidence: Evidence) -> None:
         style = {"linewidth": 0.9, "marker": "o", "markersize": 3.0}
     _curve(axes, loop.twist, fit.predicted[0], color=LIGHT["model"], linewidth=1.0, label="model", zorder=2.5)
     _curve(axes, loop.twist, loop.torque, color=LIGHT["measured"], label="measured", **style)
-    style |= {"color": LIGHT["kept-back"], "label": "kept back"}
+    style |= {"color": LIGHT["held-out"], "label": "held out"}
     for block in _blocks(~fit.training):
         _curve(axes, loop.twist[block], loop.torque[block], **style)
         style["label"] = ""
@@ -271,13 +272,13 @@ def _residual(axes: Axes, x: Array, residual: Array, color: str) -> None:
         _curve(axes, x, residual, color=color, linewidth=0.8)
 
 
-def _shade(axes: Axes, x: Array, kept_back: Mask) -> None:
+def _shade(axes: Axes, x: Array, held_out: Mask) -> None:
     """Marks what took no part in the fit."""
     between = np.concatenate((x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]))
-    label = "kept back"
-    for block in _blocks(kept_back):
+    label = "held out"
+    for block in _blocks(held_out):
         ends = between[block.start], between[block.stop]
-        axes.axvspan(*ends, facecolor=LIGHT["kept-back"], alpha=0.13, linewidth=0.0, label=label)
+        axes.axvspan(*ends, facecolor=LIGHT["held-out"], alpha=0.13, linewidth=0.0, label=label)
         label = ""
 
 

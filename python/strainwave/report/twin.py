@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from strainwave.gear_set import Entry, GearSet
+from strainwave.identify.evidence import Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
-from strainwave.identify.twin import Contradiction, Evidence, Twin, Verdict
+from strainwave.identify.twin import Contradiction, Twin
+from strainwave.identify.verdict import Verdict
 from strainwave.report import figures
 from strainwave.report.experiment import Experiment
 from strainwave.report.page import render
@@ -167,7 +169,7 @@ def _held_out(evidence: Evidence) -> str:
     training = evidence.fit.training
     if evidence.kind == "friction":
         return "each measurement predicted from the others"
-    return f"{int(np.sum(~training))} of {len(training)} samples kept back from the fit"
+    return f"{int(np.sum(~training))} of {len(training)} samples held out from the fit"
 
 
 def _share(error: float, measured: figures.Array) -> str:
@@ -189,12 +191,12 @@ def _plates(evidence: Evidence) -> Iterator[tuple[Markup, str]]:
     elif isinstance(experiment, TorsionLoop):
         yield (
             Markup(figures.torsion_loop(evidence)),
-            "Above: the measured loop, the parts of it that were kept back, and the model fitted to the rest. "
-            "Below: measured less modelled along the loop; shaded, what was kept back.",
+            "Above: the measured loop, the parts of it that were held out, and the model fitted to the rest. "
+            "Below: measured less modelled along the loop; shaded, what was held out.",
         )
     else:
         for channel, name in enumerate(experiment.channels):
-            words = "measured and modelled, and their difference; shaded, what was kept back."
+            words = "measured and modelled, and their difference; shaded, what was held out."
             yield Markup(figures.drive_log(evidence, channel)), f"{figures.output_name(name)}, {words}"
 
 

@@ -47,7 +47,7 @@ START = TRUTH.replace(
 def test_two_encoders_tell_friction_stiffness_and_kinematic_error() -> None:
     start = drive(START)
     log = DriveLog.of(recording(["input_angle", "output_angle"], noise=1e-3), start)
-    start = prepared(log, start)
+    start = prepared(log, start, friction_known=False)
     found = fit_log(log, start, free_parameters(log, start, friction_known=False, torsion_known=False))
     gear = found.fit.gear
     assert gear.friction_input.coulomb == pytest.approx(0.03, rel=0.02)
@@ -69,7 +69,7 @@ def test_friction_within_other_laws_comes_back(start: object) -> None:
     recorded = recording(["input_angle"], gear=modulated(TRUTH.friction_input))
     begun = drive(modulated(start))
     log = DriveLog.of(recorded, begun)
-    begun = prepared(log, begun)
+    begun = prepared(log, begun, friction_known=False)
     free = free_parameters(log, begun, friction_known=False, torsion_known=True)
     assert free == ["gear.friction_input.law.law.coulomb", "gear.friction_input.law.law.viscous"]
     law = fit_log(log, begun, free).fit.gear.friction_input.law.law
@@ -79,14 +79,14 @@ def test_friction_within_other_laws_comes_back(start: object) -> None:
 def test_one_encoder_tells_friction_alone() -> None:
     start = drive(START)
     log = DriveLog.of(recording(["input_angle", "current"]), start)
-    free = free_parameters(log, prepared(log, start), friction_known=False, torsion_known=False)
+    free = free_parameters(log, prepared(log, start, friction_known=False), friction_known=False, torsion_known=False)
     assert free == ["gear.friction_input.coulomb", "gear.friction_input.viscous"]
 
 
 def test_what_a_better_measurement_gave_is_left_alone() -> None:
     start = drive(START)
     log = DriveLog.of(recording(["input_angle", "output_angle"]), start)
-    free = free_parameters(log, prepared(log, start), friction_known=True, torsion_known=True)
+    free = free_parameters(log, prepared(log, start, friction_known=False), friction_known=True, torsion_known=True)
     assert free == ["gear.kinematic_error.amplitude", "gear.kinematic_error.phase"]
 
 

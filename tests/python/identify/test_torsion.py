@@ -7,7 +7,7 @@ import pytest
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.identify.experiment import TorsionLoop
-from strainwave.identify.torsion import fit_loop, kept_back
+from strainwave.identify.torsion import fit_loop, held_out_blocks
 
 Array = NDArray[np.float64]
 
@@ -31,9 +31,9 @@ def loop(spring: object, twist: Array, *, virgin: bool = False) -> TorsionLoop:
 
 
 @pytest.mark.parametrize("kind", SPRINGS)
-def test_each_spring_is_recognised_by_data_kept_back(kind: str) -> None:
+def test_each_spring_is_recognised_by_data_held_out_blocks(kind: str) -> None:
     measured = loop(SPRINGS[kind], cycle())
-    best = fit_loop(measured, sw.Gear(), kept_back(len(measured.twist)))[0]
+    best = fit_loop(measured, sw.Gear(), held_out_blocks(len(measured.twist)))[0]
     assert best.name.startswith(kind.replace("_", "-"))
     assert best.error < 2e-3 * np.ptp(measured.torque)
 
@@ -82,7 +82,7 @@ def test_one_branch_is_refused(twist: Array) -> None:
 
 
 def test_what_is_kept_back_comes_in_blocks_over_the_whole_loop() -> None:
-    training = kept_back(400)
+    training = held_out_blocks(400)
     assert training.sum() == 300
     assert np.count_nonzero(np.diff(training.astype(int))) == 9  # five blocks, the last one at the end
 

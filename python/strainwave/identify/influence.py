@@ -1,0 +1,83 @@
+"""What a fit owes to the parameters that it kept: how far its estimates move when one of these is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.gear_set import Entry
+from strainwave.identify.fit import Fit
+from strainwave.parameters import Parameter, every
+
+Array = NDArray[np.float64]
+
+DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
+
+
+@dataclass(frozen=True)
+class Influence:
+    """How the estimates of a fit change with the parameters that it kept.
+
+    Attributes:
+        kept: the parameters kept whose value is not zero
+        slopes: change of each estimate over the change of each of these, shape (estimates, kept)
+    """
+
+    kept: tuple[Parameter, ...]
+    slopes: Array
+
+    def doubt(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
+        """What the uncertainty of each kept parameter adds to that of an estimate, in its unit; largest first.
+
+        Args:
+            estimate: its place in the fit
+            known: what is known of the kept parameters, by `prefix` and path; of what is not there, a tenth is taken
+        """
+        moved = {
+            each.path: abs(float(slope)) * uncertainty(each.value, known.get(prefix + each.path))
+            for each, slope in zip(self.kept, self.slopes[estimate], strict=True)
+        }
+        return dict(sorted(moved.items(), key=lambda item: -item[1]))
+
+
+def uncertainty(value: float, entry: Entry | None) -> float:
+    """How well a kept value is known, as far as its source says; else a tenth of it.
+
+    >>> uncertainty(20.0, Entry("catalogue", spread=0.3)), uncertainty(20.0, None)
+    (6.0, 2.0)
+    """
+    if entry is None or (entry.spread is None and entry.uncertainty is None):
+        return DOUBT * abs(value)
+    return float(np.hypot((entry.spread or 0.0) * value, entry.uncertainty or 0.0))
+
+
+def influence(found: Fit) -> Influence:
+    """How the estimates of a fit change with what it kept, to first order.
+
+    At the minimum the gradient J'r of the least squares is zero, and stays so when a kept parameter changes: the estimates move
+    by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters.
+    """
+    known = every(found.model)
+    nuisances = len(found.experiment.nuisances)
+    of_model = found.estimates[: len(found.estimates) - nuisances]
+    free = [known[estimate.path] for estimate in of_model]
+    taken = {each.number for each in free}
+    kept = tuple(each for each in known.values() if each.number not in taken and each.value != 0.0)
+    unknowns = np.array([estimate.value for estimate in found.estimates[len(of_model) :]])
+    numbers = [each.number for each in (*free, *kept)]
+    _, slopes = found.experiment.predict(found.model, numbers, unknowns)
+    residual = np.sqrt(np.mean(found.residuals[:, found.training] ** 2, axis=1))
+    size = np.abs(found.experiment.measured).max(axis=1)
+    weights = 1.0 / np.maximum(residual, 1e-12 * np.where(size > 0.0, size, 1.0))
+    columns = (slopes * weights[:, np.newaxis])[:, :, found.training].reshape(len(slopes), -1).T
+    by_free = np.column_stack((columns[:, : len(free)], columns[:, len(numbers) :]))
+    by_kept = columns[:, len(free) : len(numbers)]
+    told = np.any(by_kept, axis=0)  # else its influence is nil
+    scale = np.linalg.norm(by_free, axis=0)
+    scale[scale == 0.0] = 1.0
+    moved = np.zeros((by_free.shape[1], len(kept)))
+    moved[:, told] = -np.linalg.lstsq(by_free / scale, by_kept[:, told], rcond=1e-10)[0] / scale[:, np.newaxis]
+    return Influence(kept, moved)

@@ -1,0 +1,106 @@
+"""Whether a measurement can be what it is taken for: judged by the gear it starts from, and by physics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave._core import Gear
+from strainwave.identify.experiment import FrictionTable, TorsionLoop
+from strainwave.identify.fit import Fit
+from strainwave.recording import Recording
+
+Array = NDArray[np.float64]
+
+APART = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
+NEAR = 4.0  # a mistake explains a factor that it comes as near to as this
+MOVING = 0.5  # of what a table leaves unexplained: if acceleration explains more, the table is a log
+FEWEST = 30  # rows of a log; tables of steady friction are shorter, or in no order that acceleration could follow
+ELASTIC = 0.2  # of the torque at the ends of a loop: a gear carries more of it by its spring
+
+UNITS_OF_TORQUE = {"mN.m, not N.m": 1e3, "N.m, not mN.m": 1e-3, "N.cm, not N.m": 1e2}
+UNITS_OF_ANGLE = {"deg, not rad": np.pi / 180.0, "arcmin, not rad": np.pi / 10_800.0, "arcmin, not deg": 1.0 / 60.0}
+
+
+def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
+    """What speaks against a friction table, each with what to do about it."""
+    table = found.experiment
+    assert isinstance(table, FrictionTable)
+    if _is_accelerating(recording, found):
+        yield (
+            "its torque follows the acceleration: this is a log of a moving drive, not a table of steady friction",
+            "average the torque over stretches of constant speed, one row for each; or give the log as --log",
+        )
+        return
+    speed = float(np.exp(np.mean(np.log(np.abs(table.speed)))))
+    measured, known = found.gear.friction_input.steady(speed), start.friction_input.steady(speed)
+    if known <= 0.0 or 1.0 / APART < measured / known < APART:
+        return
+    factor, ratio = measured / known, abs(start.kinematics.ratio)
+    mistakes = {f"the torque is in {unit}": size for unit, size in UNITS_OF_TORQUE.items()}
+    what = (
+        f"it gives {measured:.3g} N·m at {speed:.3g} rad/s of the input, {_times(factor)} what the gear it starts from has "
+        f"({known:.3g} N·m)"
+    )
+    at_joint = measured / ratio / start.friction_input.steady(speed * ratio)
+    if factor > APART and 1.0 / APART < at_joint < APART:
+        yield (
+            f"{what}; taken as measured at the output, it gives {_times(at_joint)} that gear's",
+            "if it was measured at the output, say so: --side output; if at the input, --side input",
+        )
+    else:
+        yield what, f"{_named(factor, mistakes)}see whether the units of both columns are right; if they are, --accept"
+
+
+def doubts_of_loop(found: Fit, start: Gear, *, same_specimen: bool) -> Iterator[tuple[str, str]]:
+    """What speaks against a torsion loop, each with what to do about it."""
+    loop = found.experiment
+    assert isinstance(loop, TorsionLoop)
+    half = 0.5 * float(np.ptp(loop.twist))
+    largest = 0.5 * float(np.ptp(loop.torque))
+    spring = float(found.gear.stiffness.torque(half))
+    if not loop.single_branch and spring < ELASTIC * largest:
+        yield (
+            f"its spring carries {100.0 * spring / largest:.0f} % of the torque at its ends, the rest is friction: this is how "
+            "a shaft behaves that turns against friction, not a gear that is twisted",
+            "lock one side while the other is loaded; if this is friction over speed, give a friction table",
+        )
+        return
+    measured, known = spring / half, float(start.stiffness.torque(half)) / half
+    factor = measured / known
+    if same_specimen and not 1.0 / APART < factor < APART:
+        squared = start.kinematics.ratio**2
+        mistakes = {
+            "twist and torque were measured at the input (name them input_angle and input_torque)": 1.0 / squared,
+            "input_angle and input_torque were measured at the output (name them twist and torque)": squared,
+        }
+        mistakes |= {f"the torque is in {unit}": size for unit, size in UNITS_OF_TORQUE.items()}
+        mistakes |= {f"the angle is in {unit}": size for unit, size in UNITS_OF_ANGLE.items()}
+        yield (
+            f"it gives {measured:.3g} N·m/rad, {_times(factor)} what the gear it starts from has ({known:.3g} N·m/rad)",
+            f"{_named(factor, mistakes)}see whether sides and units are right; if they are, --accept",
+        )
+
+
+def _is_accelerating(recording: Recording, found: Fit) -> bool:
+    """Whether what steady friction leaves unexplained follows the change of speed from row to row."""
+    speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
+    if len(speed) < FEWEST:
+        return False
+    residual = torque - found.gear.friction_input.steady(speed)
+    change = np.gradient(speed)
+    columns = np.column_stack((change, np.ones_like(change)))
+    rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0]
+    return bool(np.var(rest) < (1.0 - MOVING) * np.var(residual)) and bool(np.any(np.diff(np.sign(change))))
+
+
+def _named(factor: float, mistakes: dict[str, float]) -> str:
+    """The mistake that explains a factor best, if one does."""
+    name, size = min(mistakes.items(), key=lambda item: abs(np.log(factor / item[1])))
+    return f"perhaps {name}; " if abs(np.log(factor / size)) < np.log(NEAR) else ""
+
+
+def _times(factor: float) -> str:
+    return f"{factor:.3g} times" if factor < 100.0 else f"{factor:,.0f} times".replace(",", " ")
