@@ -1,6 +1,6 @@
 """What a developer does here, on a machine with Python 3.11 or later and its headers, git and a C++20 compiler.
 
-    python3 dev.py demo         run the demonstration; its report is out/demo/report.html
+    python3 dev.py demo         run the demonstration; its reports are out/demo/*/report.html
     python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
     python3 dev.py lint         check style, formatting and types
     python3 dev.py sanitize     run tests of the compiled core with addresses, undefined behaviour and threads checked
@@ -120,7 +120,7 @@ def say(message: str) -> None:
 def demo(options: Sequence[str]) -> int:
     prepare()
     call(BIN / "strainwave", "demo", "--out", OUT / "demo", *options)
-    say(f"the report is {OUT / 'demo' / 'report.html'}")
+    say(f"the reports are {OUT / 'demo' / '*' / 'report.html'}")
     return 0
 
 

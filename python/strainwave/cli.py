@@ -86,7 +86,7 @@ def twin(
         doubted = bool(found.doubts) and not accept
         _write(out, None if doubted else found.gear_set, report)
     _tell_doubts(found)
-    _summarise(found, out)
+    _summarise(found)
     if doubted:
         print(f"wrote {out / 'report.html'} alone: no gear is written while a measurement is doubted; --accept writes it")
         raise typer.Exit(DOUBTED)
@@ -95,17 +95,19 @@ def twin(
 
 @app.command()
 def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/demo")) -> None:
-    """Identify a gear from published measurements, and simulate published experiments with it."""
-    from strainwave.demo import PUBLISHED, experiments, published_twin
+    """Identify two gears from published measurements, and simulate published experiments with one of them."""
+    from strainwave.demo import PUBLISHED, experiments, position_drive, torsion_rig
     from strainwave.report.twin import twin_report
 
     with _stages() as stage:
-        found = published_twin(progress=stage)
-        stage("experiments")
-        runs = experiments(found)
-        stage("report")
-        _write(out, found.gear_set, twin_report(found, runs, _provenance(PUBLISHED.iterdir())))
-    _summarise(found, out)
+        for name, identify in (("torsion-rig", torsion_rig), ("position-drive", position_drive)):
+            stage(name.replace("-", " "))
+            found = identify()
+            runs = experiments(found) if name == "position-drive" else []
+            provenance = _provenance(PUBLISHED.glob(f"{'torsional' if name == 'torsion-rig' else 'position'}*"))
+            _write(out / name, found.gear_set, twin_report(found, runs, provenance))
+            _summarise(found)
+            print(f"wrote {out / name / 'gear.toml'} and {out / name / 'report.html'}")
 
 
 @app.command()
@@ -179,7 +181,7 @@ def _tell_doubts(found: Twin) -> None:
         print(f"  what to do: {doubt.remedy}")
 
 
-def _summarise(found: Twin, out: Path) -> None:
+def _summarise(found: Twin) -> None:
     for evidence in found.evidence:
         experiment = evidence.fit.experiment
         errors = [

@@ -1,20 +1,17 @@
-"""The demonstration: a twin from published measurements, and published experiments simulated with it.
+"""The demonstration: twins from published measurements, and published experiments simulated with one of them.
 
-The friction table and the drive are document P's, the torsion loop is document T's: two different gears of ratio 1:100. No
-publication known to us measures both on one gear, so the result shows the way, not a gear that exists.
+The friction table and the drive are document P's, the torsion loop is document T's: two different gears of ratio 1:100, and so
+two twins. No publication known to us measures both on one gear.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from strainwave import scenario
 from strainwave.drives import PositionDrive
-from strainwave.gear_set import GearSet
-from strainwave.identify.measurement import read_measurement
 from strainwave.identify.twin import Twin, twin
 from strainwave.recording import Recording
 from strainwave.report.experiment import Experiment, Figure
@@ -46,22 +43,21 @@ def commands() -> dict[str, Scenario]:
     }
 
 
-def published_twin(progress: Callable[[str], None] = lambda stage: None) -> Twin:
-    """The twin of document P's drive from document P's Table 2 and document T's torsion loop.
-
-    Document T's gear is another one than document P's, so its loop does not contradict P's stiffness; the two friction data
-    sets of document P do contradict each other (E-P6).
-    """
+def position_drive() -> Twin:
+    """The twin of document P's drive from its Table 2, with which its other friction data are in contradiction (E-P6)."""
     return twin(
-        GearSet.read(PUBLISHED / "position-control.toml"),
-        friction=read_measurement("friction", PUBLISHED / "position-control-friction.csv"),
-        torsion=read_measurement("torsion", PUBLISHED / "torsional-stiffness-loop.csv"),
-        sources={
-            "friction": "document P, Table 2 (measured)",
-            "torsion": "document T, Table 2, row 0° (another gear; points reconstructed, E-T4)",
-        },
-        other_specimen=("torsion",),
-        progress=progress,
+        PUBLISHED / "position-control.toml",
+        friction=PUBLISHED / "position-control-friction.csv",
+        sources={"friction": "document P, Table 2 (measured)"},
+    )
+
+
+def torsion_rig() -> Twin:
+    """The twin of the gear on document T's rig from its torsion loop."""
+    return twin(
+        PUBLISHED / "torsional-stiffness.toml",
+        torsion=PUBLISHED / "torsional-stiffness-loop.csv",
+        sources={"torsion": "document T, Table 2, row 0° (points reconstructed, E-T4)"},
     )
 
 

@@ -54,7 +54,7 @@ def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[t
         yield what, f"{_named(factor, mistakes)}see whether the units of both columns are right; if they are, --accept"
 
 
-def doubts_of_loop(found: Fit, start: Gear, *, same_specimen: bool) -> Iterator[tuple[str, str]]:
+def doubts_of_loop(found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
     """What speaks against a torsion loop, each with what to do about it."""
     loop = found.experiment
     assert isinstance(loop, TorsionLoop)
@@ -70,7 +70,7 @@ def doubts_of_loop(found: Fit, start: Gear, *, same_specimen: bool) -> Iterator[
         return
     measured, known = spring / half, float(start.stiffness.torque(half)) / half
     factor = measured / known
-    if same_specimen and not 1.0 / APART < factor < APART:
+    if not 1.0 / APART < factor < APART:
         squared = start.kinematics.ratio**2
         mistakes = {
             "twist and torque were measured at the input (name them input_angle and input_torque)": 1.0 / squared,

@@ -24,7 +24,9 @@ from strainwave.identify.friction import dissipating
 
 Array = NDArray[np.float64]
 
-SLIPS = np.geomspace(5e-3, 0.95, 14)  # of half the span: twists tried for an element's slip; no loop tried tells more apart
+SLIPS = np.geomspace(5e-3, 0.85, 14)  # of half the span: twists tried for an element's slip; no loop tried tells more apart
+SLIPPING = 0.9  # of half the span: an element that slips later is a spring for all that the loop tells
+NEIGHBOURS = 1.6  # ratio of two slip twists that follow each other on the grid, and less
 KNEES = 1.0 - np.geomspace(0.9, 0.012, 9)  # of half the span: places tried for the knees of a three-segment spring
 MOST_ELEMENTS = 6  # kept after the convex step
 NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
@@ -143,12 +145,12 @@ def _refined(start: _Start, loop: TorsionLoop, training: NDArray[np.bool_], besi
         free = [f"stiffness.{field['name']}" for field in gear.stiffness.fields] + beside.free(gear)
         found = _in_order(fit(gear, loop, free, training=training))
         fitted = beside.elements(found.gear)
-        slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < 0.99 * half * k]
+        slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < SLIPPING * half * k]
         if len(slipping) == len(fitted):
             return found
         spring = found.gear.stiffness
         assert isinstance(spring, Spring)
-        spring = _stiffened(spring, sum(k for k, f in fitted if f >= 0.99 * half * k))
+        spring = _stiffened(spring, sum(k for k, f in fitted if f >= SLIPPING * half * k))
         elements = hysteresis.MaxwellSlip(stiffness=[k for k, _ in slipping], breakaway=[f for _, f in slipping])
         gear = gear.replace(stiffness=spring, hysteresis=elements)
 
@@ -406,13 +408,13 @@ def _spring(spring: str, weights: Array, half: float, knees: tuple[float, ...]) 
 def _elements(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
     """The elements that carry torque; neighbours on the grid are one element that slips between them."""
     elements: list[tuple[float, float]] = []
-    last = -2
+    last = 0.0
     for i in np.flatnonzero(weights * slips > 1e-3 * np.sum(weights * slips)).tolist():
         k, torque = float(weights[i]), float(weights[i] * slips[i])
-        if i == last + 1:
+        if slips[i] < NEIGHBOURS * last:
             elements[-1] = elements[-1][0] + k, elements[-1][1] + torque
         else:
             elements.append((k, torque))
-        last = i
+        last = float(slips[i])
     strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MOST_ELEMENTS], key=lambda e: e[1] / e[0])
     return hysteresis.MaxwellSlip(stiffness=[k for k, _ in strongest], breakaway=[f for _, f in strongest])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -95,7 +95,6 @@ def twin(
     log: Measurement | None = None,
     side: Literal["input", "output"] | None = None,
     sources: dict[Kind, str] | None = None,
-    other_specimen: Collection[str] = (),
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Twin:
     """Fits what each measurement can tell of a gear, validates on data held out, and says what cannot be told.
@@ -112,7 +111,6 @@ def twin(
         side: where the friction table was measured; the input if not given, which is doubted if the gear it starts from speaks
             against it
         sources: where each measurement came from, for the record
-        other_specimen: measurements of another specimen than the starting set describes; these contradict nothing in it
         progress: called with the name of each stage as it begins
 
     Returns:
@@ -141,7 +139,7 @@ def twin(
     for kind in _order(recordings):
         progress(NAMES[kind])
         with _naming(named[kind]):
-            evidence.append(_evidence(kind, recordings[kind], named[kind], start, gear, evidence, side, kind in other_specimen))
+            evidence.append(_evidence(kind, recordings[kind], named[kind], start, gear, evidence, side))
         gear = evidence[-1].fit.gear
     found = verdicts(start, gear, evidence)
     return Twin(
@@ -149,7 +147,7 @@ def twin(
         replace(start, name=f"{start.name}, twin", gear=gear, sources=_sources(start, found)),
         tuple(evidence),
         tuple(found),
-        tuple(_contradictions(start, [e for e in evidence if e.kind not in other_specimen])),
+        tuple(_contradictions(start, evidence)),
     )
 
 
@@ -186,18 +184,17 @@ def _evidence(
     gear: Gear,
     before: Sequence[Evidence],
     side: str | None,
-    other_specimen: bool,
 ) -> Evidence:
     """What a measurement says of the gear as it is known so far."""
     if kind == "friction":
-        return _from_friction(gear, recording, source, side, None if other_specimen else start.gear)
+        return _from_friction(gear, recording, source, side, start.gear)
     measured = {evidence.kind for evidence in before}
     if kind == "torsion":
-        return _from_torsion(gear, recording, source, bool(measured & {"friction", "log"}), start.gear, not other_specimen)
+        return _from_torsion(gear, recording, source, bool(measured & {"friction", "log"}), start.gear)
     return _from_log(start.drive.replace(gear=gear), recording, source, measured)
 
 
-def _from_friction(gear: Gear, recording: Recording, source: str, side: str | None, start: Gear | None) -> Evidence:
+def _from_friction(gear: Gear, recording: Recording, source: str, side: str | None, start: Gear) -> Evidence:
     table = FrictionTable.of_output(recording, gear) if side == "output" else FrictionTable.of(recording)
     best, *others = fit_friction(table, gear)
     held_out = (table.torque - best.held_out)[np.newaxis]
@@ -207,7 +204,7 @@ def _from_friction(gear: Gear, recording: Recording, source: str, side: str | No
         remarks.append("no fall of torque towards low speed within this range: breakaway and Stribeck speed are not seen")
     remarks += _thinned(table.samples, len(table.speed))
     doubts = [*_not_explained(best.fit)]
-    if start is not None and side is None:
+    if side is None:
         doubts = [*doubts_of_table(recording, best.fit, start)] or doubts
     return Evidence(
         "friction", source, recording, best.fit, held_out, np.array([best.error]),
@@ -216,9 +213,7 @@ def _from_friction(gear: Gear, recording: Recording, source: str, side: str | No
     )  # fmt: skip
 
 
-def _from_torsion(
-    gear: Gear, recording: Recording, source: str, friction_measured: bool, start: Gear, same_specimen: bool
-) -> Evidence:
+def _from_torsion(gear: Gear, recording: Recording, source: str, friction_measured: bool, start: Gear) -> Evidence:
     loop = TorsionLoop.of(recording, gear)
     best, *others = fit_loop(loop, gear, held_out_blocks(len(loop.twist)), friction_measured=friction_measured)
     remarks = [
@@ -230,7 +225,7 @@ def _from_torsion(
             "one branch only: it tells neither hysteresis nor zeros, so the hysteresis is kept, and the gear is taken to have "
             "been unloaded at the zeros of both axes"
         )
-    doubts = [*doubts_of_loop(best.fit, start, same_specimen=same_specimen)] or [*_not_explained(best.fit)]
+    doubts = [*doubts_of_loop(best.fit, start)] or [*_not_explained(best.fit)]
     return Evidence(
         "torsion", source, recording, best.fit, best.fit.residuals[:, ~best.fit.training], best.fit.rms(held_out=True),
         tuple((c.name, c.error) for c in (best, *others)), influence(best.fit), _shares(best.fit),

@@ -179,28 +179,20 @@ def experiment(simulated: Experiment, name: str) -> str:
     return _inline(draw, (6.2, 3.6), name, f"{simulated.name}: command and response over time")
 
 
-def overview(twin: Twin) -> str:
-    """A picture by itself: the torsion loop and the friction table of a twin that has both, measured and modelled.
-
-    Raises:
-        ValueError: the twin has no friction table or no torsion loop
-    """
-    found = {evidence.kind: evidence for evidence in twin.evidence}
-    if missing := {"torsion", "friction"} - found.keys():
-        raise ValueError(f"the twin has no evidence of kind {min(missing)}; the picture shows both")
+def overview(torsion: Evidence, friction: Evidence) -> str:
+    """A picture by itself: a torsion loop and a friction table, measured and modelled."""
 
     def draw(figure: Figure) -> None:
-        loop, friction = figure.subplots(1, 2)
-        _loop(loop, found["torsion"])
-        _label(loop, "torque", "N.m", "twist at the output", "rad")
-        _friction_points(friction, found["friction"])
-        law = found["friction"].fit.gear.friction_input
-        _friction_law(friction, found["friction"], law, "model", color=LIGHT["model"])
-        _label(friction, "friction torque", "N.m", "input speed", "rad/s")
-        for axes in (loop, friction):
+        left, right = figure.subplots(1, 2)
+        _loop(left, torsion)
+        _label(left, "torque", "N.m", "twist at the output", "rad")
+        _friction_points(right, friction)
+        _friction_law(right, friction, friction.fit.gear.friction_input, "model", color=LIGHT["model"])
+        _label(right, "friction torque", "N.m", "input speed", "rad/s")
+        for axes in (left, right):
             _legend(axes)
 
-    title = "Torsion loop and friction of a strain wave gear, measured and modelled"
+    title = "Torsion loop and friction of two strain wave gears, measured and modelled"
     return _standalone(draw, (8.4, 3.2), "overview", title)
 
 

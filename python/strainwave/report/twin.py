@@ -104,7 +104,7 @@ def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: 
             "parts": parts,
             "unknown": list(_brief(twin, parts)),
             "gaps": list(_gaps(twin, parts)),
-            "known": sum(parameter.state == "identified" for part in parts for parameter in part.parameters),
+            "known": sum(parameter.state.startswith("identified") for part in parts for parameter in part.parameters),
             "contradictions": [_contradiction(twin, contradiction) for contradiction in twin.contradictions],
             "two_laws": _two_laws(twin),
             "experiments": list(_experiments(experiments)),
@@ -314,6 +314,7 @@ def _words(part: str) -> str:
 
 MANY = 3  # parameters of a part that are not listed where all of them share a fate
 UNKNOWN = {
+    "identified in combination": "Told together with another parameter only",
     "not identified": "Fitted, but not told by the data",
     "kept": "Not measured, kept from the starting set",
     "follows": "Not measured, set by a rule from what was fitted",

@@ -75,13 +75,108 @@ def test_a_loop_at_the_input_is_referred_to_the_output() -> None:
     assert np.trapezoid(measured.torque, measured.twist) == pytest.approx(np.trapezoid(torque, angle))
 
 
-@pytest.mark.parametrize("twist", [np.linspace(0.0, 1e-3, 50), np.zeros(50)])
-def test_one_branch_is_refused(twist: Array) -> None:
-    with pytest.raises(ValueError, match="one branch only"):
-        TorsionLoop(twist, 1e4 * twist)
+def test_a_twist_that_never_changes_is_refused() -> None:
+    with pytest.raises(ValueError, match="the twist never changes"):
+        TorsionLoop(np.zeros(50), np.linspace(0.0, 1.0, 50))
 
 
-def test_what_is_kept_back_comes_in_blocks_over_the_whole_loop() -> None:
+@pytest.mark.parametrize("noise", [0.0, 1e-5])
+@pytest.mark.parametrize("kind", SPRINGS)
+def test_a_single_branch_gives_the_spring_where_the_hysteresis_is_known(kind: str, noise: float) -> None:
+    gear = sw.Gear(hysteresis=ELEMENTS)
+    random = np.random.default_rng(2)
+    twist = np.linspace(0.0, 2e-3, 300)
+    torque = SPRINGS[kind].torque(twist) + ELEMENTS.trace(twist)
+    recording = sw.Recording(
+        {"twist": twist + noise * random.normal(size=300), "torque": torque + 1e3 * noise * random.normal(size=300)},
+        {"twist": "rad", "torque": "N.m"},
+    )
+    measured = TorsionLoop.of(recording, gear)
+    assert measured.single_branch
+    best = fit_loop(measured, gear, held_out_blocks(300))[0]
+    assert best.name == f"{kind.replace('_', '-')} spring, hysteresis kept"
+    assert best.fit.gear.hysteresis == ELEMENTS
+    error = np.abs(best.fit.gear.stiffness.torque(twist) - SPRINGS[kind].torque(twist))
+    steepest = float(np.gradient(torque, twist).max())
+    assert error.max() < 1e-4 * torque.max() + 0.5 * steepest * noise, "half of what the noise is worth in one sample"
+
+
+def test_a_branch_fits_with_parameters_of_the_spring_alone() -> None:
+    spring = SPRINGS["cubic"]
+    twist = np.linspace(0.0, 2e-3, 50)
+    branch = sw.Recording({"twist": twist, "torque": spring.torque(twist)}, {"twist": "rad", "torque": "N.m"})
+    gear = sw.Gear(stiffness=spring.replace(a1=1e4), hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[], breakaway=[]))
+    found = sw.fit(gear, branch, ["stiffness.a1", "stiffness.a3"])
+    assert found.gear.stiffness.a1 == pytest.approx(spring.a1, rel=1e-8)
+    stuck = gear.replace(hysteresis=ELEMENTS)
+    with pytest.raises(ValueError, match=r"one branch only: .* hysteresis.breakaway\[0\] cannot be told from stiffness"):
+        sw.fit(stuck, branch, ["stiffness.a1", "hysteresis.breakaway"])
+
+
+INPUT = sw.Gear(
+    kinematics=sw.kinematics.StrainWave(flexspline_teeth=160, circular_spline_teeth=162),
+    stiffness=SPRINGS["three_segment"],
+    hysteresis=ELEMENTS,
+    friction_input=sw.friction.Coulomb(coulomb=0.03, breakaway=0.05, viscous=3e-4),
+)
+
+
+def at_the_input(noise: float = 0.0) -> sw.Recording:
+    """A loop of that gear with its output locked, by virtual work: input torque = T / i + friction at rest."""
+    ratio, twist = INPUT.kinematics.ratio, cycle(n=400)
+    path = np.concatenate((twist, twist))
+    torque = (INPUT.stiffness.torque(path) + ELEMENTS.trace(path)) / ratio
+    torque += 0.05 * np.sign(np.gradient(ratio * path))
+    torque += noise * np.random.default_rng(8).normal(size=len(path))
+    return sw.Recording(
+        {"input_angle": ratio * twist + 1.3, "input_torque": torque[-len(twist) :]},
+        {"input_angle": "rad", "input_torque": "N.m"},
+    )
+
+
+def test_friction_that_was_measured_is_taken_out_of_a_loop_from_the_input() -> None:
+    start = INPUT.replace(stiffness=SPRINGS["linear"], hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[], breakaway=[]))
+    loop = TorsionLoop.of(at_the_input(noise=1e-4), start)
+    best = fit_loop(loop, start, held_out_blocks(len(loop.twist)), friction_measured=True)[0]
+    assert best.fit.gear.friction_input == INPUT.friction_input
+    assert sum(best.fit.gear.hysteresis.breakaway) == pytest.approx(2.0, rel=0.02)
+    assert best.fit.gear.stiffness.k1 == pytest.approx(1e4, rel=0.02)
+
+
+def test_of_friction_that_was_not_measured_and_hysteresis_one_alone_is_fitted() -> None:
+    start = INPUT.replace(friction_input=INPUT.friction_input.replace(coulomb=0.012, breakaway=0.02))
+    loop = TorsionLoop.of(at_the_input(noise=1e-4), start)
+    best = fit_loop(loop, start, held_out_blocks(len(loop.twist)))[0]
+    assert best.fit.gear.hysteresis == start.hysteresis
+    assert best.fit.gear.friction_input.breakaway == pytest.approx(0.05, rel=0.01)
+    assert best.fit.gear.friction_input.coulomb == pytest.approx(0.6 * 0.05, rel=0.01), "as in the gear it starts from"
+
+
+def test_what_bristles_bend_by_behind_a_reversal_is_left_out() -> None:
+    recording = at_the_input()
+    loop = TorsionLoop.of(recording, INPUT)
+    assert 0.9 * len(recording) < len(loop.twist) < len(recording)
+    assert len(
+        TorsionLoop.of(
+            sw.Recording({"twist": cycle(), "torque": 1e4 * cycle()}, {"twist": "rad", "torque": "N.m"}), INPUT
+        ).twist
+    ) == len(cycle())
+
+
+def test_a_long_loop_is_thinned_to_means() -> None:
+    twist = cycle(n=40_000)
+    random = np.random.default_rng(3)
+    measured = sw.Recording(
+        {"twist": twist + 1e-5 * random.normal(size=len(twist)), "torque": SPRINGS["linear"].torque(twist)},
+        {"twist": "rad", "torque": "N.m"},
+    )
+    loop = TorsionLoop.of(measured, sw.Gear())
+    assert (loop.samples, len(loop.twist)) == (len(twist), 2000)
+    assert not loop.single_branch
+    assert loop.torque == pytest.approx(2e4 * loop.twist, abs=2e4 * 1e-5)
+
+
+def test_what_is_held_out_comes_in_blocks_over_the_whole_loop() -> None:
     training = held_out_blocks(400)
     assert training.sum() == 300
     assert np.count_nonzero(np.diff(training.astype(int))) == 9  # five blocks, the last one at the end

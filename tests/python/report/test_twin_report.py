@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.demo import published_twin
+from strainwave.demo import position_drive, torsion_rig
 from strainwave.gear_set import Entry, GearSet
 from strainwave.report import figures
 from strainwave.report.experiment import Experiment, Figure
@@ -279,13 +279,13 @@ def test_a_model_inside_a_model_has_its_own_rows_and_neither_is_absent(complete:
 
 
 def test_a_part_that_the_model_lacks_is_said_to_be_absent() -> None:
-    found = published_twin()
+    found = position_drive()
     assert not any("kinematic_error" in path for path in found.gear_set.sources)
     assert "Kinematic error" in section(twin_report(found), "summary").text
     assert "not in the model" in section(twin_report(found), "unknown").text
 
 
-def test_the_error_on_data_kept_back_stands_in_the_summary(from_torsion: sw.Twin) -> None:
+def test_the_error_on_data_held_out_stands_in_the_summary(from_torsion: sw.Twin) -> None:
     summary = section(twin_report(from_torsion), "summary")
     error = from_torsion.evidence[0].error[0]
     measured = from_torsion.evidence[0].fit.experiment.measured
@@ -457,7 +457,7 @@ def points(path: Node) -> np.ndarray:
 
 
 def test_points_are_drawn_where_they_were_measured() -> None:
-    found = published_twin()
+    found = position_drive()
     drawn = Page(figures.friction_table(found.evidence[0])).root
     groups = [group for group in drawn.find("g") if "--measured" in group.attributes.get("style", "")]
     places = np.array([(float(use.attributes["x"]), float(use.attributes["y"])) for use in groups[0].find("use")])
@@ -506,15 +506,10 @@ def test_no_colour_is_fixed_so_that_figures_follow_the_scheme(html: str) -> None
 
 
 def test_the_overview_stands_by_itself() -> None:
-    picture = figures.overview(published_twin())
+    picture = figures.overview(torsion_rig().evidence[0], position_drive().evidence[0])
     assert len(picture) < 60_000
     root = ElementTree.fromstring(picture)
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
     style = root[0].text or ""
     for colours in (figures.LIGHT, figures.DARK):
         assert all(f"--{name}: {colour};" in style for name, colour in colours.items())
-
-
-def test_the_overview_needs_both_measurements(from_torsion: sw.Twin) -> None:
-    with pytest.raises(ValueError, match=r"^the twin has no evidence of kind friction; the picture shows both$"):
-        figures.overview(from_torsion)
