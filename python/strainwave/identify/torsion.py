@@ -8,7 +8,7 @@ exact derivatives then refine stiffness, breakaway and the spring together.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Protocol
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 SLIPS = np.geomspace(5e-3, 0.85, 14)  # of half the span: twists tried for an element's slip; no loop tried tells more apart
 SLIPPING = 0.9  # of half the span: an element that slips later is a spring for all that the loop tells
-NEIGHBOURS = 1.6  # ratio of two slip twists that follow each other on the grid, and less
+ALIKE = 1.1  # ratio of two slip twists; elements that are closer are one
 KNEES = 1.0 - np.geomspace(0.9, 0.012, 9)  # of half the span: places tried for the knees of a three-segment spring
 MOST_ELEMENTS = 6  # kept after the convex step
 NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
@@ -91,22 +91,34 @@ def fit_loop(
     candidates = [_candidate(loop, gear, chosen, spring, beside) for beside in asked for spring in SPRINGS]
     best = min(candidates, key=lambda c: c.error)
     good = float(np.hypot(1.05 * best.error, NEGLIGIBLE * np.ptp(loop.torque)))
-    candidates += _simpler(best, good, loop, gear, chosen)
+    candidates += _simpler(best, good, chosen)
     return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
 
 
-def _simpler(best: Candidate, good: float, loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_]) -> Iterator[Candidate]:
-    """The best candidate with one Maxwell element, two and so on, as long as this is fewer and not yet good."""
-    if not isinstance(best.beside, Elements):
-        return
-    chosen: tuple[float, ...] = ()
-    for _ in range(len(_pairs(best.fit.gear)) - 1):
-        sets = [Elements(tuple(sorted((*chosen, slip)))) for slip in best.beside.slips if slip not in chosen]
-        fewest = min(sets, key=lambda elements: _best_start(loop, gear, training, best.spring, elements).error)
-        yield (candidate := _candidate(loop, gear, training, best.spring, fewest))
-        if candidate.error <= good:
-            return
-        chosen = fewest.slips
+def _simpler(best: Candidate, good: float, training: NDArray[np.bool_]) -> Iterator[Candidate]:
+    """The best candidate with fewer and fewer Maxwell elements, as long as it stays good."""
+    candidate = best
+    while len(candidate.beside.elements(candidate.fit.gear)) > 1 and candidate.error <= good:
+        experiment = candidate.fit.experiment
+        assert isinstance(experiment, TorsionLoop)
+        candidate = _finished(_merged(candidate.fit.gear), experiment, training, best.spring, best.beside, best.fit.gear)
+        yield candidate
+
+
+def _alike(elements: Sequence[tuple[float, float]]) -> bool:
+    """Whether two Maxwell elements slip at all but the same twist."""
+    slips = np.sort([f / k for k, f in elements])
+    return bool(np.any(slips[1:] < ALIKE * slips[:-1]))
+
+
+def _merged(gear: Gear) -> Gear:
+    """The gear with those two Maxwell elements as one that slip at the most similar twists."""
+    elements = sorted(_pairs(gear), key=lambda e: e[1] / e[0])
+    slips = np.log([f / k for k, f in elements])
+    first = int(np.argmin(np.diff(slips)))
+    (k, f), (other_k, other_f) = elements[first : first + 2]
+    elements[first : first + 2] = [(k + other_k, f + other_f)]
+    return gear.replace(hysteresis=_maxwell(elements))
 
 
 def _asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Beside]:
@@ -114,32 +126,32 @@ def _asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Besid
     if loop.single_branch:
         return [Nothing()]
     friction_inside = bool(np.any(loop.friction(gear))) and isinstance(gear.friction_input, Dry)
-    elements = Elements(tuple((half_span(loop) * SLIPS).tolist()))
-    return [elements] if friction_measured or not friction_inside else [Friction(), elements]
+    return [Elements()] if friction_measured or not friction_inside else [Friction(), Elements()]
 
 
 def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str, beside: Beside) -> Candidate:
-    start = _best_start(loop, gear, training, spring, beside)
+    histories = [loop] if loop.single_branch else [loop, loop.virgin()]
+    start = min((_start(gear, each, training, spring, beside) for each in histories), key=lambda start: start.error)
     twist_zero = loop.middle if spring == "linear" else loop.twist_zero
     experiment = replace(start.loop, torque_zero=start.torque_zero, twist_zero=twist_zero)
-    found = beside.finished(_refined(start, experiment, training, beside), gear)
+    return _finished(start.gear, experiment, training, spring, beside, gear)
+
+
+def _finished(
+    start: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: str, beside: Beside, known: Gear
+) -> Candidate:
+    found = beside.finished(_refined(start, loop, training, beside), known)
     held_out = found.rms(held_out=True)[0]
     name = f"{spring.replace('_', '-')} spring{beside.words(found.gear)}"
     return Candidate(spring, beside, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
 
 
-def _best_start(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str, beside: Beside) -> _Start:
-    """The start that fits best: with the history of a cycle, or with none."""
-    histories = [loop] if loop.single_branch else [loop, loop.virgin()]
-    return min((_start(gear, each, training, spring, beside) for each in histories), key=lambda start: start.error)
-
-
-def _refined(start: _Start, loop: TorsionLoop, training: NDArray[np.bool_], beside: Beside) -> Fit:
+def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], beside: Beside) -> Fit:
     """The fit, without elements that the loop cannot tell from the spring or from nothing.
 
-    An element that never slips within the loop is a linear spring, and one that holds no torque is none.
+    An element that never slips within the loop is a linear spring, one that holds no torque is none, and two that slip at the
+    same twist are one.
     """
-    gear = start.gear
     half, span = half_span(loop), float(np.ptp(loop.torque))
     while True:
         free = [f"stiffness.{field['name']}" for field in gear.stiffness.fields] + beside.free(gear)
@@ -147,12 +159,14 @@ def _refined(start: _Start, loop: TorsionLoop, training: NDArray[np.bool_], besi
         fitted = beside.elements(found.gear)
         slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < SLIPPING * half * k]
         if len(slipping) == len(fitted):
-            return found
+            if not _alike(slipping):
+                return found
+            gear = _merged(found.gear)
+            continue
         spring = found.gear.stiffness
         assert isinstance(spring, Spring)
         spring = _stiffened(spring, sum(k for k, f in fitted if f >= SLIPPING * half * k))
-        elements = hysteresis.MaxwellSlip(stiffness=[k for k, _ in slipping], breakaway=[f for _, f in slipping])
-        gear = gear.replace(stiffness=spring, hysteresis=elements)
+        gear = gear.replace(stiffness=spring, hysteresis=_maxwell(slipping))
 
 
 def _pairs(gear: Gear) -> list[tuple[float, float]]:
@@ -160,6 +174,11 @@ def _pairs(gear: Gear) -> list[tuple[float, float]]:
     elements = gear.hysteresis
     assert isinstance(elements, hysteresis.MaxwellSlip)
     return list(zip(elements.stiffness, elements.breakaway, strict=True))
+
+
+def _maxwell(elements: Sequence[tuple[float, float]]) -> hysteresis.MaxwellSlip:
+    """Maxwell elements of these stiffnesses and breakaways."""
+    return hysteresis.MaxwellSlip(stiffness=[k for k, _ in elements], breakaway=[f for _, f in elements])
 
 
 def _stiffened(spring: Spring, k: float) -> Spring:
@@ -220,11 +239,8 @@ class Beside(Protocol):
         ...
 
 
-@dataclass(frozen=True)
 class Elements:
-    """Maxwell elements in place of the gear's hysteresis, which begin to slip at some of these twists [rad]."""
-
-    slips: tuple[float, ...]
+    """Maxwell elements in place of the gear's hysteresis."""
 
     def words(self, gear: Gear) -> str:
         count = len(_pairs(gear))
@@ -234,10 +250,10 @@ class Elements:
         return loop.friction(gear)
 
     def columns(self, loop: TorsionLoop, gear: Gear) -> Array:
-        return np.column_stack([_play(loop, slip) for slip in self.slips])
+        return np.column_stack([_play(loop, slip) for slip in half_span(loop) * SLIPS])
 
     def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
-        return gear.replace(hysteresis=_elements(weights, np.array(self.slips)))
+        return gear.replace(hysteresis=_elements(weights, half_span(loop) * SLIPS))
 
     def free(self, gear: Gear) -> list[str]:
         return ["hysteresis.stiffness", "hysteresis.breakaway"] if _pairs(gear) else []
@@ -408,13 +424,13 @@ def _spring(spring: str, weights: Array, half: float, knees: tuple[float, ...]) 
 def _elements(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
     """The elements that carry torque; neighbours on the grid are one element that slips between them."""
     elements: list[tuple[float, float]] = []
-    last = 0.0
+    last = -2
     for i in np.flatnonzero(weights * slips > 1e-3 * np.sum(weights * slips)).tolist():
         k, torque = float(weights[i]), float(weights[i] * slips[i])
-        if slips[i] < NEIGHBOURS * last:
+        if i == last + 1:
             elements[-1] = elements[-1][0] + k, elements[-1][1] + torque
         else:
             elements.append((k, torque))
-        last = float(slips[i])
+        last = i
     strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MOST_ELEMENTS], key=lambda e: e[1] / e[0])
-    return hysteresis.MaxwellSlip(stiffness=[k for k, _ in strongest], breakaway=[f for _, f in strongest])
+    return _maxwell(strongest)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,7 +16,7 @@ ENDS = st.lists(st.floats(0.2, 1.0), min_size=1, max_size=6)
 def zigzag(lengths: list[float], points: int = 200) -> tuple[np.ndarray, list[int]]:
     """A path that goes to and fro between ends of alternating sign, and where it turns."""
     corners = np.array([0.0, *((-1.0) ** i * length for i, length in enumerate(lengths))])
-    legs = [np.linspace(a, b, points, endpoint=False) for a, b in zip(corners, corners[1:], strict=False)]
+    legs = [np.linspace(a, b, points, endpoint=False) for a, b in pairwise(corners)]
     return np.concatenate((*legs, corners[-1:])), [points * i for i in range(1, len(lengths))]
 
 
