@@ -20,6 +20,7 @@ from strainwave.simulation import warn_of_bristles
 
 Array = NDArray[np.float64]
 ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
+TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps end far below it where residuals are small
 DEGENERATE = 1e-10  # singular values below this share of the largest carry no information
 
 
@@ -316,9 +317,9 @@ class _Problem:
             bounds=(low, high),
             x_scale="jac",
             loss=loss,
-            xtol=1e-12,
-            ftol=1e-12,
-            gtol=1e-12,
+            xtol=TOLERANCE,
+            ftol=TOLERANCE,
+            gtol=TOLERANCE,
         )
         return np.asarray(solution.x)
 
@@ -360,7 +361,7 @@ def _covariance(jacobian: Array, residual: Array) -> tuple[Array, float]:
     size = np.where(size > 0.0, size, 1.0)
     left, singular, directions = np.linalg.svd(jacobian / size, full_matrices=False)
     dead = singular <= DEGENERATE * singular.max(initial=0.0)
-    together = max(_correlation_length(row) for row in residual)
+    together = max(correlation_length(row) for row in residual)
     freedom = max(residual.size / together - len(size), 1.0)
     root = directions.T * np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, singular))
     even = float(np.sum(residual**2)) / max(residual.size - len(size), 1)
@@ -385,7 +386,7 @@ def student(confidence: float, freedom: float) -> float:
     return float(stdtrit(freedom, 0.5 + 0.5 * confidence))
 
 
-def _correlation_length(residual: Array) -> float:
+def correlation_length(residual: Array) -> float:
     """Integrated autocorrelation time in samples, summed over Sokal's window; 1 for white noise.
 
     Sokal, "Monte Carlo methods in statistical mechanics" (1997), section 3.

@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.gear_set import Entry
-from strainwave.identify.fit import Fit
+from strainwave.identify.fit import Fit, correlation_length
 from strainwave.parameters import Parameter, every
 
 Array = NDArray[np.float64]
 
+SUSPECT = 0.3  # of the residuals' power: a kept parameter that accounts for more of it is wrong
+EXACT = ("control.", "gear.kinematics.", "kinematics.")  # nobody measures what was designed
 DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
 
 
@@ -24,10 +26,22 @@ class Influence:
     Attributes:
         kept: the parameters kept whose value is not zero
         slopes: change of each estimate over the change of each of these, shape (estimates, kept)
+        bounds: how far each of them could be off before the measurement itself showed it, shape (kept,)
+        pulls: by how much the measurement would change each of them, were it free, shape (kept,)
+        gains: share of the residuals' power that this would remove, shape (kept,)
     """
 
     kept: tuple[Parameter, ...]
     slopes: Array
+    bounds: Array
+    pulls: Array
+    gains: Array
+
+    @property
+    def suspect(self) -> int | None:
+        """The kept parameter that the measurement speaks against most, by its place; None where it speaks against none."""
+        worst = int(np.argmax(self.gains)) if len(self.gains) else 0
+        return worst if len(self.gains) and self.gains[worst] > SUSPECT else None
 
     def doubt(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
         """What the uncertainty of each kept parameter adds to that of an estimate, in its unit; largest first.
@@ -36,10 +50,11 @@ class Influence:
             estimate: its place in the fit
             known: what is known of the kept parameters, by `prefix` and path; of what is not there, a tenth is taken
         """
-        moved = {
-            each.path: abs(float(slope)) * uncertainty(each.value, known.get(prefix + each.path))
-            for each, slope in zip(self.kept, self.slopes[estimate], strict=True)
-        }
+        moved = {}
+        for each, slope, bound in zip(self.kept, self.slopes[estimate].tolist(), self.bounds.tolist(), strict=True):
+            before = uncertainty(each.value, known.get(prefix + each.path))
+            # two sources of knowledge, what is known and the measurement, weigh by their variances
+            moved[each.path] = abs(slope) * before / float(np.hypot(1.0, before / bound)) if before > 0.0 else 0.0
         return dict(sorted(moved.items(), key=lambda item: -item[1]))
 
 
@@ -58,20 +73,22 @@ def influence(found: Fit) -> Influence:
     """How the estimates of a fit change with what it kept, to first order.
 
     At the minimum the gradient J'r of the least squares is zero, and stays so when a kept parameter changes: the estimates move
-    by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters.
+    by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters. What of K
+    no change of the estimates makes up for shows in the residuals, and so bounds the kept parameter.
     """
     known = every(found.model)
     nuisances = len(found.experiment.nuisances)
     of_model = found.estimates[: len(found.estimates) - nuisances]
     free = [known[estimate.path] for estimate in of_model]
     taken = {each.number for each in free}
-    kept = tuple(each for each in known.values() if each.number not in taken and each.value != 0.0)
+    kept = tuple(each for each in known.values() if each.number not in taken and each.value != 0.0 and not _is_exact(each.path))
     unknowns = np.array([estimate.value for estimate in found.estimates[len(of_model) :]])
     numbers = [each.number for each in (*free, *kept)]
     _, slopes = found.experiment.predict(found.model, numbers, unknowns)
     residual = np.sqrt(np.mean(found.residuals[:, found.training] ** 2, axis=1))
     size = np.abs(found.experiment.measured).max(axis=1)
     weights = 1.0 / np.maximum(residual, 1e-12 * np.where(size > 0.0, size, 1.0))
+    residuals = (found.residuals[:, found.training] * weights[:, np.newaxis]).ravel()
     columns = (slopes * weights[:, np.newaxis])[:, :, found.training].reshape(len(slopes), -1).T
     by_free = np.column_stack((columns[:, : len(free)], columns[:, len(numbers) :]))
     by_kept = columns[:, len(free) : len(numbers)]
@@ -80,4 +97,15 @@ def influence(found: Fit) -> Influence:
     scale[scale == 0.0] = 1.0
     moved = np.zeros((by_free.shape[1], len(kept)))
     moved[:, told] = -np.linalg.lstsq(by_free / scale, by_kept[:, told], rcond=1e-10)[0] / scale[:, np.newaxis]
-    return Influence(kept, moved)
+    shown = by_kept + by_free @ moved
+    power = np.sum(shown**2, axis=0)
+    seen = power > 0.0
+    together = max(correlation_length(row) for row in found.residuals[:, found.training])
+    bounds = np.where(seen, np.sqrt(together / np.where(seen, power, 1.0)), np.inf)
+    pulls = np.where(seen, residuals @ shown / np.where(seen, power, 1.0), 0.0)
+    gains = pulls**2 * power / max(float(residuals @ residuals), 1e-300)
+    return Influence(kept, moved, bounds, pulls, gains)
+
+
+def _is_exact(path: str) -> bool:
+    return path.startswith(EXACT) or ".order[" in path

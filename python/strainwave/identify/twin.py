@@ -18,7 +18,7 @@ from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop,
 from strainwave.identify.explain import BETTER, allowed, causes, unexplained
 from strainwave.identify.fit import ONE_SIGMA, Estimate, Fit, student
 from strainwave.identify.friction import fit_friction
-from strainwave.identify.influence import influence
+from strainwave.identify.influence import Influence, influence
 from strainwave.identify.log import fit_log, free_parameters, prepared
 from strainwave.identify.measurement import Kind, read_measurement
 from strainwave.identify.plausible import doubts_of_loop, doubts_of_table
@@ -278,14 +278,25 @@ def _from_log(drive: PositionDrive, recording: Recording, source: str, known: se
     if not both:
         remarks.append("one encoder only: kinematic error and stiffness are not seen")
     name = ", ".join(path.removeprefix("gear.") for path in free) or "nothing free"
-    doubts = [*_not_explained(found.fit)]
+    doubts, of_kept = [*_not_explained(found.fit)], influence(found.fit)
     if doubts:
         doubts = [_with_cause(doubts[0][0], found.fit, recording, drive, free)]
+    elif of_kept.suspect is not None:
+        remarks.append(_of_suspect(of_kept, of_kept.suspect))
     return Evidence(
         "log", source, recording, found.fit, found.fit.residuals[:, ~found.fit.training], found.error,
-        ((name, float(found.error[0])),), influence(found.fit), _shares(found.fit),
+        ((name, float(found.error[0])),), of_kept, _shares(found.fit),
         _doubts(source, doubts), remarks=tuple(remarks),
     )  # fmt: skip
+
+
+def _of_suspect(of_kept: Influence, worst: int) -> str:
+    each = of_kept.kept[worst]
+    return (
+        f"the log speaks against {each.path} = {each.value:.4g} {each.unit}, which was kept: about "
+        f"{each.value + of_kept.pulls[worst]:.3g} {each.unit} would leave {100.0 * of_kept.gains[worst]:.0f} % less of the "
+        "residuals' power. Measure it, or free it"
+    )
 
 
 def _thinned(samples: int, taken: int) -> Iterator[str]:

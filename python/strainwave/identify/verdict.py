@@ -17,6 +17,7 @@ from strainwave.identify.fit import Estimate
 UNTOLD = 0.5  # relative standard deviation above which a parameter counts as not identified
 LEANING = 0.25  # of the value: by more than this it must not move with what is not known of a kept parameter
 TOLD = 0.02  # of the value: smaller influence of a kept parameter is not worth a word
+MOST_TOLD = 3  # kept parameters named with an estimate
 ENTANGLED = 0.98  # correlation above which two parameters are told in combination only
 
 State = Literal["identified", "identified in combination", "not identified", "kept"]
@@ -113,7 +114,8 @@ def judged(evidence: Evidence, index: int, sources: Mapping[str, Entry]) -> tupl
         return "not identified", why
     if why := evidence.shared.get(evidence.path(estimate), "") or _combination(evidence, index):
         return "identified in combination", why
-    return "identified", "; ".join((evidence.source, *_leaning(evidence, index, estimate, sources, TOLD)))
+    leaning = _leaning(evidence, index, estimate, sources, TOLD)
+    return "identified", f"{evidence.source}; {leaning}" if leaning else evidence.source
 
 
 def _untold(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry]) -> str:
@@ -130,21 +132,25 @@ def _untold(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping
     elif estimate.sigma > UNTOLD * abs(estimate.value):
         together = _combination(evidence, index)
         return "standard deviation exceeds half the value" + (f"; {together}" if together else "")
-    leaning = _leaning(evidence, index, estimate, sources, LEANING)
-    return leaning[0] if leaning else ""
+    return _suspect(evidence, index, estimate) or _leaning(evidence, index, estimate, sources, LEANING)
 
 
-def _leaning(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry], least: float) -> list[str]:
-    """Kept parameters whose uncertainty moves an estimate by more than a share of it, largest first, in words."""
+def _leaning(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry], least: float) -> str:
+    """The kept parameters that move an estimate by more than a share of it, as well as they are known; empty if none does."""
     size = 1.0 if ".phase[" in estimate.path else abs(estimate.value)
     doubts = evidence.influence.doubt(index, sources, evidence.prefix)
-    values = {each.path: each.value for each in evidence.influence.kept}
-    slopes = {each.path: slope for each, slope in zip(evidence.influence.kept, evidence.influence.slopes[index], strict=True)}
-    return [
-        f"it moves by {10.0 * abs(slopes[path] * values[path]) / size:.2g} % if {path}, which was kept, is 10 % off"
-        for path, doubt in doubts.items()
-        if doubt > least * size
-    ]
+    told = [f"{path} by {100.0 * doubt / size:.2g} %" for path, doubt in doubts.items() if doubt > least * size]
+    return f"what is not known of parameters kept may move it: {', '.join(told[:MOST_TOLD])}" if told else ""
+
+
+def _suspect(evidence: Evidence, index: int, estimate: Estimate) -> str:
+    """The kept parameter that the measurement speaks against, if the estimate would move far were it right."""
+    influence, size = evidence.influence, 1.0 if ".phase[" in estimate.path else abs(estimate.value)
+    worst = influence.suspect
+    if worst is None or abs(influence.slopes[index, worst] * influence.pulls[worst]) < LEANING * size:
+        return ""
+    moved = 100.0 * influence.slopes[index, worst] * influence.pulls[worst] / size
+    return f"it would move by {moved:+.2g} % were {influence.kept[worst].path} what {evidence.source} pulls it to"
 
 
 def _combination(evidence: Evidence, index: int) -> str:
