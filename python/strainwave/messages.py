@@ -6,6 +6,7 @@ All messages that repeat something from a file, a command line or an argument us
 from __future__ import annotations
 
 import reprlib
+import shlex
 from collections.abc import Iterable
 
 _LONGEST_TEXT = 60  # characters of a text in quotes
@@ -54,6 +55,16 @@ def shortened(value: object) -> str:
         return one_line(reprlib.repr(value))
     except ValueError:  # Python writes no whole number of more than some thousand digits
         return f"a too large {type(value).__name__}"
+
+
+def as_option(option: str, name: str, value: str) -> str:
+    """How to give the name or the unit of a column, on the command line and in Python.
+
+    >>> print(as_option("column", "speed", "Motor Speed"))
+    --column 'speed=Motor Speed' (in Python columns={"speed": "Motor Speed"})
+    """
+    command = shlex.quote(f"{_beginning(name)}={_beginning(value)}")
+    return f"--{option} {command} (in Python {option}s={{{quoted(name)}: {quoted(value)}}})"
 
 
 def _beginning(text: str) -> str:

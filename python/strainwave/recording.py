@@ -196,9 +196,9 @@ class Recording:
         Raises:
             ValueError: the file cannot be read, or its suffix is not known.
         """
-        from strainwave.tables import header
+        from strainwave.tables import labels
 
-        return header(path)
+        return tuple(label.name for label in labels(path))
 
     @staticmethod
     def from_csv(
