@@ -61,7 +61,7 @@ def twin(
     is taken for, or the model does not explain it, that is said first, no gear is written, and the exit code is 3.
     """
     from strainwave.gear_set import GearSet
-    from strainwave.identify.measurement import COLUMNS, read_measurement
+    from strainwave.identify.measurement import COLUMNS, read_measurements
     from strainwave.identify.twin import twin as identify
     from strainwave.report.twin import twin_report
 
@@ -71,7 +71,7 @@ def twin(
     columns, units = _pairs("--column", column, known), _pairs("--unit", unit, known)
     with _stages() as stage:
         start = GearSet.read(gear)
-        recordings = {kind: read_measurement(kind, path, columns, units) for kind, path in files.items()}
+        recordings = read_measurements(files, columns, units)
         found = identify(
             start,
             friction=recordings.get("friction"),

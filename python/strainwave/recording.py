@@ -182,12 +182,9 @@ class Recording:
     @staticmethod
     def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> Recording:
         """Read a file by its suffix: .csv, .txt, .tsv (see `from_csv`) or .parquet (see `from_parquet`)."""
-        suffix = Path(path).suffix.lower()
-        if suffix in (".csv", ".txt", ".tsv"):
-            return Recording.from_csv(path, columns, units)
-        if suffix == ".parquet":
-            return Recording.from_parquet(path, columns, units)
-        raise ValueError(f'{path}: suffix "{suffix}" is not known; use .csv, .txt, .tsv or .parquet')
+        from strainwave.tables import is_parquet
+
+        return (Recording.from_parquet if is_parquet(path) else Recording.from_csv)(path, columns, units)
 
     @staticmethod
     def header(path: str | Path) -> tuple[str, ...]:

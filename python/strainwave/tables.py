@@ -39,9 +39,17 @@ class Table(NamedTuple):
     place: Callable[[int], str]
 
 
+def is_parquet(path: str | Path) -> bool:
+    """Whether the suffix of a file says Parquet, else text; one that says neither is refused."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in (".csv", ".txt", ".tsv", ".parquet"):
+        raise ValueError(one_line(f"{path}: suffix {quoted(suffix)} is not known; use .csv, .txt, .tsv or .parquet"))
+    return suffix == ".parquet"
+
+
 def labels(path: str | Path) -> Sequence[Label]:
     """What a file calls its columns, in order."""
-    if Path(path).suffix.lower() != ".parquet":
+    if not is_parquet(path):
         return open_csv(path).labels
     import pyarrow
     from pyarrow.parquet import read_schema

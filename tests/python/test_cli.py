@@ -165,7 +165,10 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
         (["twin", "--gear", "nowhere.toml", "--friction", "table.csv"], ("nowhere.toml",)),
         (["twin", "--gear", "hfuc-25-100", "--friction", "nowhere.csv"], ("nowhere.csv",)),
         (["twin", "--gear", "hfuc-25-100"], ("at least one measurement",)),
-        (["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--unit", "spee=rpm"], ("spee", "speed, torque")),
+        (
+            ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--unit", "spee=rpm"],
+            ("spee", "speed, temperature, torque"),
+        ),
         (
             ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--column", "speed"],
             ("--column speed", "name=value"),

@@ -314,8 +314,9 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
 
 def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.xlsx"
-    with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use .csv, .txt, .tsv or .parquet')):
-        Recording.read(path)
+    for read in (Recording.read, Recording.header):
+        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use .csv, .txt, .tsv or .parquet')):
+            read(path)
 
 
 # Parquet, damaged too
