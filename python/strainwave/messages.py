@@ -54,7 +54,7 @@ def shortened(value: object) -> str:
     try:
         return one_line(reprlib.repr(value))
     except ValueError:  # Python writes no whole number of more than some thousand digits
-        return f"a too large {type(value).__name__}"
+        return f"<{type(value).__name__} with too many digits>"
 
 
 def as_option(option: str, name: str, value: str) -> str:
