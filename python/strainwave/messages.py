@@ -31,7 +31,13 @@ def quoted(text: str) -> str:
     >>> print(quoted("N.m"), quoted(1000 * "x"))
     "N.m" "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx…"
     """
-    return f'"{_beginning(text)}"'
+    return f'"{unquoted(text)}"'
+
+
+def unquoted(text: str) -> str:
+    """A text as `quoted` shows it, without the quotes: a name in a list, or a path within a model."""
+    line = one_line(text[: _LONGEST_TEXT + 1])
+    return line if len(line) <= _LONGEST_TEXT else f"{line[:_LONGEST_TEXT]}…"
 
 
 def listed(names: Iterable[str]) -> str:
@@ -42,7 +48,7 @@ def listed(names: Iterable[str]) -> str:
     """
     names = list(names)
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
-    return ", ".join(_beginning(name) for name in names[:_MOST_NAMES]) + more
+    return ", ".join(unquoted(name) for name in names[:_MOST_NAMES]) + more
 
 
 def shortened(value: object) -> str:
@@ -63,13 +69,8 @@ def as_option(option: str, name: str, value: str) -> str:
     >>> print(as_option("column", "speed", "Motor Speed"))
     --column 'speed=Motor Speed' (in Python columns={"speed": "Motor Speed"})
     """
-    command = shlex.quote(f"{_beginning(name)}={_beginning(value)}")
+    command = shlex.quote(f"{unquoted(name)}={unquoted(value)}")
     return f"--{option} {command} (in Python {option}s={{{quoted(name)}: {quoted(value)}}})"
-
-
-def _beginning(text: str) -> str:
-    line = one_line(text[: _LONGEST_TEXT + 1])
-    return line if len(line) <= _LONGEST_TEXT else f"{line[:_LONGEST_TEXT]}…"
 
 
 def _escaped(character: str) -> str:

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.messages import listed, one_line, quoted, shortened, unquoted
 
 # Any code point, surrogates too, as a file or an argument may hold them.
 anything = st.text(alphabet=st.characters(), max_size=50).flatmap(lambda text: st.sampled_from([text, 100 * text]))
 
 
-@given(anything, st.sampled_from([one_line, quoted, shortened, lambda text: listed([text, text])]))
+@given(anything, st.sampled_from([one_line, quoted, unquoted, shortened, lambda text: listed([text, text])]))
 def test_any_text_is_told_in_one_short_line(text: str, told: Callable[[str], str]) -> None:
     assert told(text).isprintable()
     assert len(told(text)) <= 610
@@ -23,7 +23,7 @@ def test_any_text_is_told_in_one_short_line(text: str, told: Callable[[str], str
 @given(anything)
 def test_a_short_text_that_can_be_printed_is_told_as_it_is(text: str) -> None:
     if text.isprintable() and len(text) <= 60:
-        assert (one_line(text), quoted(text), listed([text])) == (text, f'"{text}"', text)
+        assert (one_line(text), quoted(text), unquoted(text), listed([text])) == (text, f'"{text}"', text, text)
 
 
 def test_control_characters_are_shown_not_obeyed() -> None:
