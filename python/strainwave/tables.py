@@ -147,11 +147,13 @@ def sources_of(
 
 
 def _check_labels(file: str, labels: Sequence[Label]) -> None:
-    for number, (name, count) in enumerate(Counter(label.name for label in labels).items(), start=1):
+    names = [label.name for label in labels]
+    for number, name in enumerate(names, start=1):
         if not name:
             raise ValueError(f"{file} column {number} has no name; name it, or pick columns with columns={{...}}")
-        if count > 1:
-            raise ValueError(f"{file} has {count} columns named {quoted(name)}; names must differ")
+    name, count = Counter(names).most_common(1)[0]
+    if count > 1:
+        raise ValueError(f"{file} has {count} columns named {quoted(name)}; names must differ")
 
 
 def _find(file: str, labels: Sequence[Label], wanted: str) -> int:

@@ -110,6 +110,7 @@ def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
         ("torque [N.m]\n1,5\n", " line 2: the number of cells is 2; the header has 1"),
         ("torque [N.m],torque [N.cm]\n1,2\n", ' has 2 columns named "torque"; names must differ'),
         ("torque [N.m],,\n1,2,3\n", " column 2 has no name; name it, or pick columns with columns={...}"),
+        ("a [1],a [1],\n1,2,3\n", " column 3 has no name; name it, or pick columns with columns={...}"),
         (
             "torque\n1\n",
             ' column "torque" has no unit; write it behind the name, as in torque [N.m], '
@@ -351,6 +352,14 @@ def test_faulty_parquet_is_refused(tmp_path: Path, values: list[object], message
     write_parquet(path, **{"x [1]": values})
     with pytest.raises(ValueError, match=exactly(f"{path}{message}")):
         Recording.from_parquet(path)
+
+
+def test_parquet_metadata_that_is_no_text_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.parquet"
+    pq.write_table(pa.table({"x": [1.0]}, schema=pa.schema([pa.field("x", pa.float64(), metadata={"unit": b"\xff"})])), path)
+    for read in (Recording.header, Recording.read):
+        with pytest.raises(ValueError, match=f"^{re.escape(str(path))} cannot be read: 'utf-8' codec can't decode byte 0xff"):
+            read(path)
 
 
 def test_truncated_parquet_is_refused(tmp_path: Path) -> None:
