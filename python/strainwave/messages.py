@@ -10,7 +10,7 @@ import shlex
 from collections.abc import Iterable
 
 _LONGEST_TEXT = 60  # characters of a text in quotes
-_LONGEST_LINE = 600  # characters of a whole message
+_LONGEST_LINE = 480  # characters of a whole message
 _MOST_NAMES = 20  # of a list
 
 

@@ -151,9 +151,9 @@ def _check_labels(file: str, labels: Sequence[Label]) -> None:
     for number, name in enumerate(names, start=1):
         if not name:
             raise ValueError(f"{file} column {number} has no name; name it, or pick columns with columns={{...}}")
-    name, count = Counter(names).most_common(1)[0]
-    if count > 1:
-        raise ValueError(f"{file} has {count} columns named {quoted(name)}; names must differ")
+    for name, count in Counter(names).most_common(1):
+        if count > 1:
+            raise ValueError(f"{file} has {count} columns named {quoted(name)}; names must differ")
 
 
 def _find(file: str, labels: Sequence[Label], wanted: str) -> int:
@@ -247,6 +247,8 @@ def _checked_text(file: str, data: bytes) -> bytes:
     except UnicodeDecodeError as error:
         line = 1 + len(re.findall(rb"\r\n?|\n", data[: error.start]))
         raise ValueError(f"{file} line {line} is not UTF-8: byte {error.start} is 0x{data[error.start]:02x}") from None
+    if b"\0" in data:
+        raise ValueError(f"{file} holds a zero byte at {data.index(0)}, which no text does; save it as UTF-8, not as UTF-16")
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
 
 
@@ -264,7 +266,7 @@ def _header(place: str, text: str) -> tuple[str, list[Label]]:
     try:
         cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=True, strict=True))
     except csv.Error as error:
-        raise ValueError(f"{place}: the header cannot be read: {error}") from None
+        raise ValueError(f"{place}: the header cannot be read: {one_line(str(error))}") from None
     for cell in cells:
         if len(cell) > _LONGEST_LABEL:
             raise ValueError(f"{place}: {quoted(cell)} has {len(cell)} characters; a header cell has at most {_LONGEST_LABEL}")
@@ -353,7 +355,7 @@ class CsvTable:
         try:
             return next(csv.reader([text], delimiter=self.delimiter))
         except csv.Error as error:
-            raise ValueError(f"{self.file} line {line}: {error}") from None
+            raise ValueError(f"{self.file} line {line}: {one_line(str(error))}") from None
 
 
 def _quotation_fault(text: memoryview, delimiter: str) -> int | None:

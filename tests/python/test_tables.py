@@ -132,6 +132,7 @@ def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
         ('a [1];b [1]\r# "\r1;2\r3;"4""\r', f" line 4: {UNCLOSED}"),
         ('a [1],b [1]\n"1"2,3\n', f" line 2: {UNCLOSED}"),
         ('a [1],"b\n[1]"\n1,2\n', " line 1: the header cannot be read: unexpected end of data"),
+        ('"a"b\tc\n1\t2\n', " line 1: the header cannot be read: '\\t' expected after '\"'"),
         (131073 * "a" + "\n1\n", " line 1: the header cannot be read: field larger than field limit (131072)"),
         (1001 * "a" + "\n1\n", f' line 1: "{60 * "a"}…" has 1001 characters; a header cell has at most 1000'),
         ("a [1]\n" + 1_000_000 * "x" + "\n", f' line 2, column "a": "{60 * "x"}…" is not a number'),
@@ -294,6 +295,10 @@ def test_columns_and_units_that_are_not_there_are_refused(
     [
         (b"torque [N.m]\n1\n2\xb0\n", " line 3 is not UTF-8: byte 16 is 0xb0"),
         ("torque [N.m]\n1\n".encode("utf-16"), " line 1 is not UTF-8: byte 0 is 0xff"),
+        (
+            "torque [N.m]\n1\n".encode("utf-16-le"),
+            " holds a zero byte at 1, which no text does; save it as UTF-8, not as UTF-16",
+        ),
     ],
 )
 def test_bytes_that_are_not_utf8_are_refused(tmp_path: Path, data: bytes, message: str) -> None:
@@ -360,6 +365,13 @@ def test_parquet_metadata_that_is_no_text_is_refused(tmp_path: Path) -> None:
     for read in (Recording.header, Recording.read):
         with pytest.raises(ValueError, match=f"^{re.escape(str(path))} cannot be read: 'utf-8' codec can't decode byte 0xff"):
             read(path)
+
+
+def test_parquet_without_columns_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.parquet"
+    write_parquet(path)
+    with pytest.raises(ValueError, match=exactly(f"{path}: no column to read")):
+        Recording.read(path)
 
 
 def test_truncated_parquet_is_refused(tmp_path: Path) -> None:

@@ -218,4 +218,4 @@ def test_what_a_file_holds_is_told_in_one_short_line(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="this file has ") as told:
         read_measurement("friction", path)
     assert str(told.value).isprintable()
-    assert len(str(told.value)) < 700
+    assert len(str(told.value)) < 500
