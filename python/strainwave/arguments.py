@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from math import inf
 from numbers import Integral, Real
-from reprlib import repr as shortened
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core
 from strainwave.drives import PositionDrive
+from strainwave.messages import shortened
 
 
 def number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
@@ -49,9 +49,9 @@ def whole(name: str, value: object, low: int, high: int = 2**63 - 1) -> int:
         raise TypeError(f"{name} must be a whole number, not {shortened(value)}")
     given = int(value)
     if given < low:
-        raise ValueError(f"{name} = {value} must be {low} or more")
+        raise ValueError(f"{name} = {shortened(given)} must be {low} or more")
     if given > high:
-        raise ValueError(f"{name} = {value} must be {high} or less")
+        raise ValueError(f"{name} = {shortened(given)} must be {high} or less")
     return given
 
 
@@ -67,7 +67,8 @@ def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
         raise TypeError(f"{name} must hold numbers, not {array.dtype}")
     if np.ma.is_masked(values):
         raise ValueError(f"{name} has masked values; every one must be a number")
-    return array.astype(np.float64, copy=False)
+    with np.errstate(over="ignore"):  # a longer float may be too large; whoever wants finite numbers refuses the infinity
+        return array.astype(np.float64, copy=False)
 
 
 def names(name: str, values: object) -> list[str]:

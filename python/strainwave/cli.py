@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from strainwave.messages import one_line, unquoted
+
 if TYPE_CHECKING:
     from strainwave.gear_set import GearSet
     from strainwave.identify.measurement import Kind
@@ -61,7 +63,7 @@ def twin(
     is taken for, or the model does not explain it, that is said first, no gear is written, and the exit code is 3.
     """
     from strainwave.gear_set import GearSet
-    from strainwave.identify.measurement import COLUMNS, read_measurement
+    from strainwave.identify.measurement import COLUMNS, read_measurements
     from strainwave.identify.twin import twin as identify
     from strainwave.report.twin import twin_report
 
@@ -71,7 +73,7 @@ def twin(
     columns, units = _pairs("--column", column, known), _pairs("--unit", unit, known)
     with _stages() as stage:
         start = GearSet.read(gear)
-        recordings = {kind: read_measurement(kind, path, columns, units) for kind, path in files.items()}
+        recordings = read_measurements(files, columns, units)
         found = identify(
             start,
             friction=recordings.get("friction"),
@@ -127,7 +129,7 @@ def models(name: Annotated[str, typer.Argument(help="A model, to be described in
 
     kinds = {model: kind for family in _core.families.values() for model, kind in family.items()}
     if name and name not in kinds:
-        raise ValueError(f"there is no model {name}; there are {', '.join(kinds)}")
+        raise ValueError(f"there is no model {unquoted(name)}; there are {', '.join(kinds)}")
     if name:
         print(cleandoc(str(kinds[name].__doc__)))
         return
@@ -213,5 +215,5 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit("strainwave: interrupted; nothing written")
     except (ValueError, TypeError, OSError, FloatingPointError) as error:
-        print(f"strainwave: {error}", file=sys.stderr)
+        print(f"strainwave: {one_line(str(error))}", file=sys.stderr)
         sys.exit(REFUSED)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_type_hints
 from strainwave.drives import PositionDrive
 from strainwave.files import replacing
 from strainwave.gear_set import NOT_GIVEN, Entry, GearSet, Parameter, Part, Quantity, own_paths, parameters, parts
+from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -41,7 +42,7 @@ def read(path: Path) -> GearSet:
 def write(gear_set: GearSet, path: Path) -> None:
     """Writes a file that `read` reads back equal, bit for bit; `ValueError` where its name does not end in .toml."""
     if path.suffix != ".toml":
-        raise ValueError(f"{path}: a gear file ends in .toml")
+        raise ValueError(one_line(f"{path}: a gear file ends in .toml"))
     text = _text(gear_set)
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
@@ -114,9 +115,9 @@ def _document(path: Path) -> dict[str, Any]:
     try:
         document = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
-        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
+        raise ValueError(one_line(f"{path} cannot be read: {error.strerror}")) from None
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path} is not valid TOML: {error}") from None
+        raise ValueError(one_line(f"{path} is not valid TOML: {error}")) from None
     if not document:
         raise ValueError(f"{path} is empty")
     return document
@@ -177,7 +178,7 @@ def _chosen(table: _Table, content: dict[str, Any]) -> tuple[Any, dict[str, Any]
         raise ValueError(f"has no model; write {_choice(table)}")
     name = str(content["model"])
     if name not in table.kinds:
-        raise ValueError(f'model = "{name}" is not known; write {_choice(table)}')
+        raise ValueError(f"model = {quoted(name)} is not known; write {_choice(table)}")
     return table.kinds[name], {key: content[key] for key in content if key != "model"}
 
 
@@ -201,7 +202,7 @@ def _at(place: str) -> Iterator[None]:
     try:
         yield
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{place} {error}") from None
+        raise ValueError(one_line(f"{place} {error}")) from None
 
 
 # What may be written where: pydantic types made of the models' fields

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple, TypeVar, overload
 from strainwave import arguments
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
+from strainwave.messages import quoted, shortened, unquoted
 from strainwave.units import check as check_unit
 from strainwave.units import convert
 
@@ -128,7 +129,7 @@ class GearSet:
         if bare := [path for path in paths if path not in self.sources]:
             raise ValueError(f"{self.name}: {bare[0]} has no source")
         if extra := self.sources.keys() - set(paths):
-            raise ValueError(f"{self.name}: sources name {min(extra)}, which is no number of the set")
+            raise ValueError(f"{self.name}: sources name {unquoted(min(extra))}, which is no number of the set")
         object.__setattr__(self, "sources", _frozen(self.sources, Entry))
         object.__setattr__(self, "ratings", _frozen(self.ratings, Quantity))
 
@@ -339,22 +340,22 @@ def _check_texts(name: str, maker: str, note: str) -> None:
     if maker != "":
         _check_line("maker", maker)
     if not isinstance(note, str):
-        raise TypeError(f"note must be a text, not {note!r}")
+        raise TypeError(f"note must be a text, not {shortened(note)}")
 
 
 def _check_line(name: str, text: str) -> None:
     if not isinstance(text, str):
-        raise TypeError(f"{name} must be a text, not {text!r}")
+        raise TypeError(f"{name} must be a text, not {shortened(text)}")
     if not text.strip() or not text.isprintable():
-        raise ValueError(f"{name} = {text!r} must be one line of text")
+        raise ValueError(f"{name} = {shortened(text)} must be one line of text")
 
 
 def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]:
     for key, entry in entries.items():
         if not isinstance(key, str):
-            raise TypeError(f"a number is named by a text, not {key!r}")
+            raise TypeError(f"a number is named by a text, not {shortened(key)}")
         if not isinstance(entry, kind):
-            raise TypeError(f"{key} must have a strainwave.gear_set.{kind.__name__}, not {entry!r}")
+            raise TypeError(f"{unquoted(key)} must have a strainwave.gear_set.{kind.__name__}, not {shortened(entry)}")
     return MappingProxyType(dict(entries))
 
 
@@ -366,7 +367,7 @@ def _file(name_or_path: str | Path) -> Path:
     if name_or_path not in names:
         near = difflib.get_close_matches(name_or_path.lower(), names)
         raise ValueError(
-            f'no gear set "{name_or_path}" in the catalogue{"; near it are " * bool(near)}{", ".join(near)}; '
+            f"no gear set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
             "strainwave.catalogue() lists all, and the path of a file ends in .toml"
         )
     return CATALOGUE / f"{name_or_path}.toml"

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 
 from strainwave import Gear, _core, arguments
 from strainwave.drives import PositionDrive
+from strainwave.messages import quoted
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ def every(model: Gear | PositionDrive) -> dict[str, Parameter]:
 def unknown(path: str, known: Iterable[str]) -> ValueError:
     """Says of a path that the model does not have it, and what is near."""
     near = get_close_matches(path, list(known), n=3, cutoff=0.0)
-    return ValueError(f'the model has no parameter "{path}"; near it are {", ".join(near)}')
+    return ValueError(f"the model has no parameter {quoted(path)}; near it are {', '.join(near)}")
 
 
 def parameters(name: str, model: Gear | PositionDrive, paths: Sequence[str]) -> list[Parameter]:

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.files import replacing
+from strainwave.messages import listed, one_line, quoted, shortened
 from strainwave.units import check as check_unit
 from strainwave.units import convert
 
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from strainwave.tables import Table
 
 Array = NDArray[np.float64]
+
+_DRAWABLE = 1e300  # the range of an axis, with its margins, must be a number too
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -57,14 +60,14 @@ class Recording:
     def __init__(self, columns: Mapping[str, ArrayLike], units: Mapping[str, str], title: str = "") -> None:
         _check_names(columns, units)
         if not isinstance(title, str):
-            raise TypeError(f"title must be a text, not {title!r}")
+            raise TypeError(f"title must be a text, not {shortened(title)}")
         if title and not title.isprintable():
-            raise ValueError(f"title {title!r} must be one line of text")
+            raise ValueError(f"title {shortened(title)} must be one line of text")
         frozen = {name: _frozen(name, values) for name, values in columns.items()}
         _check_lengths(frozen)
         known = {name: _known(name, units[name]) for name in columns}
         if fault := _first_fault(frozen, known):
-            raise ValueError(f'column "{fault.column}" row {fault.row}: {fault.reason}')
+            raise ValueError(f"column {quoted(fault.column)} row {fault.row}: {fault.reason}")
         self._hold(frozen, known, title)
 
     def _hold(self, columns: Mapping[str, Array], units: Mapping[str, str], title: str) -> None:
@@ -86,7 +89,7 @@ class Recording:
     def __getitem__(self, name: str) -> Array:
         """Values of a column in its own unit, shape (n,), read-only."""
         if name not in self.columns:
-            raise ValueError(f'no column "{name}"; there are {", ".join(self.names)}')
+            raise ValueError(f"no column {quoted(name)}; there are {listed(self.names)}")
         return self.columns[name]
 
     def __contains__(self, name: object) -> bool:
@@ -119,7 +122,11 @@ class Recording:
 
     def values(self, name: str, unit: str) -> Array:
         """Values of a column in another unit, shape (n,); `ValueError` where the units do not agree."""
-        return convert(self[name], self.unit(name), unit)
+        values = self[name]
+        try:
+            return convert(values, self.unit(name), unit)
+        except ValueError as error:
+            raise ValueError(f"column {quoted(name)}: {error}") from None
 
     def select(self, names: Sequence[str]) -> Recording:
         """The named columns only, in the order given."""
@@ -182,12 +189,9 @@ class Recording:
     @staticmethod
     def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> Recording:
         """Read a file by its suffix: .csv, .txt, .tsv (see `from_csv`) or .parquet (see `from_parquet`)."""
-        suffix = Path(path).suffix.lower()
-        if suffix in (".csv", ".txt", ".tsv"):
-            return Recording.from_csv(path, columns, units)
-        if suffix == ".parquet":
-            return Recording.from_parquet(path, columns, units)
-        raise ValueError(f'{path}: suffix "{suffix}" is not known; use .csv, .txt, .tsv or .parquet')
+        from strainwave.tables import is_parquet
+
+        return (Recording.from_parquet if is_parquet(path) else Recording.from_csv)(path, columns, units)
 
     @staticmethod
     def header(path: str | Path) -> tuple[str, ...]:
@@ -196,9 +200,9 @@ class Recording:
         Raises:
             ValueError: the file cannot be read, or its suffix is not known.
         """
-        from strainwave.tables import header
+        from strainwave.tables import labels
 
-        return header(path)
+        return tuple(label.name for label in labels(path))
 
     @staticmethod
     def from_csv(
@@ -251,15 +255,20 @@ class Recording:
         Returns:
             A matplotlib figure, to be saved with `.savefig`. Of more than 20 000 samples, the extremes of short
             stretches are drawn, so that every peak stays visible.
+
+        Raises:
+            ValueError: a column is not there, nothing is left to draw, or a value lies beyond 1e300.
         """
         from matplotlib.figure import Figure
 
         groups: dict[str, list[str]] = {}
         drawn = [name for name in self.names if name != against] if names is None else arguments.names("names", names)
         for name in drawn:
+            _check_drawable(name, self[name])
             groups.setdefault(self.unit(name), []).append(name)
         if not groups:
-            raise ValueError(f'nothing to draw against "{against}"; there are {", ".join(self.names)}')
+            raise ValueError(f"nothing to draw against {quoted(against)}; there are {listed(self.names)}")
+        _check_drawable(against, self[against])
         figure = Figure(figsize=(8.0, 1.0 + 2.0 * len(groups)), layout="constrained")
         figure.suptitle(self.title)
         axes = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
@@ -270,6 +279,12 @@ class Recording:
             axis.legend(loc="upper right")
         axes[-1].set_xlabel(f"{against} [{self.unit(against)}]")
         return figure
+
+
+def _check_drawable(name: str, values: Array) -> None:
+    largest = np.abs(values).max()
+    if largest > _DRAWABLE:
+        raise ValueError(f"column {quoted(name)} cannot be drawn: it reaches {largest}; at most {_DRAWABLE} can be drawn")
 
 
 class _Fault(NamedTuple):
@@ -287,20 +302,21 @@ def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> 
         raise ValueError("a recording needs at least one column")
     for name in columns:
         if not isinstance(name, str):
-            raise TypeError(f"a column is named by a text, not {name!r}")
+            raise TypeError(f"a column is named by a text, not {shortened(name)}")
         if not name or name != name.strip() or not name.isprintable():
-            raise ValueError(f"column name {name!r} must be printable text without spaces around it")
+            raise ValueError(f"column name {shortened(name)} must be printable text without spaces around it")
         if name not in units:
-            raise ValueError(f'column "{name}" has no unit; pass units={{"{name}": "N.m"}}, or "1" for a plain number')
+            hint = f'pass units={{{quoted(name)}: "N.m"}}, or "1" for a plain number'
+            raise ValueError(f"column {quoted(name)} has no unit; {hint}")
     if extra := units.keys() - columns.keys():
-        raise ValueError(f'units names "{min(extra)}", which is not a column; there are {", ".join(columns)}')
+        raise ValueError(f"units names {quoted(min(extra))}, which is not a column; there are {listed(columns)}")
 
 
 def _frozen(name: str, values: ArrayLike) -> Array:
     """The values as read-only float64, copied only where someone else could still change them."""
-    array = arguments.numbers(f'column "{name}"', values)
+    array = arguments.numbers(f"column {quoted(name)}", values)
     if array.ndim != 1 or array.size == 0:
-        raise ValueError(f'column "{name}" must be one series of at least one sample; its shape is {array.shape}')
+        raise ValueError(f"column {quoted(name)} must be one series of at least one sample; its shape is {array.shape}")
     if array.flags.c_contiguous and _is_frozen(array):
         return array
     copy = np.array(array)
@@ -320,14 +336,14 @@ def _known(name: str, unit: str) -> str:
             convert(1.0, unit, "s")
         return check_unit(unit)
     except ValueError as error:
-        raise ValueError(f'column "{name}": {error}') from None
+        raise ValueError(f"column {quoted(name)}: {error}") from None
 
 
 def _check_lengths(columns: Mapping[str, Array]) -> None:
     (first, wanted), *others = ((name, len(values)) for name, values in columns.items())
     for name, length in others:
         if length != wanted:
-            raise ValueError(f'column "{name}" has {length} samples, column "{first}" has {wanted}')
+            raise ValueError(f"column {quoted(name)} has {length} samples, column {quoted(first)} has {wanted}")
 
 
 @np.errstate(all="ignore")
@@ -340,23 +356,34 @@ def _first_fault(columns: Mapping[str, Array], units: Mapping[str, str]) -> _Fau
         if not finite.all():
             row = int(np.argmin(finite))
             return _Fault(name, row, f"{values[row]} is not finite")
-    time = columns.get("time", np.zeros(1))
-    forward = time[1:] > time[:-1]
-    if not forward.all():
-        row = int(np.argmin(forward)) + 1
-        now, before = (f"{time[i]} {units['time']}" for i in (row, row - 1))
-        return _Fault("time", row, f"{now} does not lie after {before}; time must increase")
-    return None
+    return _time_fault(columns["time"], units["time"]) if "time" in columns else None
+
+
+def _time_fault(time: Array, unit: str) -> _Fault | None:
+    """The first time that does not increase, in seconds too, where others that are near each other become one."""
+    try:
+        seconds = convert(time, unit, "s")
+    except ValueError as error:
+        return _Fault("time", int(np.argmax(np.abs(time))), str(error))
+    forward = seconds[1:] > seconds[:-1]
+    if forward.all():
+        return None
+    row = int(np.argmin(forward)) + 1
+    now, before = (f"{time[i]} {unit}" for i in (row, row - 1))
+    where = " in seconds" if time[row] > time[row - 1] else ""
+    return _Fault("time", row, f"{now} does not lie after {before}{where}; time must increase")
 
 
 def _checked(path: str | Path, table: Table) -> Recording:
     """The recording, or what is wrong with it in terms of the file."""
-    if fault := _first_fault(table.columns, table.units):
-        raise ValueError(f'{path} {table.place(fault.row)}, column "{table.labels[fault.column]}": {fault.reason}')
     try:
-        return Recording(table.columns, table.units, table.title)
+        units = {name: _known(name, unit) for name, unit in table.units.items()}
+        if not (fault := _first_fault(table.columns, units)):
+            return Recording(table.columns, units, table.title)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(one_line(f"{path}: {error}")) from None
+    where = f"{path} {table.place(fault.row)}, column {quoted(table.labels[fault.column])}"
+    raise ValueError(one_line(f"{where}: {fault.reason}"))
 
 
 def envelope(x: Array, y: Array, stretches: int = 5_000) -> tuple[Array, Array]:

@@ -10,11 +10,13 @@ from __future__ import annotations
 import math
 import re
 import tokenize
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
+
+from strainwave.messages import quoted, shortened
 
 if TYPE_CHECKING:
     import pint
@@ -52,20 +54,29 @@ _DEFINITIONS = (
     "degree_Celsius = kelvin; offset: 273.15 = degC",
 )
 
+_LONGEST = 100  # characters of a unit: a bound for the work that a text from outside can cause
+
 _CHARACTERS = str.maketrans(
     {"°": "deg", "\u2032": "arcmin", "\u2033": "arcsec", "Ω": "Ohm", "\u2126": "Ohm", "µ": "u", "\u03bc": "u"}
-    | {"·": ".", "⋅": ".", "*": ".", "^": "", "\u2212": "-", "⁻": "-", "¹": "1", "²": "2", "³": "3"}
+    | {"·": ".", "⋅": ".", "*": ".", "\u2212": "-", "⁻": "-", "¹": "1", "²": "2", "³": "3"}
+    | dict.fromkeys("\u00a0\u2009\u202f", " ")
 )
 
 # Products people write in one word, and other names of a symbol.
 _WORDS = {
-    "Nm": "N*m", "Ncm": "N*cm", "Nmm": "N*mm", "mNm": "mN*m", "kNm": "kN*m", "Nms": "N*m*s", "kgm": "kg*m",
-    "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "ohm": "Ohm",
+    "Nm": "N*m", "NM": "N*m", "Ncm": "N*cm", "Nmm": "N*mm", "mNm": "mN*m", "kNm": "kN*m", "Nms": "N*m*s", "kgm": "kg*m",
+    "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "RPM": "rpm", "ohm": "Ohm", "sec": "s", "msec": "ms",
 }  # fmt: skip
+
+# German data sheets count revolutions as U, but only per time; alone, U is a voltage there.
+_REVOLUTIONS = re.compile(r"^U(?=/(?:min|s)$|\*(?:min|s)-1$)")
 
 
 def convert(values: Values, unit: str, to: str) -> Values:
     """Express values given in one unit in another.
+
+    Data sheets write revolutions per minute as `1/min`. So where the other unit is an angular speed, `1/min` means
+    `rev/min`. `1/s` and `Hz` are refused there: both revolutions and radians per second are written so.
 
     Args:
         values: a number or an array, of any shape, in `unit`
@@ -76,9 +87,12 @@ def convert(values: Values, unit: str, to: str) -> Values:
         The values in `to`; where both units are the same, `values` itself.
 
     Raises:
-        ValueError: a unit is not known, or the two measure different things. Angles are not plain numbers.
+        ValueError: a unit is not known, the two measure different things, or a value is too large a number in `to`.
+            Angles are not plain numbers.
 
     >>> convert(30.0, "rpm", "rad/s")
+    3.141592653589793
+    >>> convert(30.0, "1/min", "rad/s")
     3.141592653589793
     >>> convert(1.0, "1", "rad")
     Traceback (most recent call last):
@@ -90,13 +104,36 @@ def convert(values: Values, unit: str, to: str) -> Values:
     if source == target:
         return values
     try:
-        converted: Values = _registry().convert(values, source, target)
+        with np.errstate(over="ignore"):
+            converted: Values = _registry().convert(values, _turning(source, target), _turning(target, source))
     except pint.DimensionalityError:
-        raise ValueError(f'cannot convert "{unit}" to "{to}"') from None
+        raise ValueError(f"cannot convert {quoted(unit)} to {quoted(to)}{_reason(source, target)}") from None
+    except OverflowError:
+        raise ValueError(f"the ratio of {quoted(unit)} to {quoted(to)} is too large a number") from None
+    _check_finite(values, converted, unit, to)
     return converted
 
 
-@cache
+def _turning(unit: pint.Unit, other: pint.Unit) -> pint.Unit:
+    """The unit itself, but revolutions per minute where 1/min stands for an angular speed."""
+    is_speed = unit == _parse("1/min") and other.dimensionality == _parse("rad/s").dimensionality
+    return _parse("rev/min") if is_speed else unit
+
+
+def _reason(source: pint.Unit, target: pint.Unit) -> str:
+    """Why a frequency is no angular speed; nothing for other units."""
+    if [unit.dimensionality for unit in (source, target)] == [_parse(unit).dimensionality for unit in ("1/s", "rad/s")]:
+        return ": it may count revolutions or radians; write rev/s or rad/s"
+    return ""
+
+
+def _check_finite(values: Values, converted: Values, unit: str, to: str) -> None:
+    lost = np.isfinite(values) & ~np.isfinite(converted)
+    if np.any(lost):
+        worst = np.asarray(values)[lost].flat[0]
+        raise ValueError(f"{worst} {unit} is too large a number in {to}")
+
+
 def check(unit: str) -> str:
     """Standard spelling of a unit, which must be known.
 
@@ -112,9 +149,17 @@ def check(unit: str) -> str:
     >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)")
     ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad')
     """
+    standard = _spelling(_parse(unit))
+    if len(standard) > _LONGEST:
+        raise ValueError(f"unit {quoted(unit)} has more than {_LONGEST} characters in standard spelling")
+    return standard
+
+
+@lru_cache(maxsize=1024)
+def _spelling(unit: pint.Unit) -> str:
     from pint.util import to_units_container
 
-    powers = cast("dict[str, int]", to_units_container(_parse(unit)))
+    powers = cast("dict[str, int]", to_units_container(unit))
     factors = sorted(powers.items(), key=lambda factor: _without_prefix(factor[0]))
     above = [_factor(name, power) for name, power in factors if power > 0]
     below = [_factor(name, -power) for name, power in factors if power < 0]
@@ -138,32 +183,45 @@ def _registry() -> pint.UnitRegistry[Any]:
     return pint.UnitRegistry(_DEFINITIONS)
 
 
-@cache
 def _parse(unit: str) -> pint.Unit:
+    if not isinstance(unit, str):
+        raise TypeError(f"a unit is a text like N.m, not {shortened(unit)}")
+    if len(unit) > _LONGEST:
+        raise ValueError(f"unit {quoted(unit)} has {len(unit)} characters; at most {_LONGEST} are allowed")
+    return _parsed(unit)
+
+
+@lru_cache(maxsize=1024)
+def _parsed(unit: str) -> pint.Unit:
     import pint
 
-    if not isinstance(unit, str):
-        raise TypeError(f"a unit is a text like N.m, not {unit!r}")
     registry = _registry()
     try:
         parsed = registry.parse_units(_expression(unit), as_delta=False)
-        registry.convert(1.0, parsed, registry.get_base_units(parsed)[1])  # refuses degC in a product
+        scale = registry.convert(1.0, parsed, registry.get_base_units(parsed)[1])  # refuses degC in a product
     except (pint.PintError, tokenize.TokenError, ValueError, TypeError, AssertionError):
-        raise ValueError(f'unit "{unit}" is not known; write it like N.m, rad/s, deg') from None
+        raise ValueError(f"unit {quoted(unit)} is not known; write it like N.m, rad/s, deg") from None
+    except OverflowError:
+        scale = math.inf
+    if not 0.0 < scale < math.inf:
+        raise ValueError(f"unit {quoted(unit)} is too large or too small a number of SI units")
     return parsed
 
 
 def _expression(unit: str) -> str:
     """The unit as pint reads it: `N·m s/rad^2` becomes `N*m*s/rad**2`."""
-    text = "1" if unit == "-" else unit.strip().replace("**", "^").translate(_CHARACTERS)
-    text = re.sub(r"\s*([./()])\s*", r"\1", text)
-    text = re.sub(r"\s+|\.", "*", text)
+    text = unit.replace("**", "^").translate(_CHARACTERS)
+    if not text.isprintable():
+        raise ValueError("not one line of text")
+    text = re.sub(r" *([./()]) *", r"\1", text.strip())
+    text = "1" if text == "-" else re.sub(r" +|\.|(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)
+    text = _REVOLUTIONS.sub("rev", re.sub(r"\^(?=-?\d)", "", text))
     _check_grammar(text)
     return re.sub(r"([A-Za-z]+)(-?[1-9])?", _power, text)
 
 
 def _check_grammar(text: str) -> None:
-    if not re.fullmatch(r"(?:[A-Za-z]+(?:-?[1-9])?|\b1\b|[*/()])+", text):
+    if not re.fullmatch(r"(?:[A-Za-z]++(?:-?[1-9])?+|\b1\b|[*/()])++", text):  # possessive, so that it takes linear time
         raise ValueError("not a product of powers")
     groups = re.findall(r"\(([^()]*)\)", text)
     if any(re.search(r"/.*[*/]", part) for part in (*groups, re.sub(r"\([^()]*\)", "", text))):

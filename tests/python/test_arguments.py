@@ -113,6 +113,17 @@ def test_a_mapping_is_no_list() -> None:
             arguments.mapping("units", wrong, '{"time": "s"}')
 
 
+@pytest.mark.parametrize("digits", [10**5000, -(10**5000)], ids=["huge", "as negative"])
+def test_a_whole_number_of_thousands_of_digits_is_refused_by_its_name(digits: int) -> None:
+    for refuse in (lambda: arguments.number("dt", digits), lambda: arguments.whole("dt", digits, 0)):
+        with pytest.raises(ValueError, match=r"^dt = <int with too many digits> (is too large|must be \d+ or)"):
+            refuse()
+
+
+def test_a_longer_float_may_become_infinite() -> None:
+    assert arguments.numbers("inertia", np.array(["1e4000"], np.longdouble)).tolist() == [np.inf]
+
+
 def test_what_is_shown_of_a_wrong_argument_is_short() -> None:
     for refuse in (arguments.drive, lambda value: arguments.number("dt", value), lambda value: arguments.state("start", value)):
         with pytest.raises(TypeError) as told:

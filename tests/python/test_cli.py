@@ -118,6 +118,22 @@ def test_a_bad_friction_table_is_refused(tmp_path: Path, text: str, expected: tu
     refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv"], *expected)
 
 
+@pytest.mark.parametrize("hostile", ["\x1b[31mred", "\x9b31m", "\u202e", 10_000 * "x", "two\x0blines"])
+def test_what_a_file_holds_reaches_no_terminal_as_it_is(tmp_path: Path, hostile: str) -> None:
+    hostile_name = tmp_path / f"{hostile[:20]}.csv"
+    for text in (
+        f"{hostile},torque\n1,2\n",
+        f"speed [{hostile}],torque [N.m]\n1,2\n",
+        f"speed [rpm],torque [N.m]\n1,{hostile}\n",
+    ):
+        hostile_name.write_text(text)
+        result = strainwave("twin", "--gear", "hfuc-25-100", "--friction", hostile_name.name, folder=tmp_path)
+        assert result.returncode == 2
+        assert result.stderr.removesuffix("\n").isprintable()
+        assert len(result.stderr) < 700
+    refused(tmp_path, ["models", hostile], "there is no model")
+
+
 def test_a_loop_with_one_branch_is_refused(tmp_path: Path) -> None:
     (tmp_path / "loop.csv").write_text(ONE_BRANCH)
     refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--torsion", "loop.csv"], "loop.csv", "one branch only", "unload")
@@ -165,7 +181,10 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
         (["twin", "--gear", "nowhere.toml", "--friction", "table.csv"], ("nowhere.toml",)),
         (["twin", "--gear", "hfuc-25-100", "--friction", "nowhere.csv"], ("nowhere.csv",)),
         (["twin", "--gear", "hfuc-25-100"], ("at least one measurement",)),
-        (["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--unit", "spee=rpm"], ("spee", "speed, torque")),
+        (
+            ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--unit", "spee=rpm"],
+            ("spee", "speed, temperature, torque"),
+        ),
         (
             ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--column", "speed"],
             ("--column speed", "name=value"),

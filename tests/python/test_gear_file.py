@@ -255,7 +255,7 @@ REFUSED = {
         "my.toml [stiffness] cubic.a1 = -716.2 N.m/rad must lie in (0, inf)"
     ),
     with_line("a1", "a1 = { value = 1e308, unit = 'kN.m/rad', source = 'x' }"): (
-        "my.toml [stiffness] a1: value = inf N.m/rad must be finite"
+        "my.toml [stiffness] a1: 1e+308 kN.m/rad is too large a number in N.m/rad"
     ),
     # choices and counts
     WHOLE.replace('"circular_spline"', '"wave"'): (
@@ -368,6 +368,24 @@ REFUSED |= {
     )
     for value, words in ENTRY.items()
 }
+
+
+@pytest.mark.parametrize("key", [r"\u001b[31m\n", r"\u202e", 10_000 * "x"], ids=["escape", "from right to left", "long"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        'name = "a"\n"{}" = 1',
+        'name = "a"\n[stiffness]\nmodel = "{}"',
+        'name = "a"\n[ratings]\n"{}" = 1',
+        '"{0}" = 1\n"{0}" = 2',
+    ],
+)
+def test_what_a_file_holds_is_told_in_one_short_line(folder: Path, text: str, key: str) -> None:
+    Path("my.toml").write_text(text.format(key), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"^my\.toml ") as told:
+        GearSet.read("my.toml")
+    assert str(told.value).isprintable()
+    assert len(str(told.value)) < 500
 
 
 @pytest.mark.parametrize(("text", "message"), REFUSED.items(), ids=REFUSED.values())

@@ -33,6 +33,12 @@ RUN = Recording(
 untimed = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
+def check_told(error: ValueError) -> None:
+    """The message is one short line."""
+    assert str(error).isprintable()
+    assert len(str(error)) < 300
+
+
 def exactly(message: str) -> str:
     return f"^{re.escape(message)}$"
 
@@ -52,7 +58,7 @@ def recordings(draw: st.DrawFn) -> Recording:
     units = {name: draw(st.sampled_from(UNITS)) for name in names}
     if draw(st.booleans()):
         increasing = st.lists(st.floats(-1e9, 1e9), min_size=length, max_size=length, unique=True).map(sorted)
-        columns, units = {"time": np.array(draw(increasing)), **columns}, {"time": "ms", **units}
+        columns, units = {"time": np.array(draw(increasing)), **columns}, {"time": "s", **units}
     title = draw(st.one_of(st.just(""), printable))
     return Recording(columns, units, title)
 
@@ -186,6 +192,13 @@ def test_pickling_keeps_everything(recording: Recording) -> None:
             'column "time" row 2: 0.31 s does not lie after 0.32 s; time must increase',
         ),
         (
+            {"time": [0.0, 5e-324]},
+            {"time": "ms"},
+            'column "time" row 1: 5e-324 ms does not lie after 0.0 ms in seconds; time must increase',
+        ),
+        ({"time": [0.0, 1e308]}, {"time": "h"}, 'column "time" row 1: 1e+308 h is too large a number in s'),
+        ({1000 * "a": [np.nan]}, {1000 * "a": "1"}, f'column "{60 * "a"}…" row 0: nan is not finite'),
+        (
             {"time": [0, 5, 5]},
             {"time": "ms"},
             'column "time" row 2: 5.0 ms does not lie after 5.0 ms; time must increase',
@@ -209,7 +222,7 @@ def test_what_is_no_number_is_refused(values: list[object], kind: str) -> None:
         (lambda: RUN["twist"], 'no column "twist"; there are time, speed, torque'),
         (lambda: RUN.unit("twist"), 'no column "twist"; there are time, speed, torque'),
         (lambda: RUN.select(["twist"]), 'no column "twist"; there are time, speed, torque'),
-        (lambda: RUN.values("speed", "N.m"), 'cannot convert "rpm" to "N.m"'),
+        (lambda: RUN.values("speed", "N.m"), 'column "speed": cannot convert "rpm" to "N.m"'),
         (lambda: RUN.select(["torque"]).time, 'no column "time"; there are torque'),
         (lambda: Recording({"a": [1.0]}, {"a": "1"}, "two\nlines"), "title 'two\\nlines' must be one line of text"),
         (lambda: RUN.plot(["twist"]), 'no column "twist"; there are time, speed, torque'),
@@ -251,6 +264,39 @@ def test_a_file_that_cannot_be_written_is_told_by_its_own_name(tmp_path: Path) -
         RUN.to_csv(tmp_path / "none" / "run.csv")
     with pytest.raises(IsADirectoryError, match=exactly(f"{tmp_path} cannot be written: it is a folder")):
         RUN.to_csv(tmp_path)
+
+
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@untimed
+@given(st.lists(numbers, min_size=2, max_size=2), st.lists(numbers, min_size=2, max_size=2), st.sampled_from(["s", "us", "h"]))
+def test_numbers_of_any_size_are_taken_or_refused(times: list[float], values: list[float], unit: str) -> None:
+    """What is taken has a time in seconds that increases, can be shown and cut, and is converted or refused."""
+    try:
+        recording = Recording({"time": times, "speed": values}, {"time": unit, "speed": "rpm"})
+    except ValueError as error:
+        check_told(error)
+        return
+    assert recording.time[0] < recording.time[1]
+    assert recording.between(*recording.time) == recording
+    assert "2 samples" in repr(recording)
+    try:
+        degrees = recording.values("speed", "deg/s")
+    except ValueError as error:
+        check_told(error)
+        return
+    np.testing.assert_allclose(degrees / 6.0, values, rtol=1e-15, atol=1e-323)
+
+
+def test_a_plot_reaches_as_far_as_axes_do(tmp_path: Path) -> None:
+    widest = Recording({"time": [-1e300, 1e300], "speed": [1e300, -1e300]}, {"time": "s", "speed": "rpm"})
+    widest.plot().savefig(tmp_path / "widest.svg")
+    for name in ("time", "speed"):
+        wider = widest.with_column(name, [-1.0, 1e301], widest.unit(name))
+        beyond = f'column "{name}" cannot be drawn: it reaches 1e+301; at most 1e+300 can be drawn'
+        with pytest.raises(ValueError, match=exactly(beyond)):
+            wider.plot()
 
 
 # Files of our own

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import csv
 import re
+import time
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.recording import Recording
 
 from tests.python.test_recording import EMPTY, RUN, exactly, untimed
 
 # Text
+
+UNCLOSED = "a quoted cell must end with its quote, on the same line"
 
 
 @pytest.mark.parametrize(
@@ -31,6 +36,8 @@ from tests.python.test_recording import EMPTY, RUN, exactly, untimed
         "# made by a logger, 2024\n\n#\n  \ntime [s],torque [N.m]\n# begin\n0,1.5\n   \n1,-0.002\n# end\n",
         "time [ s ],torque [N m]\n0.,1.5\n1.0e0,-2.E-03\n",
         '"time [s]";"torque [N.m]"\n0;1,5\n1;-0,002\n',
+        "# comment\rtime [s],torque [N.m]\r0,1.5\r# comment\r1,-0.002\r",
+        "# comment\r\n# comment\rtime [s],torque [N.m]\n0,1.5\r\n\r\n# comment\r1,-0.002",
     ],
 )
 def test_one_table_in_many_dialects(tmp_path: Path, text: str) -> None:
@@ -71,15 +78,15 @@ def test_a_unit_may_be_given_twice_but_not_contradict(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("torque [Nm]\n1\n")
     assert Recording.from_csv(path, units={"torque": "N.m"}).unit("torque") == "N.m"
-    with pytest.raises(ValueError, match=exactly(f'{path} column "torque" is in "Nm", but units says "N.cm"')):
+    with pytest.raises(ValueError, match=exactly(f'{path} column "torque" is in "Nm", but the unit given for it is "N.cm"')):
         Recording.from_csv(path, units={"torque": "N.cm"})
 
 
 def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
-    path.write_text("n [U/min]\n60\n")
+    path.write_text("n [turns/min]\n60\n")
     with pytest.raises(
-        ValueError, match=exactly(f'{path} column "n": unit "U/min" is not known; write it like N.m, rad/s, deg')
+        ValueError, match=exactly(f'{path} column "n": unit "turns/min" is not known; write it like N.m, rad/s, deg')
     ):
         Recording.from_csv(path)
     assert Recording.from_csv(path, units={"n": "rpm"}) == Recording({"n": [60.0]}, {"n": "rpm"})
@@ -103,10 +110,11 @@ def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
         ("torque [N.m]\n1,5\n", " line 2: the number of cells is 2; the header has 1"),
         ("torque [N.m],torque [N.cm]\n1,2\n", ' has 2 columns named "torque"; names must differ'),
         ("torque [N.m],,\n1,2,3\n", " column 2 has no name; name it, or pick columns with columns={...}"),
+        ("a [1],a [1],\n1,2,3\n", " column 3 has no name; name it, or pick columns with columns={...}"),
         (
             "torque\n1\n",
             ' column "torque" has no unit; write it behind the name, as in torque [N.m], '
-            'or give it apart as units={"torque": …}',
+            'or give it with --unit torque=UNIT (in Python units={"torque": "UNIT"})',
         ),
         ("torque []\n1\n", ' column "torque": unit "" is not known; write it like N.m, rad/s, deg'),
         (
@@ -119,7 +127,21 @@ def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
         ("a [1]\n1_000\n", ' line 2, column "a": "1_000" is not a number'),
         ("a [1]\n0x10\n", ' line 2, column "a": "0x10" is not a number'),
         ("a [1]\n٣\n", ' line 2, column "a": "٣" is not a number'),
-        ('a [1],b [1]\n1,"2\n', " line 2: unexpected end of data"),
+        ('a [1],b [1]\n1,"2\n', f" line 2: {UNCLOSED}"),
+        ('a [1],b [1]\n1,"2\n#"\n3,4\n', f" line 2: {UNCLOSED}"),
+        ('a [1];b [1]\r# "\r1;2\r3;"4""\r', f" line 4: {UNCLOSED}"),
+        ('a [1],b [1]\n"1"2,3\n', f" line 2: {UNCLOSED}"),
+        ('a [1],"b\n[1]"\n1,2\n', " line 1: the header cannot be read: unexpected end of data"),
+        ('"a"b\tc\n1\t2\n', " line 1: the header cannot be read: '\\t' expected after '\"'"),
+        (131073 * "a" + "\n1\n", " line 1: the header cannot be read: field larger than field limit (131072)"),
+        (1001 * "a" + "\n1\n", f' line 1: "{60 * "a"}…" has 1001 characters; a header cell has at most 1000'),
+        ("a [1]\n" + 1_000_000 * "x" + "\n", f' line 2, column "a": "{60 * "x"}…" is not a number'),
+        ("a [1]\n\x1b[31mred\n", r' line 2, column "a": "\x1b[31mred" is not a number'),
+        (
+            "\x1b[31mred\n1\n",
+            r' column "\x1b[31mred" has no unit; write it behind the name, as in torque [N.m], '
+            r"""or give it with --unit '\x1b[31mred=UNIT' (in Python units={"\x1b[31mred": "UNIT"})""",
+        ),
         ("a\tb [1]\n", " has a header but no rows"),
     ],
 )
@@ -150,6 +172,106 @@ def test_any_cell_that_is_no_number_is_found(
         Recording.from_csv(path)
 
 
+def understood(text: str, delimiter: str) -> list[list[str]]:
+    """The rows of a table as Python's csv module reads them, a comment being skipped where a row could begin."""
+    lines = iter(re.split(r"(?<=\n)|(?<=\r)(?!\n)", text))
+    return [
+        next(csv.reader(chain([line], lines), delimiter=delimiter))
+        for line in lines
+        if not line.startswith("#") and line.strip(" \r\n")
+    ]
+
+
+def number(cell: str) -> float:
+    return float(cell.strip(" \t").replace(",", "."))
+
+
+decimals = st.floats(allow_nan=False, allow_infinity=False).map(repr) | st.integers(-99, 99).map(str)
+remarks = st.text(alphabet="ab #5\"'é.", max_size=6)
+ends = st.sampled_from(["\n", "\r\n", "\r"])
+between = st.sampled_from(["", "", "\n", "  \r\n", "# it's 5\" long\r", "#\n", "\r\r"])
+
+
+@st.composite
+def tables(draw: st.DrawFn, delimiter: str) -> str:
+    """Rows of a number, a remark and a number as programs write them, with any line ends, comments and blank lines."""
+    mark = "." if delimiter == "," else draw(st.sampled_from(".,"))
+    pieces = []
+    for _ in range(draw(st.integers(1, 6))):
+        first, last = (draw(decimals).replace(".", mark) for _ in range(2))
+        first = draw(st.sampled_from([first, f'"{first}"', f" {first} "]))
+        remark = '"' + draw(remarks).replace('"', '""') + '"'
+        pieces += [draw(between), delimiter.join([first, remark, last]), draw(ends)]
+    return "".join(pieces)
+
+
+def read_numbers(path: Path, text: str, delimiter: str) -> list[list[float]]:
+    """Both columns of numbers in a file with this text below its header."""
+    path.write_bytes(delimiter.join(["a [1]", "remark", "b [1]"]).encode() + b"\n" + text.encode())
+    recording = Recording.from_csv(path, {"a": "a", "b": "b"})
+    return [recording["a"].tolist(), recording["b"].tolist()]
+
+
+def expected_numbers(text: str, delimiter: str) -> list[list[float]]:
+    return [[number(row[column]) for row in understood(text, delimiter)] for column in (0, 2)]
+
+
+@untimed
+@given(st.data(), st.sampled_from(",;\t"))
+def test_what_programs_write_is_read_as_the_csv_module_does(tmp_path: Path, data: st.DataObject, delimiter: str) -> None:
+    text = data.draw(tables(delimiter))
+    assert read_numbers(tmp_path / "table.csv", text, delimiter) == expected_numbers(text, delimiter)
+
+
+@untimed
+@given(st.data(), st.sampled_from(",;\t"))
+def test_any_text_is_read_as_the_csv_module_does_or_refused(tmp_path: Path, data: st.DataObject, delimiter: str) -> None:
+    """Some characters of a good table are replaced by others that mean something in a table."""
+    text = data.draw(tables(delimiter))
+    for _ in range(data.draw(st.integers(1, 3))):
+        place = data.draw(st.integers(0, len(text) - 1))
+        other = data.draw(st.sampled_from(["", '"', "\n", "\r", "#", " ", delimiter, "\n#", '"\n']))
+        text = text[:place] + other + text[place + 1 :]
+    try:
+        numbers = read_numbers(tmp_path / "table.csv", text, delimiter)
+    except ValueError:
+        return
+    assert numbers == expected_numbers(text, delimiter)
+
+
+@settings(untimed, max_examples=25)
+@given(st.data())
+def test_where_a_block_of_the_reader_ends_changes_nothing(tmp_path: Path, data: st.DataObject) -> None:
+    """The rows stand across the end of the first mebibyte, in which Arrow reads."""
+    text = data.draw(tables(","))
+    header = len("a [1],remark,b [1]\n")
+    before = 2**20 - header - data.draw(st.integers(0, len(text.encode())))
+    row = f"1,{1000 * 'x'},2\n"
+    filling = row * (before // len(row) - 1)
+    filling += f"1,{(before - len(filling) - 5) * 'x'},2\n"
+    count = before // len(row)
+    first, last = expected_numbers(text, ",")
+    numbers = read_numbers(tmp_path / "table.csv", filling + text + "3,,4\n", ",")
+    assert numbers == [[*count * [1.0], *first, 3.0], [*count * [2.0], *last, 4.0]]
+
+
+def test_a_line_too_long_for_the_reader_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(f"a [1],remark\n1,x\n2,{2**22 * 'x'}\n3,x\n")
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))} line 3 has 4194306 bytes; at most 1048576 can be read$"):
+        Recording.from_csv(path, {"a": "a"})
+
+
+def test_two_million_rows_are_read_in_seconds(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_bytes(b'"speed [rpm]";"torque [N.m]"\r\n' + 2_000_000 * b'1,5;"-1,25e-3"\r\n')
+    start = time.process_time()
+    recording = Recording.from_csv(path)
+    assert time.process_time() - start < 10.0
+    assert len(recording) == 2_000_000
+    assert recording["torque"][-1] == -1.25e-3
+
+
 @pytest.mark.parametrize(
     ("columns", "units", "message"),
     [
@@ -173,6 +295,10 @@ def test_columns_and_units_that_are_not_there_are_refused(
     [
         (b"torque [N.m]\n1\n2\xb0\n", " line 3 is not UTF-8: byte 16 is 0xb0"),
         ("torque [N.m]\n1\n".encode("utf-16"), " line 1 is not UTF-8: byte 0 is 0xff"),
+        (
+            "torque [N.m]\n1\n".encode("utf-16-le"),
+            " holds a zero byte at 1, which no text does; save it as UTF-8, not as UTF-16",
+        ),
     ],
 )
 def test_bytes_that_are_not_utf8_are_refused(tmp_path: Path, data: bytes, message: str) -> None:
@@ -194,8 +320,9 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
 
 def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.xlsx"
-    with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use .csv, .txt, .tsv or .parquet')):
-        Recording.read(path)
+    for read in (Recording.read, Recording.header):
+        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use .csv, .txt, .tsv or .parquet')):
+            read(path)
 
 
 # Parquet, damaged too
@@ -230,6 +357,21 @@ def test_faulty_parquet_is_refused(tmp_path: Path, values: list[object], message
     write_parquet(path, **{"x [1]": values})
     with pytest.raises(ValueError, match=exactly(f"{path}{message}")):
         Recording.from_parquet(path)
+
+
+def test_parquet_metadata_that_is_no_text_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.parquet"
+    pq.write_table(pa.table({"x": [1.0]}, schema=pa.schema([pa.field("x", pa.float64(), metadata={"unit": b"\xff"})])), path)
+    for read in (Recording.header, Recording.read):
+        with pytest.raises(ValueError, match=f"^{re.escape(str(path))} cannot be read: 'utf-8' codec can't decode byte 0xff"):
+            read(path)
+
+
+def test_parquet_without_columns_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.parquet"
+    write_parquet(path)
+    with pytest.raises(ValueError, match=exactly(f"{path}: no column to read")):
+        Recording.read(path)
 
 
 def test_truncated_parquet_is_refused(tmp_path: Path) -> None:

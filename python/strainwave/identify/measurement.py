@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
+from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Literal
 
+from strainwave import arguments
+from strainwave.messages import as_option, listed, one_line, quoted
 from strainwave.recording import Recording
+from strainwave.tables import Label, labels
+from strainwave.units import convert
 
 Kind = Literal["friction", "torsion", "log"]
+Units = tuple[str, ...]
 
-# What each kind may hold, and the choices of columns that make it one.
-COLUMNS: dict[Kind, tuple[str, ...]] = {
-    "friction": ("speed", "torque"),
-    "torsion": ("twist", "torque", "input_angle", "input_torque"),
-    "log": ("time", "command", "position", "input_angle", "input_speed", "output_angle", "output_speed", "current"),
+# What each kind may hold, each column with the units that are wanted of it, and the choices of columns that make it one.
+COLUMNS: dict[Kind, dict[str, Units]] = {
+    "friction": {"speed": ("rad/s",), "torque": ("N.m",), "temperature": ("K",)},
+    "torsion": {"twist": ("rad",), "torque": ("N.m",), "input_angle": ("rad",), "input_torque": ("N.m",)},
+    "log": {
+        "time": ("s",),
+        "command": ("V", "rad"),
+        "position": ("rad",),
+        "input_angle": ("rad",),
+        "input_speed": ("rad/s",),
+        "output_angle": ("rad",),
+        "output_speed": ("rad/s",),
+        "current": ("A",),
+    },
 }
 NEEDED: dict[Kind, tuple[tuple[str, ...], ...]] = {
     "friction": (("speed", "torque"),),
@@ -22,12 +38,17 @@ NEEDED: dict[Kind, tuple[tuple[str, ...], ...]] = {
     "log": (("time", "command"),),
 }
 ALIASES = {"position": "input_angle"}  # of a drive log: the encoder that closes the loop sits on the motor
+SYMBOLS = {"t": "time", "omega": "speed", "tau": "torque"}  # that many files have instead of a name
+NOT_FITTED = ("temperature",)  # read, so that whoever has the recording has them too
 
 
 def read_measurement(
     kind: Kind, path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
 ) -> Recording:
     """Reads the columns that a kind of measurement knows from a CSV or Parquet file; others may hold anything.
+
+    A column of the file is found by its name; if none has exactly this name, by the name in other letters (`Time`,
+    `Input Angle`) or by its symbol (`t`, `omega`, `tau`).
 
     Args:
         kind: friction, torsion or log
@@ -39,21 +60,155 @@ def read_measurement(
         recording with the names of `COLUMNS`; `position` of a log is its `input_angle`
 
     Raises:
-        ValueError: the file lacks a column, or cannot be read; says which, and how to name it
+        ValueError: the file lacks a column, a column measures something else, or the file cannot be read; says which,
+            and how to name it
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "table.csv")
+    ...     _ = path.write_text("Speed [1/min];Moment [Nm];Room\\n10;0,1;A\\n20;0,2;A\\n")
+    ...     read_measurement("friction", path, columns={"torque": "Moment"})
+    ...     unused_columns("friction", path, columns={"torque": "Moment"})
+    <Recording: 2 samples; speed [1/min], torque [N.m]>
+    ('Room',)
     """
-    named = dict(columns or {})
-    present = Recording.header(path)
-    found = {name: named.get(name, name) for name in COLUMNS[kind] if named.get(name, name) in present}
-    if not any(set(needed) <= set(found) for needed in NEEDED[kind]):
-        wanted = " or ".join(" and ".join(needed) for needed in NEEDED[kind])
-        raise ValueError(
-            f"{path}: a {kind} measurement needs columns {wanted}; this file has {', '.join(present)}. "
-            f"Name yours like --column {COLUMNS[kind][0]}='{present[0]}'"
-        )
-    recording = Recording.read(path, found, {name: unit for name, unit in (units or {}).items() if name in found})
-    known = {name: ALIASES.get(name, name) if ALIASES.get(name) not in found else name for name in recording.names}
+    present = labels(path)
+    found = _found(kind, path, present, columns)
+    _check_needed(kind, path, present, found)
+    if extra := (units or {}).keys() - found.keys():
+        unread = f"a unit is given for {quoted(min(extra))}, which is not read"
+        raise ValueError(one_line(f"{path}: {unread}; read are {listed(found)}"))
+    recording = Recording.read(path, found, units)
+    for name, unit in recording.units.items():
+        _check_unit(kind, f"{path} column {quoted(found[name])}", name, unit)
     return Recording(
-        {known[name]: recording[name] for name in recording.names},
-        {known[name]: recording.unit(name) for name in recording.names},
+        {ALIASES.get(name, name): recording[name] for name in found},
+        {ALIASES.get(name, name): recording.unit(name) for name in found},
         title=recording.title,
     )
+
+
+def read_measurements(
+    files: Mapping[Kind, str | Path], columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+) -> dict[Kind, Recording]:
+    """Reads several measurements, each as `read_measurement` does.
+
+    Args:
+        files: the file of each kind
+        columns, units: as in `read_measurement`; each applies to every file that has the column
+
+    Raises:
+        ValueError: as `read_measurement`, or no file has a column that is named
+    """
+    named, given = dict(columns or {}), dict(units or {})
+    own_columns: dict[Kind, dict[str, str]] = {}
+    own_units: dict[Kind, dict[str, str]] = {}
+    for kind, path in files.items():
+        present = labels(path)
+        there = {text for label in present for text in (label.text, label.name)}
+        own_columns[kind] = {name: named[name] for name in named.keys() & COLUMNS[kind].keys() if named[name] in there}
+        own_units[kind] = {name: given[name] for name in given.keys() & _found(kind, path, present, own_columns[kind]).keys()}
+    for name in named.keys() - {name for own in own_columns.values() for name in own}:
+        raise ValueError(f"no file has a column {quoted(named[name])} that can be the {quoted(name)} of a measurement")
+    for name in given.keys() - {name for own in own_units.values() for name in own}:
+        raise ValueError(f"a unit is given for {quoted(name)}, but no file has this column")
+    return {kind: read_measurement(kind, path, own_columns[kind], own_units[kind]) for kind, path in files.items()}
+
+
+def unused_columns(kind: Kind, path: str | Path, columns: Mapping[str, str] | None = None) -> tuple[str, ...]:
+    """Names of the columns of a file, in its order, that no fit to this kind of measurement uses.
+
+    Args:
+        kind, path, columns: as in `read_measurement`
+
+    Raises:
+        ValueError: the file cannot be read, or has no column of a name that `columns` gives
+    """
+    present = labels(path)
+    used = {name_in_file for name, name_in_file in _found(kind, path, present, columns).items() if name not in NOT_FITTED}
+    return tuple(label.name for label in present if not used & {label.text, label.name})
+
+
+def _found(kind: Kind, path: str | Path, present: Sequence[Label], columns: Mapping[str, str] | None) -> dict[str, str]:
+    """The columns that a measurement takes from a file, each with its name there."""
+    named = dict(columns or {})
+    arguments.mapping("columns", named, '{"speed": "Motor Speed"}')
+    if extra := named.keys() - COLUMNS[kind].keys():
+        raise ValueError(f"a {kind} measurement has no column {quoted(min(extra))}; it has {listed(COLUMNS[kind])}")
+    for name, wanted in named.items():
+        if not any(wanted in (label.text, label.name) for label in present):
+            there = listed(label.name for label in present)
+            raise ValueError(one_line(f"{path} has no column {quoted(wanted)} to be the {name}; it has {there}"))
+    found = {name: named.get(name) or _alike(path, present, name) for name in COLUMNS[kind]}
+    return {
+        name: name_in_file
+        for name, name_in_file in found.items()
+        if name_in_file is not None and not found.get(ALIASES.get(name, ""))
+    }
+
+
+def _alike(path: str | Path, present: Sequence[Label], name: str) -> str | None:
+    """The name of a column in a file: exactly so, else in other letters, else its symbol; None where there is none."""
+    names = dict.fromkeys(label.name for label in present)
+    if name in names:
+        return name
+    in_other_letters = [each for each in names if _plain(each) == name]
+    symbols = [each for each in names if SYMBOLS.get(_plain(each)) == name]
+    alike = in_other_letters or symbols
+    if len(alike) > 1:
+        hint = as_option("column", name, alike[0])
+        raise ValueError(one_line(f"{path}: each of {listed(alike)} may be the {name}; say which, as with {hint}"))
+    return alike[0] if alike else None
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[\s_-]+", "_", name.casefold())
+
+
+def _check_needed(kind: Kind, path: str | Path, present: Sequence[Label], found: Mapping[str, str]) -> None:
+    missing = min(([name for name in needed if name not in found] for needed in NEEDED[kind]), key=len)
+    if missing:
+        wanted = " or ".join(" and ".join(needed) for needed in NEEDED[kind])
+        needs = f"a {kind} measurement needs columns {wanted}; this file has {listed(label.name for label in present)}"
+        free = [label for label in present if not {label.text, label.name} & set(found.values())]
+        advice = _advice(missing[0], COLUMNS[kind][missing[0]], free)
+        raise ValueError(one_line(f"{path}: {needs}. Name yours like {advice}"))
+
+
+def _advice(name: str, wanted: Units, free: Sequence[Label]) -> str:
+    """How to name the column that is missing, and its unit: one that measures what is wanted, or else is called alike."""
+    if not free:
+        return as_option("column", name, "NAME")
+    alike = [label for label in free if _stated_unit(label, wanted)] or free
+    label = max(alike, key=lambda label: SequenceMatcher(None, name, _plain(label.name)).ratio())
+    unit = _stated_unit(label, wanted)
+    option = as_option("column", name, label.name)
+    return option if unit is None or unit == label.unit else f"{option} {as_option('unit', name, unit)}"
+
+
+def _stated_unit(label: Label, wanted: Units) -> str | None:
+    """The unit that a header states, behind the name or as its last word, if it measures what is wanted."""
+    for unit in (label.unit, re.split(r"[\s_]", label.name)[-1]):
+        if unit is not None and any(_measures(unit, each) for each in wanted):
+            return unit
+    return None
+
+
+def _measures(unit: str, wanted: str) -> bool:
+    try:
+        convert(1.0, unit, wanted)
+    except ValueError:
+        return False
+    return True
+
+
+def _check_unit(kind: Kind, column: str, name: str, unit: str) -> None:
+    wanted = COLUMNS[kind][name]
+    if any(_measures(unit, each) for each in wanted):
+        return
+    remedy = f"correct its unit, or name another column with {as_option('column', name, 'NAME')}"
+    try:
+        convert(1.0, unit, wanted[0])
+    except ValueError as error:
+        reason = " or ".join((str(error), *map(quoted, wanted[1:])))
+        raise ValueError(one_line(f"{column} cannot be the {name} of a {kind} measurement: {reason}; {remedy}")) from None

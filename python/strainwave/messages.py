@@ -1,0 +1,77 @@
+"""What messages show of input: one line, short, and no characters that a terminal would obey.
+
+All messages that repeat something from a file, a command line or an argument use these functions.
+"""
+
+from __future__ import annotations
+
+import reprlib
+import shlex
+from collections.abc import Iterable
+
+_LONGEST_TEXT = 60  # characters of a text in quotes
+_LONGEST_LINE = 480  # characters of a whole message
+_MOST_NAMES = 20  # of a list
+
+
+def one_line(message: str) -> str:
+    """A message on one line: what cannot be printed is written as in Python, and a very long one loses its middle.
+
+    >>> print(one_line("no file \\x1b[31mred.csv"))
+    no file \\x1b[31mred.csv
+    """
+    line = "".join(each if each.isprintable() else _escaped(each) for each in message)
+    half = _LONGEST_LINE // 2
+    return line if len(line) <= _LONGEST_LINE else f"{line[:half]} … {line[-half:]}"
+
+
+def quoted(text: str) -> str:
+    """A text in quotes, on one line, and only its beginning where it is long.
+
+    >>> print(quoted("N.m"), quoted(1000 * "x"))
+    "N.m" "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx…"
+    """
+    return f'"{unquoted(text)}"'
+
+
+def unquoted(text: str) -> str:
+    """A text as `quoted` shows it, without the quotes: a name in a list, or a path within a model."""
+    line = one_line(text[: _LONGEST_TEXT + 1])
+    return line if len(line) <= _LONGEST_TEXT else f"{line[:_LONGEST_TEXT]}…"
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names separated by commas, the first ones where they are many.
+
+    >>> listed(["speed", "torque"])
+    'speed, torque'
+    """
+    names = list(names)
+    more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+    return ", ".join(unquoted(name) for name in names[:_MOST_NAMES]) + more
+
+
+def shortened(value: object) -> str:
+    """A value of any type as Python writes it, on one line, and only a part of it where it is long.
+
+    >>> shortened(list(range(100)))
+    '[0, 1, 2, 3, 4, 5, ...]'
+    """
+    try:
+        return one_line(reprlib.repr(value))
+    except ValueError:  # Python writes no whole number of more than some thousand digits
+        return f"<{type(value).__name__} with too many digits>"
+
+
+def as_option(option: str, name: str, value: str) -> str:
+    """How to give the name or the unit of a column, on the command line and in Python.
+
+    >>> print(as_option("column", "speed", "Motor Speed"))
+    --column 'speed=Motor Speed' (in Python columns={"speed": "Motor Speed"})
+    """
+    command = shlex.quote(f"{unquoted(name)}={unquoted(value)}")
+    return f"--{option} {command} (in Python {option}s={{{quoted(name)}: {quoted(value)}}})"
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode()
