@@ -391,10 +391,10 @@ def _write(folder: Path, name: str, ensemble: Ensemble, first: int) -> None:
 def _write_table(path: Path, table: pyarrow.Table, floats: list[str]) -> None:
     from pyarrow.parquet import write_table
 
-    with replacing(path) as temporary:
+    with replacing(path) as file:
         write_table(
             table,
-            temporary,
+            file,
             compression="zstd",
             use_dictionary=[name for name in table.column_names if name not in floats],
             column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
