@@ -82,18 +82,23 @@ def making(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def claiming(folder: Path) -> Iterator[None]:
-    """Keeps a folder for this process alone, as long as it lives, and removes drafts that killed ones left there.
+    """Keeps others who claim it out of a folder, until this process ends, however it ends.
 
     Raises:
-        BlockingIOError: another process has claimed it
+        BlockingIOError: another one has claimed it
     """
-    try:
-        with _locked(folder, fcntl.LOCK_EX | fcntl.LOCK_NB):
-            for draft in folder.rglob(f"{DRAFT}*"):
-                draft.unlink(missing_ok=True)
-            yield
-    except BlockingIOError:
-        raise BlockingIOError(f"{folder} is being written by another process; wait until it ends") from None
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(_locked(folder, fcntl.LOCK_EX | fcntl.LOCK_NB))
+        except BlockingIOError:
+            raise BlockingIOError(f"{folder} is being written by another process; wait until it ends") from None
+        yield
+
+
+def remove_drafts(folder: Path) -> None:
+    """Removes what processes that were killed left in a folder, which nobody else may be writing to."""
+    for draft in folder.glob(f"{DRAFT}*"):
+        draft.unlink(missing_ok=True)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import files
-from strainwave.files import claiming, making, replacing, write_all
+from strainwave.files import claiming, making, remove_drafts, replacing, write_all
 
 RECORDING = sw.Recording({"time": [0.0, 0.1], "torque": [1.0, 2.0]}, {"time": "s", "torque": "N.m"})
 WRITERS: dict[str, Callable[[str | Path], None]] = {
@@ -325,13 +325,17 @@ def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
         pass
 
 
-def test_a_claimed_folder_is_refused_to_others_and_rid_of_drafts_that_were_left(tmp_path: Path) -> None:
-    code = "with replacing('file') as file:\n os.kill(os.getpid(), 9)"
-    python(code, cwd=tmp_path)
-    assert len(list(tmp_path.iterdir())) == 1
+def test_a_claimed_folder_is_refused_to_others(tmp_path: Path) -> None:
     again = f"with claiming(Path({str(tmp_path)!r})): print('claimed')"
     with claiming(tmp_path):
-        assert list(tmp_path.iterdir()) == []
         said = python(again).stderr.decode().splitlines()
         assert said[-1] == f"BlockingIOError: {tmp_path} is being written by another process; wait until it ends"
     assert python(again).stdout == b"claimed\n"
+
+
+def test_drafts_that_a_killed_process_left_can_be_removed(tmp_path: Path) -> None:
+    python("with replacing('file') as file:\n os.kill(os.getpid(), 9)", cwd=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 1
+    (tmp_path / "file").write_text("mine")
+    remove_drafts(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
