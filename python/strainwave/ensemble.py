@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.ensemble_folder import EnsembleFolder, fingerprint
+from strainwave.equality import ComparedByFields
 from strainwave.files import claiming, making
 from strainwave.parameters import every, unknown
 from strainwave.recording import Recording
@@ -46,7 +47,7 @@ class EnsembleWarning(UserWarning):
 
 
 @dataclass(frozen=True, eq=False)
-class Ensemble:
+class Ensemble(ComparedByFields):
     """Runs of many members through one command.
 
     Args:
@@ -127,8 +128,8 @@ def _read(files: EnsembleFolder) -> Ensemble:
     return Ensemble(time, columns, files.units, files.parameters, dict(sorted(failures.items())))
 
 
-@dataclass(frozen=True)
-class _Plan:
+@dataclass(frozen=True, eq=False)
+class _Plan(ComparedByFields):
     """What is asked for, checked."""
 
     drive: PositionDrive

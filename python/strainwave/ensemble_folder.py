@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.equality import ComparedByFields
 from strainwave.files import remove_drafts, replacing
 from strainwave.tables import unreadable
 
@@ -41,7 +42,7 @@ class Part(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class EnsembleFolder:
+class EnsembleFolder(ComparedByFields):
     """The plan of an ensemble, and the place of its files.
 
     Args:
