@@ -163,7 +163,7 @@ def fingerprint(value: object) -> str:
     >>> fingerprint(2e-4), fingerprint(["torque", "output_angle"])
     ('0.0002', '["torque", "output_angle"]')
     >>> fingerprint([0.1] * 100)
-    'sha256 25ea0711e3ce4c4f'
+    'sha256 4f98773821eaf6dd'
     """
     text = _text(value)
     return text if len(text) <= SHORT else f"sha256 {sha256(text.encode()).hexdigest()[:16]}"

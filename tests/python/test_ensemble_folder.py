@@ -15,10 +15,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow
 import pytest
 import strainwave as sw
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from pyarrow import parquet
 from strainwave import ensemble, files
 from strainwave.ensemble import EnsembleWarning
 from strainwave.ensemble_folder import EnsembleFolder, fingerprint
@@ -108,6 +110,21 @@ def test_a_flipped_bit_changes_no_number_in_silence(name: str, place: float, bit
 @given(name=damaged, share=st.floats(0.0, 1.0, exclude_max=True))
 def test_a_file_that_was_cut_off_is_refused_by_its_name(name: str, share: float, written: Path) -> None:
     with_bytes(written / name, lambda data: data[: int(share * len(data))], lambda: refused(written, name))
+
+
+def test_values_that_are_not_those_of_the_digest_are_refused(written: Path) -> None:
+    """As a bit of the file's own description can make them: it says how pages are decoded, and has no checksum."""
+    for name, column in (("samples/part-000001.parquet", "torque"), ("plan.parquet", "load.inertia")):
+        table = parquet.read_table(written / name)
+        place = table.schema.get_field_index(column)
+        other = table.set_column(place, table.schema.field(place), [table[column].to_numpy() * (1.0 + 1e-15)])
+        rewritten = pyarrow.BufferOutputStream()
+        parquet.write_table(other, rewritten)
+        with_bytes(
+            written / name,
+            lambda _, other=rewritten: other.getvalue().to_pybytes(),  # type: ignore[misc]
+            lambda name=name: refused(written, f"{name} is damaged: its values are not those of its digest"),  # type: ignore[misc]
+        )
 
 
 def test_a_part_under_another_number_is_refused(written: Path, tmp_path: Path) -> None:
