@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from strainwave.report.twin import Provenance
 
 REFUSED = 2  # exit code for input that cannot be used
-written: list[Path] = []  # folders that hold results of this command by now
 DOUBTED = 3  # exit code for measurements that speak against themselves: no gear is written
+written: list[Path] = []  # folders that hold results of this command by now
 
 app = typer.Typer(
     help="Strain wave gears: measurements in, a validated model of that gear out.",

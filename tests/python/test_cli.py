@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from io import BytesIO, StringIO, TextIOWrapper
@@ -41,14 +41,6 @@ class Result:
     returncode: int
     stdout: str
     stderr: str
-
-
-@pytest.fixture(autouse=True)
-def interruptible() -> Iterator[None]:
-    """The command leaves interrupts ignored once it writes, as it ends soon after."""
-    before = signal.getsignal(signal.SIGINT)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 def strainwave(*arguments: object, folder: Path) -> Result:
@@ -256,13 +248,13 @@ def test_output_that_is_lost_is_told_and_does_not_turn_success_into_failure() ->
     assert (process.returncode, wrong) == (0, b"strainwave: the output cannot be printed: No space left on device\n")
 
 
-def interrupted(process: subprocess.Popen[bytes]) -> None:
+def interrupted(process: subprocess.Popen[bytes], written: str = "nothing") -> None:
     """Presses Ctrl-C once the process says that it is there: one line, and exit code 130."""
     assert process.stdout is not None
     assert process.stdout.readline() == b"here\n"
     process.send_signal(signal.SIGINT)
     _, wrong = process.communicate(timeout=60.0)
-    assert wrong == b"strainwave: interrupted; nothing written\n"
+    assert wrong.decode() == f"strainwave: interrupted; {written} written\n"
     assert process.returncode == 130
 
 
@@ -274,6 +266,26 @@ def test_an_interrupt_ends_in_one_line_with_nothing_written(phase: str, tmp_path
     arguments = ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--out", "mine"]
     interrupted(start(*arguments, cwd=tmp_path, stdout=subprocess.PIPE, env=os.environ | {"PYTHONPATH": str(tmp_path)}))
     assert not (tmp_path / "mine").exists()
+
+
+WROTE = """
+from pathlib import Path
+from strainwave import __main__, cli
+import strainwave as sw
+import time
+def run():
+    cli._write(Path("first"), sw.GearSet.read("hfuc-25-100"), "report")
+    print("here", flush=True)
+    time.sleep(30.0)
+cli.main = run
+__main__.main()
+"""
+
+
+def test_an_interrupt_says_what_was_written_before(tmp_path: Path) -> None:
+    process = subprocess.Popen([sys.executable, "-c", WROTE], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    interrupted(process, "first")
+    assert sorted(path.name for path in (tmp_path / "first").iterdir()) == ["gear.toml", "report.html"]
 
 
 RUNNING = """
@@ -309,6 +321,8 @@ def test_an_interrupt_that_comes_while_files_are_written_comes_too_late(
     monkeypatch.setattr(os, "replace", press)
     cli._write(tmp_path / "mine", MINE, "report")
     assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["gear.toml", "report.html"]
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)  # it is heeded again
 
 
 @pytest.mark.parametrize("name", ["gear.toml", "report.html"])
@@ -317,6 +331,11 @@ def test_neither_file_is_written_where_one_cannot_be(name: str, tmp_path: Path) 
     with pytest.raises(IsADirectoryError, match=rf"/mine/{name} cannot be written: it is a folder$"):
         cli._write(tmp_path / "mine", MINE, "report")
     assert [path.name for path in (tmp_path / "mine").iterdir()] == [name]
+
+
+def test_without_a_gear_the_report_is_written_alone(tmp_path: Path) -> None:
+    cli._write(tmp_path, None, "report")
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"report.html": "report"}
 
 
 def test_a_full_disk_leaves_neither_files_nor_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
