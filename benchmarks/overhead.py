@@ -105,7 +105,7 @@ def processes() -> list[Extra]:
     words = {
         "nothing": "pass",
         "import strainwave": "import strainwave",
-        "strainwave --help": "from strainwave.cli import main; main()",
+        "strainwave --help": "from strainwave.__main__ import main; main()",
     }
     with tempfile.TemporaryDirectory() as folder:
         environment = dict(os.environ, PYTHONPATH=os.pathsep.join([as_installed(folder), *sys.path]))

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import shlex
+import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from datetime import UTC, datetime
+from io import StringIO, TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
 
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
 REFUSED = 2  # exit code for input that cannot be used
 DOUBTED = 3  # exit code for measurements that speak against themselves: no gear is written
+written: list[Path] = []  # folders that hold results of this command by now
 
 app = typer.Typer(
     help="Strain wave gears: measurements in, a validated model of that gear out.",
@@ -31,6 +34,23 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help: rich alone takes longer to import than the help may take to appear
     pretty_exceptions_enable=False,
 )
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"strainwave {version('strainwave')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version and end.", callback=_show_version, is_eager=True)
+    ] = False,
+) -> None:
+    """What comes before a verb."""
 
 
 @app.command()
@@ -115,9 +135,17 @@ def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Pa
 @app.command()
 def gears(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> None:
     """List the catalogue sets."""
+    from difflib import get_close_matches
+
     from strainwave.gear_set import catalogue
 
-    print("\n".join(name for name in catalogue() if part.lower() in name))
+    names = catalogue()
+    found = [name for name in names if part.lower() in name]
+    if not found:
+        near = ", ".join(get_close_matches(part.lower(), names))
+        told = f"near it are {near}" if near else "`strainwave gears` lists all"
+        raise ValueError(f'no gear set of the catalogue has "{part}" in its name; {told}')
+    print("\n".join(found))
 
 
 @app.command()
@@ -162,19 +190,20 @@ def _provenance(files: Iterable[Path]) -> Provenance:
 
 
 def _write(folder: Path, gear_set: GearSet | None, report: str) -> None:
-    """Both files or none: each is written beside its place, then put there."""
-    from strainwave.report.page import write
+    """Both files or none, the gear only if there is one. An interrupt that comes while they are written changes nothing."""
+    from strainwave import gear_file
+    from strainwave.files import making, write_all
 
-    folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / ".gear.part.toml"
+    contents = {folder / "report.html": report}
+    if gear_set is not None:
+        contents[folder / "gear.toml"] = gear_file.text(gear_set)
+    heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        if gear_set is not None:
-            gear_set.save(draft)
-        write(report, folder / "report.html")
-        if gear_set is not None:
-            os.replace(draft, folder / "gear.toml")
+        with making(folder):
+            write_all(contents)
+        written.append(folder)
     finally:
-        draft.unlink(missing_ok=True)
+        signal.signal(signal.SIGINT, heeded)
 
 
 def _tell_doubts(found: Twin) -> None:
@@ -210,10 +239,24 @@ def _stages() -> Iterator[Callable[[str], None]]:
 
 def main() -> None:
     """Runs the command; input that cannot be used ends in one line and exit code 2, with nothing written."""
+    said = StringIO()
     try:
-        app()
-    except KeyboardInterrupt:
-        sys.exit("strainwave: interrupted; nothing written")
+        with redirect_stdout(said):
+            app()
     except (ValueError, TypeError, OSError, FloatingPointError) as error:
-        print(f"strainwave: {one_line(str(error))}", file=sys.stderr)
+        _print(f"strainwave: {one_line(str(error))}\n", sys.stderr)
         sys.exit(REFUSED)
+    finally:
+        _print(said.getvalue(), sys.stdout)
+
+
+def _print(text: str, stream: TextIO) -> None:
+    """Prints what a verb has said. It has done its work, which no terminal and no full disk behind a pipe makes a failure."""
+    if isinstance(stream, TextIOWrapper):
+        stream.reconfigure(errors="replace")  # letters that the terminal lacks
+    try:
+        print(text, end="", file=stream, flush=True)
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())  # Python tries again at the exit
+        if not isinstance(error, BrokenPipeError):  # whoever read the output has seen enough
+            _print(f"strainwave: the output cannot be printed: {error.strerror}\n", sys.stderr)

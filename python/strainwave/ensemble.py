@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
-from strainwave.files import replacing
+from strainwave.ensemble_folder import EnsembleFolder, fingerprint
+from strainwave.equality import ComparedByFields
+from strainwave.files import claiming, making
 from strainwave.parameters import every, unknown
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
@@ -33,9 +35,6 @@ from strainwave.simulation import (
     too_stiff,
 )
 
-if TYPE_CHECKING:
-    import pyarrow
-
 Array = NDArray[np.float64]
 MOST_THREADS = 2**31 - 1  # that the core can count
 OUTPUTS = [name for name, _, _ in _core.outputs]
@@ -48,7 +47,7 @@ class EnsembleWarning(UserWarning):
 
 
 @dataclass(frozen=True, eq=False)
-class Ensemble:
+class Ensemble(ComparedByFields):
     """Runs of many members through one command.
 
     Args:
@@ -87,32 +86,56 @@ class Ensemble:
 
     @staticmethod
     def read(folder: str | Path) -> Ensemble:
-        """What `simulate_to` wrote to a folder, all of it, also where it was interrupted: the members that were done."""
-        import pyarrow.parquet as parquet
+        """What `simulate_to` wrote to a folder, every value checked against the digest that was written with it.
 
-        written = Path(folder, "members").glob("part-*.parquet")  # after their samples
-        parts = sorted(written, key=lambda part: (len(part.name), part.name))  # of a million and more parts, too
-        if not parts:
-            raise ValueError(f"{folder} holds no ensemble: there is no members/part-*.parquet")
-        tables = [parquet.read_table(Path(folder, "samples", part.name)) for part in parts]
-        schema = tables[0].schema
-        names = [name for name in schema.names if name not in ("member", "time")]
-        count = sum(int(table["member"][-1].as_py()) - int(table["member"][0].as_py()) + 1 for table in tables)
-        columns = {name: np.concatenate([table[name].to_numpy() for table in tables]).reshape(count, -1) for name in names}
-        time = tables[0]["time"].to_numpy()[: next(iter(columns.values())).shape[1]]
-        units = {name: schema.field(name).metadata[b"unit"].decode() for name in names}
-        members = [parquet.read_table(part).to_pydict() for part in parts]
-        paths = [name for name in members[0] if name not in ("member", "failure")]
-        parameters = {path: np.array([x for table in members for x in table[path]]) for path in paths}
-        numbered = [pair for table in members for pair in zip(table["member"], table["failure"], strict=True)]
-        return Ensemble(time, columns, units, parameters, {number: reason for number, reason in numbered if reason})
+        Raises:
+            ValueError: the folder holds no ensemble, one that was not finished, or files that are damaged; says which
+        """
+        files = EnsembleFolder.open(Path(folder))
+        missing = [part for part in files.parts() if not files.has(part)]
+        if missing:
+            done = files.members - sum(part.last - part.first for part in missing)
+            raise ValueError(
+                f"{folder} holds {done} of {files.members} members, without {missing[0].name}: call simulate_to again as "
+                "before, which runs the others, or Ensemble.read_partial, which reads what is there"
+            )
+        return _read(files)
+
+    @staticmethod
+    def read_partial(folder: str | Path) -> Ensemble:
+        """What is there of an ensemble that was not finished: each member keeps its number, and those that are missing fail.
+
+        Raises:
+            ValueError: as `read`, or no member is there
+        """
+        return _read(EnsembleFolder.open(Path(folder)))
 
 
-@dataclass(frozen=True)
-class _Plan:
+def _read(files: EnsembleFolder) -> Ensemble:
+    """All members, those of parts that are not there among the failures."""
+    there = [part for part in files.parts() if files.has(part)]
+    if not there:
+        raise ValueError(f"{files.path} holds none of {files.members} members; call simulate_to again as before to run them")
+    failures = dict.fromkeys(range(files.members), "it was not run, or its file is missing")
+    columns: dict[str, Array] = {}
+    for part in there:
+        time, series = files.samples(part)
+        for name, values in series.items():
+            columns.setdefault(name, np.full((files.members, len(time)), np.nan))[part.first : part.last] = values
+        for member in part.members.tolist():
+            del failures[member]
+        failures |= files.failures(part)
+    return Ensemble(time, columns, files.units, files.parameters, dict(sorted(failures.items())))
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan(ComparedByFields):
     """What is asked for, checked."""
 
     drive: PositionDrive
+    excitation: Excitation
+    dt: float
+    sample: float
     numbers: list[int]
     parameters: dict[str, Array]
     course: Course
@@ -136,8 +159,9 @@ class _Plan:
         recorded = _outputs(record)
         threads = available_threads() if threads is None else arguments.whole("threads", threads, 1, MOST_THREADS)
         dt = arguments.seconds("dt", dt)
-        course = excitation.course(dt, dt if sample is None else arguments.seconds("sample", sample))
-        return cls(drive, numbers, values, course, excitation.over(course), recorded, threads)
+        sample = dt if sample is None else arguments.seconds("sample", sample)
+        course = excitation.course(dt, sample)
+        return cls(drive, excitation, dt, sample, numbers, values, course, excitation.over(course), recorded, threads)
 
     @property
     def members(self) -> int:
@@ -150,6 +174,12 @@ class _Plan:
     @property
     def steps(self) -> int:
         return len(self.course.instants) - 1
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of the outputs that are recorded."""
+        units = output_units(self.drive)
+        return {name: units[name] for name in self.recorded}
 
     def run(self, first: int, last: int, shown: object) -> Ensemble:
         """Members `first` up to `last`, not included."""
@@ -173,11 +203,10 @@ class _Plan:
         failures = self.failures(outputs, sound, twists, fastest, refusals)
         _tell_of_bristles(self.course.longest, on_bristles)
         outputs[:, list(failures), :] = np.nan
-        units = output_units(self.drive)
         return Ensemble(
             self.time,
             dict(zip(self.recorded, outputs, strict=True)),
-            {name: units[name] for name in self.recorded},
+            self.units,
             {path: column[first:last] for path, column in self.parameters.items()},
             failures,
         )
@@ -277,18 +306,22 @@ def simulate_to(
 
     Parquet files, for everything that reads a folder of them (pandas, polars, DuckDB; `Ensemble.read`). Those in samples/ have
     columns member, time [s] and the outputs, one row a sample; those in members/ have columns member, the parameters, and
-    failure, empty where there was none. A part holds some thousand members and appears whole or not at all, so that a run that
-    is interrupted or killed leaves all parts readable that were done.
+    failure, empty where there was none. A part holds some thousand members and appears whole or not at all. plan.parquet, which
+    is written first, says what was asked for. So a run that was interrupted or killed, or whose disk was full, goes on where it
+    ended when it is asked for again: what is there is kept, the others are run, and all are the same bits as of one run on
+    this machine.
 
     Args:
-        folder: where to write; must be empty, or not exist
+        folder: where to write; must not exist, be empty, or hold the beginning of the same ensemble
         drive, command, parameters, dt, record, sample, load_torque, temperature, threads, progress: as for `simulate_many`
 
     Returns:
         the folder
 
     Raises:
-        FileExistsError: the folder is not empty
+        FileExistsError: the folder holds something else, or another ensemble; says what differs
+        BlockingIOError: another process is writing to the folder
+        OSError: a file cannot be written; says which, and why
         TypeError, ValueError: as `simulate_many`
 
     Warns:
@@ -303,20 +336,40 @@ def simulate_to(
     (2, 11)
     """
     plan = _Plan.of(drive, Excitation(command, load_torque, temperature), parameters, dt, sample, record, threads)
-    folder = Path(folder)
-    if folder.exists() and any(folder.iterdir()):
-        raise FileExistsError(f"{folder} is not empty; take another folder, or move what is there")
-    for name in ("samples", "members"):
-        (folder / name).mkdir(parents=True)
-    failures: dict[int, str] = {}
-    with progressing(progress, plan.members * plan.steps) as shown:
-        for part, (first, last) in enumerate(_parts(plan)):
-            report = None if shown is None else lambda done, begun=first: shown(begun * plan.steps + done)
-            ensemble = plan.run(first, last, report)
-            failures |= {first + member: reason for member, reason in ensemble.failures.items()}
-            _write(folder, f"part-{part:06d}.parquet", ensemble, first)
+    folder, failures = Path(folder), dict[int, str]()
+    with making(folder), claiming(folder), progressing(progress, plan.members * plan.steps) as shown:
+        files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, _part_size(plan)).begin()
+        for part in files.parts():
+            if not files.has(part):
+                report = None if shown is None else lambda done, begun=part.first: shown(begun * plan.steps + done)
+                ensemble = plan.run(part.first, part.last, report)
+                told = {part.first + member: reason for member, reason in ensemble.failures.items()}
+                files.write(part, ensemble.time, ensemble.columns, told)
+            failures |= files.failures(part)
     _tell(failures, plan.members)
     return folder
+
+
+def _asked(plan: _Plan) -> dict[str, str]:
+    """All that an ensemble depends on, by the names of the arguments."""
+    excitation = plan.excitation
+    asked = {
+        "drive": plan.drive,
+        "command": excitation.command,
+        "load_torque": _scenario(excitation.load_torque),
+        "temperature": _scenario(excitation.temperature),
+        "members": plan.members,
+        "parameters": plan.parameters,
+        "dt": plan.dt,
+        "sample": plan.sample,
+        "record": plan.recorded,
+        "version": version("strainwave"),
+    }
+    return {name: fingerprint(value) for name, value in asked.items()}
+
+
+def _scenario(signal: Scenario | float) -> Scenario | float:
+    return signal if isinstance(signal, Scenario) else float(signal)
 
 
 def available_threads() -> int:
@@ -362,44 +415,11 @@ def _limits(low: float, high: float) -> str:
     return lowest + (", inf)" if high == np.inf else f", {high:g}]")
 
 
-def _parts(plan: _Plan) -> Iterator[tuple[int, int]]:
-    """Members from and to, by parts that fit into memory."""
+def _part_size(plan: _Plan) -> int:
+    """Members of a part, whose outputs fit into memory: whole packs for every thread."""
     size = PART // (8 * len(plan.recorded) * len(plan.time))
     pack = _core.lanes * plan.threads
-    size = max(pack, size - size % pack)
-    for first in range(0, plan.members, size):
-        yield first, min(first + size, plan.members)
-
-
-def _write(folder: Path, name: str, ensemble: Ensemble, first: int) -> None:
-    """One part: its members last, so that whoever sees them finds their samples."""
-    import pyarrow
-
-    members, samples = len(ensemble), len(ensemble.time)
-    numbers = np.arange(first, first + members)
-    table = {"member": np.repeat(numbers, samples), "time": np.tile(ensemble.time, members)}
-    fields = [pyarrow.field("member", pyarrow.int64()), pyarrow.field("time", pyarrow.float64(), metadata={"unit": "s"})]
-    for column, values in ensemble.columns.items():
-        table[column] = values.reshape(-1)
-        fields.append(pyarrow.field(column, pyarrow.float64(), metadata={"unit": ensemble.units[column]}))
-    _write_table(folder / "samples" / name, pyarrow.table(table, schema=pyarrow.schema(fields)), list(ensemble.columns))
-    failures = pyarrow.array([ensemble.failures.get(member) for member in range(members)], pyarrow.string())
-    told = {"member": numbers} | dict(ensemble.parameters) | {"failure": failures}
-    _write_table(folder / "members" / name, pyarrow.table(told), list(ensemble.parameters))
-
-
-def _write_table(path: Path, table: pyarrow.Table, floats: list[str]) -> None:
-    from pyarrow.parquet import write_table
-
-    with replacing(path) as temporary:
-        write_table(
-            table,
-            temporary,
-            compression="zstd",
-            use_dictionary=[name for name in table.column_names if name not in floats],
-            column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
-            write_page_checksum=True,
-        )
+    return max(pack, size - size % pack)
 
 
 def _tell_of_bristles(dt: float, vibrations: Array) -> None:

@@ -1,33 +1,223 @@
-"""Files that are whole or not there at all."""
+"""Files that are whole or not there at all. docs/files.md says what is promised of them."""
 
 from __future__ import annotations
 
+import fcntl
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+import stat
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 from uuid import uuid4
+
+DRAFT = ".strainwave-"  # how the names of files begin that are still being written
 
 
 @contextmanager
-def replacing(path: str | Path) -> Iterator[Path]:
-    """A temporary file beside `path` that takes its place once it is complete; nothing is lost when writing fails.
+def replacing(path: str | Path) -> Iterator[BinaryIO]:
+    """A file to write, which takes the place of `path` once it is complete; nothing is lost when writing fails.
+
+    A link is followed. A device or a FIFO is written to as it is.
+
+    Raises:
+        OSError: the file cannot be written; says which, and why
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with replacing(Path(folder, "note.txt")) as draft:
-    ...         _ = draft.write_text("done")
+    ...     with replacing(Path(folder, "note.txt")) as file:
+    ...         _ = file.write(b"done")
     ...     Path(folder, "note.txt").read_text()
     'done'
     """
-    target = Path(path)
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"{target} cannot be written: there is no folder {target.parent}")
-    if target.is_dir():
-        raise IsADirectoryError(f"{target} cannot be written: it is a folder")
-    temporary = target.with_name(f".{target.name}.{uuid4().hex}")
+    with _named(path), _draft(Path(path)) as draft:
+        yield draft.file
+        draft.complete()
+        draft.put()
+
+
+def write_all(contents: Mapping[Path, str]) -> None:
+    """Writes texts to files, all or none: every one is complete beside its place before the first is put there.
+
+    Who else writes to the same folders in this way waits, so that the files of two writers are not mixed.
+
+    Raises:
+        OSError: a file cannot be written; says which, and why
+    """
+    with ExitStack() as stack:
+        drafts = {}
+        for path, content in contents.items():
+            with _named(path):
+                drafts[path] = stack.enter_context(_draft(path))
+                drafts[path].file.write(content.encode())
+                drafts[path].complete()
+        for folder in sorted({path.parent.resolve() for path in contents}):
+            stack.enter_context(_locked(folder, fcntl.LOCK_EX))
+        for path, draft in drafts.items():
+            with _named(path):
+                draft.put()
+
+
+@contextmanager
+def making(folder: Path) -> Iterator[None]:
+    """Makes a folder and those above it; those that it made are taken away again where what follows fails.
+
+    Raises:
+        OSError: the folder cannot be made; says why
+    """
+    new = [each for each in (folder, *folder.parents) if not os.path.lexists(each)]
     try:
-        yield temporary
-        os.replace(temporary, target)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise _said(f"{folder} cannot be made", error) from None
+        yield
+    except BaseException:
+        for each in new:
+            with suppress(OSError):  # somebody else has put something there
+                each.rmdir()
+        raise
+
+
+@contextmanager
+def claiming(folder: Path) -> Iterator[None]:
+    """Keeps others who claim it out of a folder, until this process ends, however it ends.
+
+    Raises:
+        BlockingIOError: another one has claimed it
+    """
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(_locked(folder, fcntl.LOCK_EX | fcntl.LOCK_NB))
+        except BlockingIOError:
+            raise BlockingIOError(f"{folder} is being written by another process; wait until it ends") from None
+        yield
+
+
+def remove_drafts(folder: Path) -> None:
+    """Removes what processes that were killed left in a folder, which nobody else may be writing to."""
+    for draft in folder.glob(f"{DRAFT}*"):
+        draft.unlink(missing_ok=True)
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """A file that is written beside its place."""
+
+    file: BinaryIO
+    target: Path
+
+    def complete(self) -> None:
+        """All of it is on the disk."""
+        self.file.flush()
+        os.fsync(self.file.fileno())
+        self.file.close()
+
+    def put(self) -> None:
+        os.replace(self.file.name, self.target)
+        with suppress(OSError), _opened(self.target.parent) as descriptor:  # not every file system can
+            os.fsync(descriptor)
+
+
+@dataclass(frozen=True)
+class _Through:
+    """What takes bytes as they come."""
+
+    file: BinaryIO
+
+    def complete(self) -> None:
+        self.file.close()
+
+    def put(self) -> None:
+        """It has been put there already."""
+
+
+@contextmanager
+def _draft(path: Path) -> Iterator[_Beside | _Through]:
+    target = Path(os.path.realpath(path))
+    try:
+        found = os.stat(path)
+    except FileNotFoundError:
+        found = None
+        if not target.parent.is_dir():
+            raise FileNotFoundError(f"there is no folder {target.parent if path.is_symlink() else path.parent}") from None
+    if found is not None and (stream := _stream(path, found)) is not None:
+        with stream:
+            yield _Through(stream)
+        return
+    if found is not None and not os.access(target, os.W_OK):
+        raise PermissionError("it is read-only")
+    with _open_beside(target) as file:
+        try:
+            if found is not None:
+                _adopt(file, found)
+            yield _Beside(file, target)
+        finally:
+            Path(file.name).unlink(missing_ok=True)
+
+
+def _stream(path: Path, found: os.stat_result) -> BinaryIO | None:
+    """What stands at a path, to be written to as it is; nothing if it is a regular file."""
+    for descriptor in (1, 2):  # a shell's redirection must not be replaced under its hands
+        with suppress(OSError):  # closed
+            if os.path.samestat(found, os.fstat(descriptor)):
+                return os.fdopen(os.dup(descriptor), "wb")
+    if stat.S_ISDIR(found.st_mode):
+        raise IsADirectoryError("it is a folder")
+    if stat.S_ISCHR(found.st_mode) or stat.S_ISFIFO(found.st_mode):
+        return path.open("wb")
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError("it is no regular file, no character device and no FIFO")
+    return None
+
+
+def _open_beside(target: Path) -> BinaryIO:
+    try:
+        return target.with_name(f"{DRAFT}{uuid4().hex}").open("xb")
+    except PermissionError:
+        raise PermissionError(f"no file can be made in {target.parent}, as permission is denied") from None
+
+
+def _adopt(file: BinaryIO, old: os.stat_result) -> None:
+    """Gives a file the owner, as far as this process may, and the mode of the one whose place it takes."""
+    with suppress(PermissionError):
+        os.fchown(file.fileno(), old.st_uid, old.st_gid)
+    os.fchmod(file.fileno(), stat.S_IMODE(old.st_mode))
+
+
+@contextmanager
+def _opened(folder: Path) -> Iterator[int]:
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        yield descriptor
     finally:
-        temporary.unlink(missing_ok=True)
+        os.close(descriptor)
+
+
+@contextmanager
+def _locked(folder: Path, how: int) -> Iterator[None]:
+    """Holds the lock of a folder, where its file system has locks. It ends with the process, however that ends."""
+    with _opened(folder) as descriptor:
+        try:
+            fcntl.flock(descriptor, how)
+        except BlockingIOError:
+            raise
+        except OSError:
+            pass
+        yield
+
+
+@contextmanager
+def _named(path: str | Path) -> Iterator[None]:
+    """Says of what goes wrong which file was to be written."""
+    try:
+        yield
+    except OSError as error:
+        raise _said(f"{path} cannot be written", error) from None
+
+
+def _said(what: str, error: OSError) -> OSError:
+    said = type(error)(f"{what}: {error.strerror or error}")
+    said.errno = error.errno  # for whoever asks for it: the message stays as it is
+    return said

@@ -43,9 +43,9 @@ def write(gear_set: GearSet, path: Path) -> None:
     """Writes a file that `read` reads back equal, bit for bit; `ValueError` where its name does not end in .toml."""
     if path.suffix != ".toml":
         raise ValueError(one_line(f"{path}: a gear file ends in .toml"))
-    text = _text(gear_set)
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="\n")
+    content = text(gear_set)
+    with replacing(path) as file:
+        file.write(content.encode())
 
 
 def left_out(gear_set: GearSet) -> frozenset[str]:
@@ -331,13 +331,14 @@ def _explained(fault: ErrorDetails, form: _Form) -> str:
 # Writing
 
 
-def _text(gear_set: GearSet) -> str:
+def text(gear_set: GearSet) -> str:
+    """What stands in the file of a set."""
     import tomlkit
 
     document = tomlkit.document()
     for key in _TEXTS:
-        if text := getattr(gear_set, key):
-            document.add(key, text)
+        if given := getattr(gear_set, key):
+            document.add(key, given)
     for table, model in _filled(gear_set):
         if not _is_left_out(table, model, gear_set.sources):
             document.add(table.name, _written(table, model, gear_set.sources))

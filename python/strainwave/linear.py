@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.simulation import ROOM_TEMPERATURE, output_units
 from strainwave.steady import N_MOTION, PLACE, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
 
@@ -27,7 +28,7 @@ INPUTS = ("command", "command_rate", "load_torque", "temperature")
 
 
 @dataclass(frozen=True, eq=False)
-class LinearView:
+class LinearView(ComparedByFields):
     """A drive seen from close by: A, B, C, D of its small deviations from a state, for n states, 4 inputs and m outputs.
 
     Unpacks to the four matrices, as ``control.StateSpace(*linear)`` of python-control wants them. `command_rate` is the rate

@@ -163,7 +163,7 @@ class Recording:
         from strainwave.tables import TITLE
 
         table = pyarrow.table({f"{name} [{unit}]": self[name] for name, unit in self.units.items()})
-        with replacing(path) as temporary, temporary.open("wb") as file:
+        with replacing(path) as file:
             if self.title:
                 file.write(f"{TITLE}{self.title}\n".encode())
             write_csv(table, file)
@@ -176,10 +176,10 @@ class Recording:
         fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": self.units[name]}) for name in self.names]
         schema = pyarrow.schema(fields, metadata={"title": self.title})
         table = pyarrow.table(dict(self.columns), schema=schema)
-        with replacing(path) as temporary:
+        with replacing(path) as file:
             write_table(
                 table,
-                temporary,
+                file,
                 compression="zstd",
                 use_dictionary=False,
                 use_byte_stream_split=True,

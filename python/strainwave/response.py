@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.scenario import Scenario, constant, sine
 from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, check_resolution, recording, warn_of_bristles
 from strainwave.steady import averaged, constant_inputs, equilibrium
@@ -24,7 +25,7 @@ _SINES = ("command", "load_torque")
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse:
+class FrequencyResponse(ComparedByFields):
     """How a drive answers a sine of some amplitude, once it has become periodic.
 
     ``answer["output_angle"]`` is the response of that output: amplitude and phase of its first harmonic over those of the

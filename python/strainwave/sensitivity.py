@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.parameters import parameters as chosen
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
@@ -19,8 +20,8 @@ from strainwave.simulation import ROOM_TEMPERATURE, differentiate, warn_of_brist
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Derivatives:
+@dataclass(frozen=True, eq=False)
+class Derivatives(ComparedByFields):
     """A run, and what a small change of each of some parameters does to it.
 
     Attributes:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
 
@@ -29,8 +30,8 @@ MOST_INSTANTS = 1e9  # what memory could hold
 CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
 
 
-@dataclass(frozen=True)
-class Course:
+@dataclass(frozen=True, eq=False)
+class Course(ComparedByFields):
     """A stretch of time cut into steps: where they end, which ends are samples of the recording, and the longest step [s]."""
 
     instants: Array

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import _core, arguments, kinematic_error
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.simulation import ROOM_TEMPERATURE, check_temperature
 
 Array = NDArray[np.float64]
@@ -112,8 +113,8 @@ for _place in ("friction_input", "friction_mesh", "friction_output"):
     _FRICTION[PLACE[_place]] = 1.0
 
 
-@dataclass(frozen=True)
-class Flow:
+@dataclass(frozen=True, eq=False)
+class Flow(ComparedByFields):
     """Rates of the motion, their derivatives, and the size of the terms that each rate is the sum of, to first order."""
 
     rate: Array
@@ -162,8 +163,8 @@ def _resting(drive: PositionDrive, start: _core.State, inputs: Array) -> _core.S
     return stopped if Flow.of(drive, stopped, inputs).vanishes(slow.rows, 1e-9) else None  # a way without end is none
 
 
-@dataclass(frozen=True)
-class _Slow:
+@dataclass(frozen=True, eq=False)
+class _Slow(ComparedByFields):
     """Slow motions from `start`, sides that stick left where they are."""
 
     drive: PositionDrive
@@ -242,8 +243,8 @@ def _unsteady(inputs: Array, why: str) -> str:
     return f"the drive cannot rest at command = {inputs[0]:g} V, load_torque = {inputs[2]:g} N.m, nor run steadily: {why}"
 
 
-@dataclass(frozen=True)
-class _Steady:
+@dataclass(frozen=True, eq=False)
+class _Steady(ComparedByFields):
     """Running at constant speed, from the angles of `start`."""
 
     drive: PositionDrive

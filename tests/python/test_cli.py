@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import signal
 import subprocess
 import sys
+import tomllib
 from collections.abc import Sequence
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
-from io import StringIO
+from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave import _core
+from strainwave import _core, cli, gear_set
 from strainwave.cli import main
 
 GOOD_TABLE = "speed [rad/s],torque [N.m]\n1,0.021\n5,0.024\n10,0.026\n20,0.031\n50,0.046\n100,0.07\n"
@@ -208,12 +213,158 @@ def test_gears_lists_the_catalogue(tmp_path: Path) -> None:
     assert "hfuc-25-100" in result.stdout.split()
 
 
+def test_gears_that_the_catalogue_does_not_have_are_refused_with_those_near(tmp_path: Path) -> None:
+    refused(tmp_path, ["gears", "hfuc-25-101"], 'no gear set of the catalogue has "hfuc-25-101" in its name', "hfuc-25-100")
+    refused(tmp_path, ["gears", "nonsense"], '"nonsense"', "`strainwave gears` lists all")
+
+
+def test_the_version_is_that_of_the_package(tmp_path: Path) -> None:
+    version = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]["version"]
+    result = strainwave("--version", folder=tmp_path)
+    assert (result.returncode, result.stdout, result.stderr) == (0, f"strainwave {version}\n", "")
+
+
+def test_a_terminal_that_lacks_letters_is_no_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gear_set, "catalogue", lambda: ("größe-100",))
+    monkeypatch.setattr(sys, "argv", ["strainwave", "gears"])
+    terminal = TextIOWrapper(BytesIO(), encoding="ascii")
+    with redirect_stdout(terminal), pytest.raises(SystemExit) as end:
+        main()
+    assert (end.value.code or 0, terminal.buffer.getvalue()) == (0, b"gr??e-100\n")  # type: ignore[attr-defined]
+
+
+# As a process
+
+
+def start(*arguments: object, **others: Any) -> subprocess.Popen[bytes]:
+    return subprocess.Popen([sys.executable, "-m", "strainwave", *map(str, arguments)], stderr=subprocess.PIPE, **others)
+
+
 def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: Path) -> None:
     command = Path(sys.executable).with_name("strainwave")
     arguments = [command, "twin", "--gear", "nowhere.toml"]
     result = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert (result.returncode, result.stdout) == (2, "")
     assert "nowhere.toml" in result.stderr
+
+
+@pytest.mark.parametrize("verb", [("gears",), ("models",), ("--help",)])
+def test_a_reader_that_has_seen_enough_is_no_failure(verb: tuple[str, ...]) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "wb") as pipe:
+        process = start(*verb, stdout=pipe)
+    _, wrong = process.communicate(timeout=60)
+    assert (process.returncode, wrong) == (0, b"")
+
+
+def test_output_that_is_lost_is_told_and_does_not_turn_success_into_failure() -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("this system has no /dev/full")
+    with open("/dev/full", "wb") as full:
+        process = start("gears", stdout=full)
+    _, wrong = process.communicate(timeout=60)
+    assert (process.returncode, wrong) == (0, b"strainwave: the output cannot be printed: No space left on device\n")
+
+
+def interrupted(process: subprocess.Popen[bytes], written: str = "nothing") -> None:
+    """Presses Ctrl-C once the process says that it is there: one line, and exit code 130."""
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"here\n"
+    process.send_signal(signal.SIGINT)
+    _, wrong = process.communicate(timeout=60.0)
+    assert wrong.decode() == f"strainwave: interrupted; {written} written\n"
+    assert process.returncode == 130
+
+
+@pytest.mark.parametrize("phase", ["typer", "pydantic", "pyarrow", "scipy", "jinja2"])
+def test_an_interrupt_ends_in_one_line_with_nothing_written(phase: str, tmp_path: Path) -> None:
+    """In each phase a package is imported: for the command itself, to read gear and table, to fit, to report."""
+    (tmp_path / "table.csv").write_text(GOOD_TABLE)
+    (tmp_path / f"{phase}.py").write_text("import os, time\nos.write(1, b'here\\n')\ntime.sleep(30.0)")
+    arguments = ["twin", "--gear", "hfuc-25-100", "--friction", "table.csv", "--out", "mine"]
+    interrupted(start(*arguments, cwd=tmp_path, stdout=subprocess.PIPE, env=os.environ | {"PYTHONPATH": str(tmp_path)}))
+    assert not (tmp_path / "mine").exists()
+
+
+WROTE = """
+from pathlib import Path
+from strainwave import __main__, cli
+import strainwave as sw
+import time
+def run():
+    cli._write(Path("first"), sw.GearSet.read("hfuc-25-100"), "report")
+    print("here", flush=True)
+    time.sleep(30.0)
+cli.main = run
+__main__.main()
+"""
+
+
+def test_an_interrupt_says_what_was_written_before(tmp_path: Path) -> None:
+    process = subprocess.Popen([sys.executable, "-c", WROTE], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    interrupted(process, "first")
+    assert sorted(path.name for path in (tmp_path / "first").iterdir()) == ["gear.toml", "report.html"]
+
+
+RUNNING = """
+from strainwave import __main__, cli
+import strainwave as sw
+def run():
+    print("here", flush=True)
+    inertia = {"load.inertia": [0.01] * 100_000}
+    sw.simulate_many(sw.drives.PositionDrive(), sw.scenario.constant(1.0, 10.0), inertia, record=["torque"], sample=10.0)
+cli.main = run
+__main__.main()
+"""
+
+
+def test_an_interrupt_ends_what_runs_in_the_core_too() -> None:
+    interrupted(subprocess.Popen([sys.executable, "-c", RUNNING], stdout=subprocess.PIPE, stderr=subprocess.PIPE))
+
+
+# Writing
+
+MINE = sw.GearSet.of(sw.Gear(), name="mine", source="assumed: example")
+
+
+def test_an_interrupt_that_comes_while_files_are_written_comes_too_late(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replace = os.replace
+
+    def press(*arguments: Any) -> None:
+        replace(*arguments)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(os, "replace", press)
+    cli._write(tmp_path / "mine", MINE, "report")
+    assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["gear.toml", "report.html"]
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)  # it is heeded again
+
+
+@pytest.mark.parametrize("name", ["gear.toml", "report.html"])
+def test_neither_file_is_written_where_one_cannot_be(name: str, tmp_path: Path) -> None:
+    (tmp_path / "mine" / name).mkdir(parents=True)
+    with pytest.raises(IsADirectoryError, match=rf"/mine/{name} cannot be written: it is a folder$"):
+        cli._write(tmp_path / "mine", MINE, "report")
+    assert [path.name for path in (tmp_path / "mine").iterdir()] == [name]
+
+
+def test_without_a_gear_the_report_is_written_alone(tmp_path: Path) -> None:
+    cli._write(tmp_path, None, "report")
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"report.html": "report"}
+
+
+def test_a_full_disk_leaves_neither_files_nor_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match=r"/mine/new/report\.html cannot be written: No space left on device$"):
+        cli._write(tmp_path / "mine" / "new", MINE, "report")
+    assert list(tmp_path.iterdir()) == []
 
 
 # Models

@@ -8,6 +8,7 @@ import pickle
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 import hypothesis.extra.numpy as hnp
 import numpy as np
@@ -343,9 +344,8 @@ def test_parquet_is_compressed_split_and_labelled(tmp_path: Path) -> None:
 def test_a_write_that_fails_leaves_the_old_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str, writer: str
 ) -> None:
-    def fail(_: pa.Table, file: object, **__: object) -> None:
-        if isinstance(file, Path):
-            file.write_text("half")
+    def fail(_: pa.Table, file: BinaryIO, **__: object) -> None:
+        file.write(b"half")
         raise OSError("disk full")
 
     path = tmp_path / "run"

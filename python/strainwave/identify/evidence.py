@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.equality import ComparedByFields
 from strainwave.identify.fit import Estimate, Fit
 from strainwave.identify.influence import Influence
 from strainwave.identify.measurement import Kind
@@ -32,7 +33,7 @@ class Doubt:
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class Evidence(ComparedByFields):
     """One measurement and what became of it.
 
     Attributes:

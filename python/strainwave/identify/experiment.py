@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments, loads, scenario
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.identify.branches import monotone, slid, thinned, turning_points
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
@@ -67,8 +68,8 @@ class Experiment(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class FrictionTable:
+@dataclass(frozen=True, eq=False)
+class FrictionTable(ComparedByFields):
     """Steady friction torque at the input, measured at constant speeds.
 
     Args:
@@ -120,8 +121,8 @@ class FrictionTable:
         return torque[np.newaxis], slopes[:, np.newaxis]
 
 
-@dataclass(frozen=True)
-class TorsionLoop:
+@dataclass(frozen=True, eq=False)
+class TorsionLoop(ComparedByFields):
     """Torque over twist along a path, slow enough that only spring, hysteresis and friction at rest speak.
 
     Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement. A linear spring cannot
@@ -257,8 +258,8 @@ def at_input(recording: Recording) -> bool:
     return not {"twist", "torque"} <= set(recording.names)
 
 
-@dataclass(frozen=True)
-class DriveLog:
+@dataclass(frozen=True, eq=False)
+class DriveLog(ComparedByFields):
     """What a drive did under a known command, starting at rest.
 
     Where the encoders have their zeros is not known, so these are unknowns of the measurement; a commanded angle counts from

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
 from strainwave.parameters import Parameter, parameters
 from strainwave.recording import Recording
@@ -24,8 +25,8 @@ TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton ste
 DEGENERATE = 1e-10  # singular values below this share of the largest carry no information
 
 
-@dataclass(frozen=True)
-class Estimate:
+@dataclass(frozen=True, eq=False)
+class Estimate(ComparedByFields):
     """One parameter as the data see it.
 
     Attributes:
@@ -59,8 +60,8 @@ class Estimate:
         return self.value - reach, self.value + reach
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, eq=False)
+class Fit(ComparedByFields):
     """A model fitted to an experiment.
 
     Attributes:

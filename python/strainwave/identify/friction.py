@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave._core import Gear, PassivityWarning
+from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import FrictionTable
 from strainwave.identify.fit import Fit, fit
 
@@ -24,8 +25,8 @@ FALLING = ("coulomb", "breakaway", "stribeck_speed", "viscous")
 Law = friction.Viscous | friction.Coulomb | friction.Stribeck | friction.LuGre  # what a table of torque over speed can tell
 
 
-@dataclass(frozen=True)
-class Candidate:
+@dataclass(frozen=True, eq=False)
+class Candidate(ComparedByFields):
     """One set of free parameters fitted to a friction table.
 
     Attributes:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.equality import ComparedByFields
 from strainwave.gear_set import Entry
 from strainwave.identify.fit import Fit, correlation_length
 from strainwave.parameters import Parameter, every
@@ -19,8 +20,8 @@ EXACT = ("control.", "gear.kinematics.", "kinematics.")  # nobody measures what 
 DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
 
 
-@dataclass(frozen=True)
-class Influence:
+@dataclass(frozen=True, eq=False)
+class Influence(ComparedByFields):
     """How the estimates of a fit change with the parameters that it kept.
 
     Attributes:

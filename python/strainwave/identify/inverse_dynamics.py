@@ -29,6 +29,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from strainwave.equality import ComparedByFields
+
 if TYPE_CHECKING:
     from strainwave.recording import Recording
 
@@ -46,7 +48,7 @@ _FEWEST_ROWS = 10  # in each direction of motion (assumed)
 
 
 @dataclass(frozen=True, eq=False)
-class RigidDrive:
+class RigidDrive(ComparedByFields):
     """A rigid drive with viscous and Coulomb friction, as identified.
 
     torque = inertia * acceleration + viscous * speed + coulomb * sign(speed) + offset
@@ -99,7 +101,7 @@ class RigidDrive:
 
 
 @dataclass(frozen=True, eq=False)
-class Regression:
+class Regression(ComparedByFields):
     """The rows of the inverse dynamic model of one record, filtered and decimated: matrix @ parameters = torque.
 
     Attributes:

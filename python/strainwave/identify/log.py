@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave import _core, friction, kinematic_error
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import DriveLog
 from strainwave.identify.fit import Fit, fit
 
@@ -21,8 +22,8 @@ HALVINGS = 12  # of a friction that no command overcomes
 ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
 
 
-@dataclass(frozen=True)
-class LogFit:
+@dataclass(frozen=True, eq=False)
+class LogFit(ComparedByFields):
     """A drive fitted to a log.
 
     Attributes:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction, hysteresis, stiffness
 from strainwave._core import Gear, PassivityWarning
+from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import TorsionLoop
 from strainwave.identify.fit import Fit, fit
 from strainwave.identify.friction import dissipating
@@ -34,8 +35,8 @@ SPRINGS = ("linear", "cubic", "three_segment")
 Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose breakaway a loop can tell
 
 
-@dataclass(frozen=True)
-class Candidate:
+@dataclass(frozen=True, eq=False)
+class Candidate(ComparedByFields):
     """One kind of gear fitted to a loop.
 
     Attributes:
@@ -335,8 +336,8 @@ def _kept_hysteresis(loop: TorsionLoop, gear: Gear) -> Array:
 # ---- Where the refinement starts --------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Start:
+@dataclass(frozen=True, eq=False)
+class _Start(ComparedByFields):
     """The convex problem's answer."""
 
     gear: Gear

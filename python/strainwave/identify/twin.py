@@ -12,6 +12,7 @@ import numpy as np
 
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
+from strainwave.equality import ComparedByFields
 from strainwave.gear_set import NOT_GIVEN, Entry, GearSet
 from strainwave.identify.evidence import Doubt, Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop, at_input
@@ -63,8 +64,8 @@ class Contradiction:
         return self.known.source
 
 
-@dataclass(frozen=True)
-class Twin:
+@dataclass(frozen=True, eq=False)
+class Twin(ComparedByFields):
     """A model of one particular gear, with the evidence for it.
 
     Attributes:

@@ -10,6 +10,7 @@ import numpy as np
 
 from strainwave import _core
 from strainwave._core import Gear
+from strainwave.equality import ComparedByFields
 from strainwave.gear_set import Entry, GearSet
 from strainwave.identify.evidence import Evidence
 from strainwave.identify.fit import Estimate
@@ -23,8 +24,8 @@ ENTANGLED = 0.98  # correlation above which two parameters are told in combinati
 State = Literal["identified", "identified in combination", "not identified", "kept"]
 
 
-@dataclass(frozen=True)
-class Verdict:
+@dataclass(frozen=True, eq=False)
+class Verdict(ComparedByFields):
     """What is known of one parameter of the twin, and why.
 
     Attributes:

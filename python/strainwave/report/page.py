@@ -42,5 +42,5 @@ def write(html: str, path: str | Path) -> None:
     ...     Path(f"{folder}/report.html").read_text()
     '<!doctype html>'
     """
-    with replacing(path) as temporary:
-        temporary.write_text(html, encoding="utf-8", newline="\n")
+    with replacing(path) as file:
+        file.write(html.encode())

@@ -1,0 +1,29 @@
+"""The command `strainwave` from its very start: an interrupt ends it in one line, also while it is imported."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from pathlib import Path
+
+INTERRUPTED = 128 + signal.SIGINT  # exit code, as shells give it, and typer
+
+
+def main() -> None:
+    """Runs the command, as the shell knows it."""
+    written: list[Path] = []
+    try:
+        from strainwave import cli
+
+        written = cli.written
+        cli.main()
+    except (KeyboardInterrupt, SystemExit) as end:
+        if isinstance(end, SystemExit) and end.code != INTERRUPTED:
+            raise
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        print(f"strainwave: interrupted; {', '.join(map(str, written)) or 'nothing'} written", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+
+
+if __name__ == "__main__":
+    main()
