@@ -22,6 +22,7 @@ from strainwave.simulation import warn_of_bristles
 Array = NDArray[np.float64]
 ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
 TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps end far below it where residuals are small
+ROUGH = 1e-3  # the same of the pass that finds how the channels weigh
 DEGENERATE = 1e-10  # singular values below this share of the largest carry no information
 
 
@@ -177,9 +178,8 @@ def fit(
     start = problem.start()
     _check_motion(experiment, problem.predict(start)[0])
     weights = 1.0 / _scale(experiment.measured[:, problem.training])
-    passes = 1 if len(experiment.channels) == 1 else 2
-    for _ in range(passes):
-        found = problem.solve(start, weights, loss)
+    for tolerance in (TOLERANCE,) if len(experiment.channels) == 1 else (ROUGH, TOLERANCE):
+        found = problem.solve(start, weights, loss, tolerance)
         residual = (experiment.measured - problem.predict(found)[0])[:, problem.training]
         weights = 1.0 / np.maximum(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)), 1e-12 * _scale(experiment.measured))
         start = found
@@ -291,7 +291,7 @@ class _Problem:
             self._last = key, self.experiment.predict(self.model_with(x), numbers, nuisances)
         return self._last[1]
 
-    def solve(self, start: Array, weights: Array, loss: Literal["linear", "soft_l1"]) -> Array:
+    def solve(self, start: Array, weights: Array, loss: Literal["linear", "soft_l1"], tolerance: float) -> Array:
         if len(start) == 0:
             return start
         from scipy.optimize import least_squares
@@ -318,9 +318,9 @@ class _Problem:
             bounds=(low, high),
             x_scale="jac",
             loss=loss,
-            xtol=TOLERANCE,
-            ftol=TOLERANCE,
-            gtol=TOLERANCE,
+            xtol=tolerance,
+            ftol=tolerance,
+            gtol=tolerance,
         )
         return np.asarray(solution.x)
 

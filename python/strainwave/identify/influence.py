@@ -38,11 +38,15 @@ class Influence(ComparedByFields):
     pulls: Array
     gains: Array
 
-    @property
-    def suspect(self) -> int | None:
-        """The kept parameter that the measurement speaks against most, by its place; None where it speaks against none."""
-        worst = int(np.argmax(self.gains)) if len(self.gains) else 0
-        return worst if len(self.gains) and self.gains[worst] > SUSPECT else None
+    def suspect(self, known: Mapping[str, Entry], prefix: str = "") -> int | None:
+        """The kept parameter that the measurement speaks against most, by its place; None where it speaks against none.
+
+        It does so where a change would remove much of the residuals, and is larger than what is known of the parameter allows.
+        """
+        doubts = [uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept]
+        gains = np.where(np.abs(self.pulls) > doubts, self.gains, 0.0)
+        worst = int(np.argmax(gains)) if len(gains) else 0
+        return worst if len(gains) and gains[worst] > SUSPECT else None
 
     def doubt(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
         """What the uncertainty of each kept parameter adds to that of an estimate, in its unit; largest first.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -57,7 +57,20 @@ def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
             break
         gear = found.gear.replace(friction_input=_with_breakaway(found.gear.friction_input, law.coulomb))
         found = fit(found.model.replace(gear=gear), log, free, training=training)
+    found = _within_a_turn(found)
     return LogFit(found, found.rms(held_out=True))
+
+
+def _within_a_turn(found: Fit) -> Fit:
+    """The fit with phases of the kinematic error from -pi to pi."""
+    error = found.gear.kinematic_error
+    if not isinstance(error, kinematic_error.Fourier):
+        return found
+    phases = [float(np.remainder(phase + np.pi, 2.0 * np.pi) - np.pi) for phase in error.phase]
+    model = found.model.replace(gear=found.gear.replace(kinematic_error=error.replace(phase=phases)))
+    turned = {f"gear.kinematic_error.phase[{i}]": phase for i, phase in enumerate(phases)}
+    estimates = tuple(replace(each, value=turned.get(each.path, each.value)) for each in found.estimates)
+    return replace(found, model=model, estimates=estimates)
 
 
 def innermost(law: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -192,7 +192,7 @@ def _evidence(
     measured = {evidence.kind for evidence in before}
     if kind == "torsion":
         return _from_torsion(gear, recording, source, bool(measured & {"friction", "log"}), start.gear)
-    return _from_log(start.drive.replace(gear=gear), recording, source, measured)
+    return _from_log(start.drive.replace(gear=gear), recording, source, measured, known(start, before))
 
 
 def _from_friction(gear: Gear, recording: Recording, source: str, side: str | None, start: Gear) -> Evidence:
@@ -203,7 +203,7 @@ def _from_friction(gear: Gear, recording: Recording, source: str, side: str | No
     remarks = [f"valid between {low:.4g} and {high:.4g} rad/s at the input; validated by leaving out speeds in turn"]
     if best.name == "Coulomb and viscous":
         remarks.append("no fall of torque towards low speed within this range: breakaway and Stribeck speed are not seen")
-    remarks += _thinned(table.samples, len(table.speed))
+    remarks += [*_thinned(table.samples, len(table.speed)), *_unused(recording, ("speed", "torque"))]
     doubts = [*_not_explained(best.fit)]
     if side is None:
         doubts = [*doubts_of_table(recording, best.fit, start)] or doubts
@@ -221,6 +221,7 @@ def _from_torsion(gear: Gear, recording: Recording, source: str, friction_measur
         f"valid up to {np.abs(loop.torque).max():.4g} N·m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
     ]
     remarks += [*_of_friction(loop, best, gear, friction_measured), *_thinned(loop.samples, len(loop.twist))]
+    remarks += _unused(recording, ("input_angle", "input_torque") if at_input(recording) else ("twist", "torque"))
     if isinstance(best.beside, Nothing):
         remarks.append(
             "one branch only: it tells neither hysteresis nor zeros, so the hysteresis is kept, and the gear is taken to have "
@@ -269,21 +270,24 @@ def _shared(best: Candidate, gear: Gear, loop: TorsionLoop, friction_measured: b
     return {f"gear.{path}": why for path in paths}
 
 
-def _from_log(drive: PositionDrive, recording: Recording, source: str, known: set[Kind]) -> Evidence:
+def _from_log(
+    drive: PositionDrive, recording: Recording, source: str, measured: set[Kind], sources: Mapping[str, Entry]
+) -> Evidence:
     log = DriveLog.of(recording, drive)
-    drive = prepared(log, drive, friction_known="friction" in known)
-    free = free_parameters(log, drive, friction_known="friction" in known, torsion_known="torsion" in known)
+    drive = prepared(log, drive, friction_known="friction" in measured)
+    free = free_parameters(log, drive, friction_known="friction" in measured, torsion_known="torsion" in measured)
     found = fit_log(log, drive, free)
     both = {"input_angle", "output_angle"} <= set(log.channels)
     remarks = ["validated on the last 30 % of the record", *_thinned(log.samples, len(log.time))]
+    remarks += _unused(recording, ("time", "command", *log.channels))
     if not both:
         remarks.append("one encoder only: kinematic error and stiffness are not seen")
     name = ", ".join(path.removeprefix("gear.") for path in free) or "nothing free"
     doubts, of_kept = [*_not_explained(found.fit)], influence(found.fit)
     if doubts:
         doubts = [_with_cause(doubts[0][0], found.fit, recording, drive, free)]
-    elif of_kept.suspect is not None:
-        remarks.append(_of_suspect(of_kept, of_kept.suspect))
+    elif (worst := of_kept.suspect(sources)) is not None:
+        remarks.append(_of_suspect(of_kept, worst))
     return Evidence(
         "log", source, recording, found.fit, found.fit.residuals[:, ~found.fit.training], found.error,
         ((name, float(found.error[0])),), of_kept, _shares(found.fit),
@@ -298,6 +302,12 @@ def _of_suspect(of_kept: Influence, worst: int) -> str:
         f"{each.value + of_kept.pulls[worst]:.3g} {each.unit} would leave {100.0 * of_kept.gains[worst]:.0f} % less of the "
         "residuals' power. Measure it, or free it"
     )
+
+
+def _unused(recording: Recording, used: Collection[str]) -> Iterator[str]:
+    """What was recorded too, and no fit uses."""
+    if unused := [name for name in recording.names if name not in used]:
+        yield f"not used: {', '.join(unused)}"
 
 
 def _thinned(samples: int, taken: int) -> Iterator[str]:

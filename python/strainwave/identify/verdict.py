@@ -133,7 +133,7 @@ def _untold(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping
     elif estimate.sigma > UNTOLD * abs(estimate.value):
         together = _combination(evidence, index)
         return "standard deviation exceeds half the value" + (f"; {together}" if together else "")
-    return _suspect(evidence, index, estimate) or _leaning(evidence, index, estimate, sources, LEANING)
+    return _suspect(evidence, index, estimate, sources) or _leaning(evidence, index, estimate, sources, LEANING)
 
 
 def _leaning(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry], least: float) -> str:
@@ -144,10 +144,10 @@ def _leaning(evidence: Evidence, index: int, estimate: Estimate, sources: Mappin
     return f"what is not known of parameters kept may move it: {', '.join(told[:MOST_TOLD])}" if told else ""
 
 
-def _suspect(evidence: Evidence, index: int, estimate: Estimate) -> str:
+def _suspect(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry]) -> str:
     """The kept parameter that the measurement speaks against, if the estimate would move far were it right."""
     influence, size = evidence.influence, 1.0 if ".phase[" in estimate.path else abs(estimate.value)
-    worst = influence.suspect
+    worst = influence.suspect(sources, evidence.prefix)
     if worst is None or abs(influence.slopes[index, worst] * influence.pulls[worst]) < LEANING * size:
         return ""
     moved = 100.0 * influence.slopes[index, worst] * influence.pulls[worst] / size
