@@ -6,7 +6,8 @@ import pytest
 import strainwave as sw
 from strainwave.simulation import Excitation
 
-from tests.stress import HANGS, check, outcome, outcomes
+from tests.stress import check, outcome, outcomes
+from tests.workers import HANGS
 
 
 @pytest.mark.parametrize("number", [*range(10), 64311])
