@@ -32,7 +32,7 @@ from strainwave.simulation import METHODS, Excitation
 
 from tests.laws.test_gear import has_memory, passive, speeds
 from tests.strategies import AROUND_ONE, TYPICAL, Field
-from tests.workers import WRONG, answers
+from tests.workers import answers
 
 OUTPUTS = [name for name, _, _ in _core.outputs]
 STEPS = 100
@@ -41,6 +41,7 @@ MEMBERS = 8
 LIMIT = 60.0  # s, for all runs of a drive
 ROUNDING = 1e-15
 FARTHEST = 1e6  # rad
+WRONG = "WRONG: "
 SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
 
@@ -252,7 +253,7 @@ def with_derivatives(drive: sw.drives.PositionDrive, paths: list[str], volts: An
 def outcomes(numbers: Iterable[int], processes: int, limit: float = LIMIT) -> Iterator[Outcome]:
     """As they come."""
     for number, found in answers(outcome, numbers, processes, limit):
-        yield Outcome(number, {"any": found}, limit) if isinstance(found, str) else found
+        yield Outcome(number, {"any": WRONG + found}, limit) if isinstance(found, str) else found
 
 
 def tell(counted: Counter[tuple[str, str]], slowest: list[Outcome], wrong: list[Outcome]) -> None:

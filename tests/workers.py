@@ -12,9 +12,8 @@ from typing import Any, Generic, TypeVar
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
-WRONG = "WRONG: "
-HANGS = WRONG + "hangs"
-CRASHES = WRONG + "ends the process"
+HANGS = "hangs"
+CRASHES = "ends the process"
 
 
 class Worker(Generic[Task, Answer]):
