@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterable
@@ -37,19 +36,18 @@ def tell(found: dict[str, list[tuple[Task, Outcome]]], seconds: float, longest: 
     for kind, each in sorted(found.items()):
         for sort, those in sorted(_sorts(each).items(), key=lambda item: -len(item[1])):
             task, outcome = min(those, key=lambda one: one[0].number)
-            print(f"\n{len(those)} x {kind}: {sort[:longest]}")
+            print(f"\n{len(those)} x {kind}: {_visible(sort)}")
             print(f"    said   {_visible(outcome.words)[:longest]}")
             print(f"    input  {_visible(outcome.what)[:longest]}")
             print(f"    again  python -m tests.fuzz --kind {kind} --first {task.number} --cases 1")
 
 
 def _sorts(each: Iterable[tuple[Task, Outcome]]) -> dict[str, list[tuple[Task, Outcome]]]:
-    """What is wrong, by the words without what differs from case to case."""
+    """What is wrong, by its sort."""
     sorts = defaultdict(list)
     for task, outcome in each:
         if outcome.verdict == "wrong":
-            words = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "…", _visible(outcome.words))
-            sorts[re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", words)[:120]].append((task, outcome))
+            sorts[outcome.fault].append((task, outcome))
     return sorts
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 import time
+import traceback
 import unicodedata
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -16,6 +19,7 @@ import strainwave as sw
 Verdict = Literal["accepted", "refused", "wrong"]
 
 REFUSALS = (ValueError, TypeError, MemoryError, FloatingPointError, RuntimeError)  # exactly these, and any OSError
+PACKAGE = f"{Path(sw.__file__).parent}{os.sep}"
 LONGEST = 500  # characters of a message
 _CONTROL = {"Cc", "Cs", "Zl", "Zp"}  # what moves a terminal, ends a line, or cannot be written at all
 
@@ -48,9 +52,18 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a case: the verdict, why, the input, and how long it took [s of the processor]."""
+    """What came of a case.
+
+    Args:
+        verdict: accepted, refused or wrong
+        fault: what is wrong, the same for all cases of one sort
+        words: what was said
+        what: the input
+        took: how long it took [s of the processor]
+    """
 
     verdict: Verdict
+    fault: str
     words: str
     what: str
     took: float
@@ -61,61 +74,71 @@ def judged(case: Case, slowest: float) -> Outcome:
     began = time.process_time()
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
-        verdict, words = _tried(case)
+        refused, fault, words = _tried(case)
     took = time.process_time() - began
-    if verdict != "wrong" and (fault := next(filter(None, (_warning_fault(one) for one in warned)), None)):
-        verdict, words = "wrong", fault
-    if verdict != "wrong" and took > slowest:
-        verdict, words = "wrong", f"takes {took:.1f} s"
-    return Outcome(verdict, words, case.what, took)
+    for one in warned:
+        if not fault and (fault := _warning_fault(one)):
+            words = f"{one.category.__name__}: {one.message}"
+    if not fault and took > slowest:
+        fault, words = "takes long", f"{took:.1f} s"
+    return Outcome("wrong" if fault else "refused" if refused else "accepted", fault, words, case.what, took)
 
 
-def _tried(case: Case) -> tuple[Verdict, str]:
+def _tried(case: Case) -> tuple[bool, str, str]:
+    """Whether a case is refused, what is wrong with that or with the result, and what was said."""
     try:
         result = case.attempt()
     except AssertionError as broken:
-        return "wrong", str(broken)
+        return True, str(broken).partition(": ")[0], str(broken)
     except Exception as error:
-        said = f"{type(error).__name__}: {error}"
         fault = refusal_fault(error)
-        return ("wrong", f"{fault}: {said}") if fault else ("refused", said)
+        return True, f"{fault}, from {_place(error)}" if fault else "", f"{type(error).__name__}: {error}"
     try:
         case.check(result)
     except AssertionError as broken:
-        return "wrong", str(broken)
+        return False, str(broken).partition(": ")[0], str(broken)
     except Exception as error:
-        return "wrong", f"what was accepted fails: {type(error).__name__}: {error}"
-    return "accepted", ""
+        return False, f"what was accepted fails in {_place(error)}", f"{type(error).__name__}: {error}"
+    return False, "", ""
 
 
-def refusal_fault(error: Exception) -> str | None:
+def _place(error: Exception) -> str:
+    """The function of the package that an error comes from, or that calls what it comes from."""
+    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename.startswith(PACKAGE)]
+    if not frames:
+        return "compiled code"
+    code = frames[-1].f_code
+    return f"{code.co_filename.removeprefix(PACKAGE)} {code.co_qualname}"
+
+
+def refusal_fault(error: Exception) -> str:
     """What is wrong with the way something is refused, if anything."""
     if type(error) not in REFUSALS and not (isinstance(error, OSError) and type(error).__module__ == "builtins"):
-        return "not an error that is documented"
+        return f"{type(error).__name__}, which is not documented"
     named_path = isinstance(error, OSError) and error.strerror  # which Python adds as it likes
     return message_fault(named_path or str(error))
 
 
-def message_fault(text: str) -> str | None:
+def message_fault(text: str) -> str:
     """What is wrong with a message, if anything."""
     if not text:
         return "no message"
+    if _FOREIGN.search(text):
+        return "a library's words"
     if any(unicodedata.category(character) in _CONTROL for character in text):
         return "more than one line, or control characters"
     if len(text) > LONGEST:
         return f"a message of more than {LONGEST} characters"
-    if _FOREIGN.search(text):
-        return "a library's words"
-    return None
+    return ""
 
 
-def _warning_fault(warned: warnings.WarningMessage) -> str | None:
+def _warning_fault(warned: warnings.WarningMessage) -> str:
     """What is wrong with a warning, if anything."""
-    said = f"{warned.category.__name__}: {warned.message}"
     if warned.category not in (sw.PassivityWarning, sw.EnsembleWarning, RuntimeWarning):
-        return f"not a warning that is documented: {said}"
-    fault = message_fault(str(warned.message))
-    return f"{fault}: {said}" if fault else None
+        fault = f"{warned.category.__name__}, which is not documented"
+    else:
+        fault = message_fault(str(warned.message))
+    return f"{fault}, in a warning from {warned.filename.removeprefix(PACKAGE)} line {warned.lineno}" if fault else ""
 
 
 def finite(value: Any) -> bool:

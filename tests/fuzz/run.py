@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import resource
 import shutil
+import signal
 import tempfile
 import warnings
 from collections.abc import Iterable, Iterator
@@ -17,7 +18,8 @@ from tests.fuzz.kinds import KINDS, drawn
 from tests.fuzz.laws import Outcome, judged
 from tests.workers import answers
 
-LIMIT = 60.0  # s, for one case, on a machine that has other work too
+LIMIT = 60.0  # s, for one case, and for what it needs once in a process
+PATIENCE = 20.0  # times what a case may take: after that it hangs, though the machine has other work too
 MEMORY = 4 << 30  # bytes of address space: what asks for more must say so
 
 
@@ -32,7 +34,13 @@ def outcomes(tasks: Iterable[Task], processes: int, limit: float = LIMIT) -> Ite
     """Each case with what came of it, as they come."""
     with tempfile.TemporaryDirectory() as folder:
         for task, found in answers(partial(in_process, Path(folder)), tasks, processes, limit):
-            yield task, Outcome("wrong", found, drawn(*task, Path(folder)).what, limit) if isinstance(found, str) else found
+            yield task, _ended(found, task, Path(folder), limit) if isinstance(found, str) else found
+
+
+def _ended(how: str, task: Task, folder: Path, limit: float) -> Outcome:
+    """Of a case that took its process with it."""
+    with warnings.catch_warnings(action="ignore"):
+        return Outcome("wrong", how, "", drawn(*task, folder).what, limit)
 
 
 def in_process(folder: Path, task: Task) -> Outcome:
@@ -42,11 +50,13 @@ def in_process(folder: Path, task: Task) -> Outcome:
     terminal.truncate()
     with warnings.catch_warnings(action="ignore"):
         case = drawn(*task, place)
-    outcome = judged(case, KINDS[task.kind].slowest)
+    slowest = KINDS[task.kind].slowest
+    signal.setitimer(signal.ITIMER_REAL, min(LIMIT, PATIENCE * slowest))
+    outcome = judged(case, slowest)
     _emptied(place)
     terminal.seek(0)
     if outcome.verdict != "wrong" and (seen := terminal.read()):
-        outcome = replace(outcome, verdict="wrong", words=f"on the terminal: {seen.decode(errors='replace')}")
+        outcome = replace(outcome, verdict="wrong", fault="speaks on the terminal", words=seen.decode(errors="replace"))
     return replace(outcome, words=outcome.words.replace(f"{place}", "FOLDER"))
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
-
 import re
+from math import pi, sqrt
 
 import numpy as np
 import pytest
