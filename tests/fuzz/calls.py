@@ -37,6 +37,7 @@ NOT_CALLED = {
     *(f"identify.inverse_dynamics.{name}" for name in ("Regression", "RigidDrive")),
     *(f"experiment.{name}.predict" for name in ("DriveLog", "FrictionTable", "TorsionLoop")),
     "experiment.TorsionLoop.path",
+    "fit.Fit.rms",
     "recording.envelope",
 }
 
@@ -71,7 +72,7 @@ def _junk() -> tuple[Any, ...]:
         np.ma.masked_array([1.0, 2.0], mask=[True, False]), np.array([1e300, -1e300]), np.array([np.nan]),
         np.zeros(3, dtype=bool), np.zeros(2, dtype=[("a", float)]), np.arange(5)[::-1], np.arange(4.0)[::2], Path("nothing"),
         Path("a\x00b"), "a" * 5000, _NoText(), drive, drive.gear, drive.rest(), sw.scenario.constant(1.0, 0.01),
-        sw.scenario.constant(1.0, 5e-324), sw.friction.LuGre(), sw.friction.LuGre,
+        sw.scenario.constant(1.0, 1e-30), sw.friction.LuGre(), sw.friction.LuGre,
         sw.Recording({"time": [0.0, 1.0]}, {"time": "s"}),
     )  # fmt: skip
 
