@@ -15,17 +15,13 @@ from __future__ import annotations
 
 import argparse
 import math
-import multiprocessing
 import os
 import re
-import signal
 import time
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import islice
-from multiprocessing.connection import Connection, wait
 from typing import Any
 
 import numpy as np
@@ -36,6 +32,7 @@ from strainwave.simulation import METHODS, Excitation
 
 from tests.laws.test_gear import has_memory, passive, speeds
 from tests.strategies import AROUND_ONE, TYPICAL, Field
+from tests.workers import answers
 
 OUTPUTS = [name for name, _, _ in _core.outputs]
 STEPS = 100
@@ -47,8 +44,6 @@ FARTHEST = 1e6  # rad
 WRONG = "WRONG: "
 SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
-HANGS = WRONG + "hangs"
-CRASHES = WRONG + "ends the process"
 
 
 def magnitude(unit: str, low: float | None, high: float | None, zero: bool, random: np.random.Generator) -> float:
@@ -255,61 +250,10 @@ def with_derivatives(drive: sw.drives.PositionDrive, paths: list[str], volts: An
         assert not any(found[name, path].any() for name in ("command", "temperature")), f"{WRONG}an input depends on the drive"
 
 
-class Worker:
-    """A process that runs one drive after the other."""
-
-    def __init__(self, limit: float) -> None:
-        context = multiprocessing.get_context("spawn")
-        self.pipe, far = context.Pipe()
-        self.process = context.Process(target=work, args=(far, limit), daemon=True)
-        self.process.start()
-        far.close()
-        self.number = -1
-        self.limit = limit
-
-    def begin(self, number: int) -> None:
-        self.number = number
-        self.pipe.send(number)
-
-    def answer(self) -> Outcome:
-        try:
-            found: Outcome = self.pipe.recv()
-        except EOFError:
-            self.process.join()
-            ended = HANGS if self.process.exitcode == -signal.SIGALRM else CRASHES
-            return Outcome(self.number, {"any": ended}, self.limit)
-        return found
-
-
-def work(pipe: Connection, limit: float) -> None:
-    """Answers numbers with outcomes, until None; ends where one lasts, though in compiled code that looks at no signal."""
-    while (number := pipe.recv()) is not None:
-        signal.setitimer(signal.ITIMER_REAL, limit)
-        found = outcome(number)
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        pipe.send(found)
-
-
 def outcomes(numbers: Iterable[int], processes: int, limit: float = LIMIT) -> Iterator[Outcome]:
     """As they come."""
-    left = iter(numbers)
-    busy: dict[Any, Worker] = {}
-
-    def begin(worker: Worker, number: int) -> None:
-        worker.begin(number)
-        busy[worker.pipe] = worker
-
-    for number in islice(left, processes):
-        begin(Worker(limit), number)
-    while busy:
-        for pipe in wait(list(busy)):
-            worker = busy.pop(pipe)
-            yield worker.answer()
-            number = next(left, None)
-            if number is not None:
-                begin(worker if worker.process.is_alive() else Worker(limit), number)
-            elif worker.process.is_alive():
-                worker.pipe.send(None)
+    for number, found in answers(outcome, numbers, processes, limit):
+        yield Outcome(number, {"any": WRONG + found}, limit) if isinstance(found, str) else found
 
 
 def tell(counted: Counter[tuple[str, str]], slowest: list[Outcome], wrong: list[Outcome]) -> None:

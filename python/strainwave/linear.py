@@ -18,8 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
+from strainwave.memory import room_for
 from strainwave.simulation import ROOM_TEMPERATURE, output_units
-from strainwave.steady import N_MOTION, PLACE, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
+from strainwave.steady import N_MOTION, OVERFLOW, PLACE, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -103,16 +104,24 @@ class LinearView(ComparedByFields):
         frequencies = arguments.numbers("frequency", frequency)
         if not np.isfinite(frequencies).all():
             raise ValueError(f"frequency = {frequencies[~np.isfinite(frequencies)][0]} Hz must be finite")
-        at = tau * 1j * frequencies[..., None]
         row, column = _place(output, self.outputs, "output"), _place(input, self.inputs, "input")
+        each = 64.0 * len(self.A) ** 2
+        try:
+            with np.errstate(over="ignore", invalid="ignore"), room_for("frequencies", frequencies.size, each, "take fewer"):
+                answer = self._transferred(tau * 1j * frequencies[..., None], row, column)
+        except np.linalg.LinAlgError:
+            answer = np.full(frequencies.shape, np.inf, dtype=np.complex128)
+        if not np.isfinite(answer).all():
+            raise ValueError("frequency is that of a pole without damping: the response has no bound there")
+        return answer
+
+    def _transferred(self, at: Complex, row: int, column: int) -> Complex:
+        """The transfer function at s, shape (…, 1), of the input in a column to the output in a row."""
         b, d = self.B[:, column] + 0.0 * at, self.D[row, column] + 0.0 * at
-        if input == "command":
+        if self.inputs[column] == "command":
             rate = self.inputs.index("command_rate")
             b, d = b + at * self.B[:, rate], d + at * self.D[row, rate]
-        try:
-            states = np.linalg.solve(at[..., None] * np.eye(len(self.A)) - self.A, b[..., None])[..., 0]
-        except np.linalg.LinAlgError:
-            raise ValueError("frequency is that of a pole without damping: the response has no bound there") from None
+        states = np.linalg.solve(at[..., None] * np.eye(len(self.A)) - self.A, b[..., None])[..., 0]
         answer: Complex = states @ self.C[row] + d[..., 0]
         return answer
 
@@ -147,7 +156,8 @@ def linearise(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an input is not finite, `temperature` is not positive, or no state is given and there is no equilibrium
+        ValueError: an input is not finite, `temperature` is not positive, no state is given and there is no equilibrium, or
+            torques grow beyond all numbers
 
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(control=sw.control.PID(proportional=2.0, derivative=0.05))
@@ -167,7 +177,9 @@ def linearise(
     if state.motion.input_speed != 0.0:
         drive = averaged(drive)
     slopes = [_core.differentiate_flow(drive, _vibrating(drive, state, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
-    by_motion, by_inputs = np.split(0.5 * (slopes[0] + slopes[1]).T, [N_MOTION], axis=1)
+    if not all(np.isfinite(each).all() for each in slopes):
+        raise ValueError(f"the drive cannot be linearised: {OVERFLOW}")
+    by_motion, by_inputs = np.split(0.5 * slopes[0].T + 0.5 * slopes[1].T, [N_MOTION], axis=1)
     names = {place: name for place, name, _ in _core.motion(drive)}
     kept = _moving(state, names)
     by_motion = by_motion @ _tied(drive, state)

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
-from strainwave.scenario import Scenario, constant, sine
+from strainwave.memory import check_instants
+from strainwave.scenario import SHORTEST, Scenario, constant, sine
 from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, check_resolution, recording, warn_of_bristles
 from strainwave.steady import averaged, constant_inputs, equilibrium
 
@@ -21,6 +22,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _FEWEST = 64  # steps in a period: its harmonics up to the 31st
+_SLOWEST = 1e-300  # Hz: its period is still a number
+_SMALLEST = 1e-100  # amplitude: what is divided by it is still a number
 _SINES = ("command", "load_torque")
 
 
@@ -92,9 +95,9 @@ def frequency_response(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: a frequency, `amplitude`, `dt` or `tolerance` is not positive, `most_periods` is below 2, `input` is
-            another, or there is no equilibrium
-        FloatingPointError: as `simulate`
+        ValueError: a frequency, `amplitude`, `dt` or `tolerance` is not positive, a period has more than 1e9 steps,
+            `most_periods` is below 2, `input` is another, or there is no equilibrium
+        FloatingPointError, MemoryError: as `simulate`
         RuntimeError: a motion is not periodic after `most_periods`; says how far it is from that
 
     Warns:
@@ -111,9 +114,9 @@ def frequency_response(
     arguments.drive(drive)
     constant_inputs(command, load_torque, temperature)  # refuses what makes no sense
     frequencies = np.atleast_1d(arguments.numbers("frequency", frequency))
-    amplitude = arguments.number("amplitude", amplitude, low=0.0)
-    _check(frequencies, input)
+    amplitude = arguments.number("amplitude", amplitude, brackets="[)", low=_SMALLEST)
     dt = arguments.seconds("dt", dt)
+    _check(frequencies, input, dt)
     tolerance = arguments.number("tolerance", tolerance, low=0.0)
     most_periods = arguments.whole("most_periods", most_periods, 2)
     if start is None:
@@ -142,9 +145,12 @@ def _response(frequencies: Array, amplitude: float, found: list[dict[str, Array]
     return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, np.array(counts))
 
 
-def _check(frequencies: Array, signal: str) -> None:
-    if frequencies.ndim != 1 or frequencies.size == 0 or not (np.isfinite(frequencies) & (frequencies > 0.0)).all():
+def _check(frequencies: Array, signal: str, dt: float) -> None:
+    if frequencies.ndim != 1 or frequencies.size == 0:
         raise ValueError("frequency must hold positive numbers [Hz], one at least")
+    for frequency in frequencies.tolist():
+        arguments.number("frequency", frequency, "Hz", "[]", _SLOWEST, 1.0 / SHORTEST)
+        check_instants(1.0 / frequency, dt, "take a higher frequency, or a longer dt")
     if signal not in _SINES:
         raise ValueError(f"input = {signal!r} must be one of {', '.join(_SINES)}")
 

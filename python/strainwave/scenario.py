@@ -23,9 +23,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core, arguments
+from strainwave.memory import check_instants, room_for
 from strainwave.recording import Recording
 
 Array = NDArray[np.float64]
+SHORTEST = 1e-30  # s: a duration so short that its reciprocal and its square are still numbers
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,8 @@ class Scenario:
         waves: what is added to the line
 
     Raises:
-        ValueError: the duration is not positive, a number is not finite, or the pieces are out of order.
+        ValueError: the duration is shorter than 1e-30 s, a number is not finite, the pieces are out of order, or the command or
+            its rate grows beyond all numbers within the duration.
     """
 
     duration: float
@@ -71,18 +74,36 @@ class Scenario:
     __array_ufunc__ = None  # numpy scalars leave `factor * scenario` to __rmul__
 
     def __post_init__(self) -> None:
-        arguments.number("scenario.duration", self.duration, "s", low=0.0)
+        _duration("scenario.duration", self.duration)
         for name in ("start", "level", "slope"):
             values = np.array(arguments.numbers(f"scenario.{name}", getattr(self, name)))
             values.setflags(write=False)
             object.__setattr__(self, name, values)
-            if values.ndim != 1 or values.shape != self.start.shape or not np.isfinite(values).all():
-                raise ValueError(f"scenario.{name} must hold one finite number for each piece")
+            if values.ndim != 1 or values.shape != self.start.shape:
+                raise ValueError(f"scenario.{name} must hold one number for each piece")
+            if not np.isfinite(values).all():
+                raise ValueError(f"scenario.{name} = {values[~np.isfinite(values)][0]} must be finite")
         if not (self.start.size and self.start[0] == 0.0 and (np.diff(self.start, append=self.duration) > 0.0).all()):
             raise ValueError(f"scenario.start must increase from 0 s and stay below {self.duration} s")
         for wave in self.waves:
             for name, value in vars(wave).items():
                 arguments.number(f"wave.{name}", value)
+        if not np.isfinite(self._largest()):
+            raise ValueError(
+                f"scenario: the command, its rate or the angle of a wave grows beyond {np.finfo(float).max:.2g} within "
+                f"{self.duration:g} s; take smaller numbers, or a shorter duration"
+            )
+
+    @np.errstate(over="ignore", invalid="ignore")
+    def _largest(self) -> float:
+        """A bound of the command, its rate and the angles of its waves; not finite where that is none."""
+        lengths = np.diff(self.start, append=self.duration)
+        level, slope = np.abs(self.level), np.abs(self.slope)
+        waves = np.abs([tuple(vars(wave).values()) for wave in self.waves]).reshape(-1, 4)
+        amplitude, frequency, sweep, phase = waves.T
+        fastest = 2.0 * np.pi * (frequency + sweep * self.duration)
+        line, rate = (level + slope * lengths).max(), slope.max()
+        return float(line + amplitude.sum() + rate + (amplitude * fastest).sum() + (fastest * self.duration + phase).sum())
 
     def value(self, time: ArrayLike) -> Array:
         """The command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
@@ -116,13 +137,19 @@ class Scenario:
             dt: distance of the samples [s], in (0, duration]
             unit: unit of the command
 
+        Raises:
+            ValueError: `dt` is out of its range, or would make more than 1e9 samples; the unit is not known
+            MemoryError: the samples are too many; says how large they are
+
         >>> ramp(rate=2.0, duration=1.0).recording(dt=0.25, unit="rad")["command"]
         array([0. , 0.5, 1. , 1.5, 2. ])
         """
-        arguments.number("recording.dt", dt, "s", "(]", 0.0, self.duration)
+        dt = arguments.number("recording.dt", dt, "s", "(]", 0.0, self.duration)
+        check_instants(self.duration, dt, "take longer ones")
         intervals = int(self.duration / dt * (1.0 + 4.0 * np.finfo(float).eps))  # 0.3 / 0.1 falls just short of 3
-        time = np.minimum(dt * np.arange(intervals + 1), self.duration)
-        return Recording({"time": time, "command": self.value(time)}, {"time": "s", "command": unit})
+        with room_for("samples", intervals, 40.0, "take longer steps"):
+            time = np.minimum(dt * np.arange(intervals + 1), self.duration)
+            return Recording({"time": time, "command": self.value(time)}, {"time": "s", "command": unit})
 
     def __reduce__(self) -> tuple[type[Scenario], tuple[object, ...]]:
         return Scenario, (self.duration, self.start, self.level, self.slope, self.waves)
@@ -141,16 +168,18 @@ class Scenario:
         if self.duration != other.duration:
             raise ValueError(f"durations differ, {self.duration} s and {other.duration} s; a sum needs one duration")
         start = np.append(0.0, np.union1d(self.breaks, other.breaks))
-        level, slope = self._line.at(start, before=False) + other._line.at(start, before=False)
+        with np.errstate(over="ignore"):  # what is not finite is refused by the sum
+            level, slope = self._line.at(start, before=False) + other._line.at(start, before=False)
         return Scenario(self.duration, start, level, slope, self.waves + other.waves)
 
     def __mul__(self, factor: float) -> Scenario:
         """The command times a number."""
         if not isinstance(factor, Real):
             return NotImplemented
-        arguments.number("factor", factor)
-        waves = tuple(replace(wave, amplitude=float(factor * wave.amplitude)) for wave in self.waves)
-        return replace(self, level=factor * self.level, slope=factor * self.slope, waves=waves)
+        factor = arguments.number("factor", factor)
+        waves = tuple(replace(wave, amplitude=factor * wave.amplitude) for wave in self.waves)
+        with np.errstate(over="ignore"):  # what is not finite is refused by the product
+            return replace(self, level=factor * self.level, slope=factor * self.slope, waves=waves)
 
     __rmul__ = __mul__
 
@@ -159,6 +188,8 @@ class Scenario:
 
     def __sub__(self, other: Scenario) -> Scenario:
         """The difference of two commands of the same duration."""
+        if not isinstance(other, Scenario):
+            return NotImplemented
         return self + -other
 
     @cached_property
@@ -195,7 +226,7 @@ def constant(value: float, duration: float) -> Scenario:
     array([1.5, 1.5])
     """
     arguments.number("constant.value", value)
-    arguments.number("constant.duration", duration, "s", low=0.0)
+    _duration("constant.duration", duration)
     return _from(0.0, duration, level=value, slope=0.0)
 
 
@@ -214,7 +245,7 @@ def step(amplitude: float, duration: float, start: float = 0.0) -> Scenario:
     array([0., 2., 2.])
     """
     arguments.number("step.amplitude", amplitude)
-    arguments.number("step.duration", duration, "s", low=0.0)
+    _duration("step.duration", duration)
     arguments.number("step.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=amplitude, slope=0.0)
 
@@ -234,7 +265,7 @@ def ramp(rate: float, duration: float, start: float = 0.0) -> Scenario:
     array([0., 0., 2.])
     """
     arguments.number("ramp.rate", rate)
-    arguments.number("ramp.duration", duration, "s", low=0.0)
+    _duration("ramp.duration", duration)
     arguments.number("ramp.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=0.0, slope=rate)
 
@@ -257,7 +288,7 @@ def sine(amplitude: float, frequency: float, duration: float, phase: float = 0.0
     """
     arguments.number("sine.amplitude", amplitude)
     arguments.number("sine.frequency", frequency, "Hz", "[)", 0.0)
-    arguments.number("sine.duration", duration, "s", low=0.0)
+    _duration("sine.duration", duration)
     arguments.number("sine.phase", phase, "rad")
     arguments.number("sine.offset", offset)
     wave = Wave(amplitude, frequency, sweep=0.0, phase=phase)
@@ -285,7 +316,7 @@ def chirp(amplitude: float, start_frequency: float, stop_frequency: float, durat
     arguments.number("chirp.amplitude", amplitude)
     arguments.number("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
     arguments.number("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
-    arguments.number("chirp.duration", duration, "s", low=0.0)
+    _duration("chirp.duration", duration)
     wave = Wave(amplitude, start_frequency, sweep=(stop_frequency - start_frequency) / duration, phase=0.0)
     return replace(constant(0.0, duration), waves=(wave,))
 
@@ -309,15 +340,18 @@ def pulse_train(amplitude: float, period: float, width: float, duration: float, 
     arguments.number("pulse_train.amplitude", amplitude)
     arguments.number("pulse_train.period", period, "s", low=0.0)
     arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
-    arguments.number("pulse_train.duration", duration, "s", low=0.0)
+    _duration("pulse_train.duration", duration)
     arguments.number("pulse_train.start", start, "s", "[)", 0.0, duration)
-    rise = start + period * np.arange(np.ceil((duration - start) / period))
-    edges = np.column_stack((rise, rise + width)).ravel()
-    levels = np.resize([amplitude, 0.0], edges.size)
-    if start > 0.0:
-        edges, levels = np.append(0.0, edges), np.append(0.0, levels)
-    inside = edges < duration
-    return Scenario(duration, edges[inside], levels[inside], np.zeros(np.count_nonzero(inside)))
+    check_instants(duration - start, period, "take fewer pulses")
+    pulses = np.ceil((duration - start) / period)
+    with room_for("pulses", pulses, 200.0, "take fewer"):
+        rise = start + period * np.arange(pulses)
+        edges = np.column_stack((rise, rise + width)).ravel()
+        levels = np.resize([amplitude, 0.0], edges.size)
+        if start > 0.0:
+            edges, levels = np.append(0.0, edges), np.append(0.0, levels)
+        inside = edges < duration
+        return Scenario(duration, edges[inside], levels[inside], np.zeros(np.count_nonzero(inside)))
 
 
 def table(time: ArrayLike, value: ArrayLike) -> Scenario:
@@ -338,8 +372,16 @@ def table(time: ArrayLike, value: ArrayLike) -> Scenario:
         raise ValueError("table.time holds 1 time; at least 2 are needed")
     if points.time[0] != 0.0:
         raise ValueError(f"table.time begins at {points.time[0]} s; it must begin at 0 s")
-    slope = np.diff(points["value"]) / np.diff(points.time)
+    with np.errstate(over="ignore"):
+        slope = np.diff(points["value"]) / np.diff(points.time)
+    if not np.isfinite(slope).all():
+        row = int(np.argmin(np.isfinite(slope)))
+        raise ValueError(f"table.value changes so much from row {row} to row {row + 1} that its rate is not finite; take less")
     return Scenario(float(points.time[-1]), points.time[:-1], points["value"][:-1], slope)
+
+
+def _duration(name: str, value: object) -> None:
+    arguments.number(name, value, "s", "[)", low=SHORTEST)
 
 
 def _from(start: float, duration: float, level: float, slope: float) -> Scenario:

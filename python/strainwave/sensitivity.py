@@ -76,7 +76,7 @@ def derivatives(
         dt, sample, load_torque, temperature: as for `simulate`
 
     Raises:
-        TypeError, ValueError, FloatingPointError: as `simulate`; a path that the drive does not have
+        TypeError, ValueError, FloatingPointError, MemoryError: as `simulate`; a path that the drive does not have
 
     Warns:
         RuntimeWarning: the drive has bristles too stiff for steps of `dt`

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
+from strainwave.memory import check_instants, room_for
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
 
@@ -24,9 +25,11 @@ COARSEST = 1.0  # step times angular frequency of a drive's own motion
 ROOM_TEMPERATURE = 293.15  # K
 LARGEST = 1e15  # of all that is recorded: no angle beyond is told to within a radian
 _TWIST = [name for name, _, _ in _core.outputs].index("twist")
+# What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
+STEP, INPUTS = 33.0, 96.0
+LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"
 STRETCH = 5e-3  # s, after which an adaptive step ends at the latest
 PER_PERIOD = 5.0  # such steps in a period of an input, at the least
-MOST_INSTANTS = 1e9  # what memory could hold
 CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
 
 
@@ -48,7 +51,9 @@ class Course(ComparedByFields):
         nearest = max(1e-9 * min(dt, apart, duration), 4.0 * float(np.spacing(duration)))
         if not isinstance(samples, np.ndarray):
             samples = grid(samples, duration, nearest)
-        instants, sampled, longest = _core.course(grid(dt, duration, nearest), samples, np.sort(breaks), nearest)
+        steps = grid(dt, duration, nearest)
+        with room_for("steps", len(steps) + len(samples), STEP, LONG_RUN):
+            instants, sampled, longest = _core.course(steps, samples, np.sort(breaks), nearest)
         return cls(instants, sampled, min(longest, dt))  # longer by rounding
 
     @property
@@ -119,7 +124,8 @@ class Excitation:
 
     def over(self, course: Course) -> Array:
         """The same at the start, middle and end of each step, shape (n, 3, 4)."""
-        inputs = _core.inputs(*self.signals, course.instants)
+        with room_for("steps", len(course.instants), STEP + INPUTS, LONG_RUN):
+            inputs = _core.inputs(*self.signals, course.instants)
         if isinstance(self.temperature, Scenario):
             check_temperature(float(inputs[:, :, 3].min()))
         return inputs
@@ -219,6 +225,7 @@ def simulate(
             where and when
         FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration or what damps it; says when, and
             what would do. Where bristles ask for adaptive steps, as `simulate_adaptively`
+        MemoryError: the steps or the samples are too many; says how large they are, and what to do
 
     Warns:
         RuntimeWarning: a `method` was asked for whose steps cannot follow a shaft on its bristles
@@ -273,7 +280,8 @@ def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, 
 
     There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from.
     """
-    outputs = np.empty((len(_core.outputs), samples))
+    with room_for("samples", samples, 8.0 * len(_core.outputs), "sample less often"):
+        outputs = np.empty((len(_core.outputs), samples))
     outputs[:, :1] = _core.now(drive, _core.consistent(drive, state), excitation.first())
     return outputs
 
@@ -327,6 +335,7 @@ def simulate_adaptively(
         TypeError: as `simulate`
         ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `most_steps` lies below 1, and as `simulate`
         FloatingPointError: the trajectory diverged, no step keeps the tolerance, or only more than `most_steps` do; says when
+        MemoryError: as `simulate`
 
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
@@ -375,7 +384,9 @@ def differentiate(
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, samples)
     check_resolution(drive, course.longest, 0.0)
-    outputs, slopes = _core.differentiate(drive, course.instants, excitation.over(course), course.samples[1:], list(numbers))
+    inputs = excitation.over(course)
+    with room_for("samples", len(course.times), 8.0 * len(_core.outputs) * (1 + len(numbers)), "sample less often"):
+        outputs, slopes = _core.differentiate(drive, course.instants, inputs, course.samples[1:], list(numbers))
     return recording(drive, course, outputs), slopes
 
 
@@ -386,11 +397,9 @@ def check_temperature(lowest: float) -> None:
 
 def grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
-    if duration > MOST_INSTANTS * step:
-        raise ValueError(
-            f"{duration:g} s are more than {MOST_INSTANTS:g} steps of {step:g} s; take longer steps or slower inputs"
-        )
-    return _core.grid(step, duration, tolerance)
+    check_instants(duration, step, "take longer steps or slower inputs")
+    with room_for("steps", duration / step, STEP, LONG_RUN):
+        return _core.grid(step, duration, tolerance)
 
 
 def recording(drive: PositionDrive, course: Course, outputs: Array) -> Recording:
@@ -414,7 +423,7 @@ def _meaningful(outputs: Array) -> NDArray[np.bool_]:
 
 
 def _check_meaning(time: Array, outputs: Array, what_to_do: str) -> None:
-    if not _meaningful(outputs).all():
+    if not (outputs.max() <= LARGEST and outputs.min() >= -LARGEST):
         raise FloatingPointError(diverged(time, [name for name, _, _ in _core.outputs], outputs, what_to_do))
 
 
@@ -434,7 +443,7 @@ def _largest_twist(outputs: Array) -> float:
 def check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
     """Refuses steps too coarse for a drive; at rest before a run, else many a step may be spent on events that mean nothing."""
     fastest = _core.fastest(drive, twist)
-    if fastest > COARSEST / dt:
+    if fastest * dt > COARSEST:
         raise FloatingPointError(too_coarse(dt, twist, fastest))
 
 

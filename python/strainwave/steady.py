@@ -17,6 +17,7 @@ from strainwave.simulation import ROOM_TEMPERATURE, check_temperature
 Array = NDArray[np.float64]
 SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
 _NOTHING = 1e-12  # rad/s2, A/s: a term so small takes no part
+OVERFLOW = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
 _FASTEST = 1e9  # rad/s at the input: what nothing has stopped by then, nothing will
 
 
@@ -50,7 +51,8 @@ def equilibrium(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an input is not finite, `temperature` is not positive, or there is no equilibrium; says why
+        ValueError: an input is not finite, `temperature` is not positive, there is no equilibrium, or torques grow beyond all
+            numbers; says why
 
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
@@ -123,11 +125,17 @@ class Flow(ComparedByFields):
     size: Array
 
     @classmethod
+    @np.errstate(over="ignore", invalid="ignore")
     def of(cls, drive: PositionDrive, state: _core.State, inputs: Array) -> Flow:
         values, slopes = _core.differentiate_flow(drive, state, inputs)
         by_motion, by_inputs = np.split(slopes[:, :N_MOTION].T, [N_MOTION], axis=1)
         size = np.abs(by_motion) @ np.abs(numbers_of(state)) + np.abs(by_inputs) @ np.abs(inputs)
         return cls(values[:N_MOTION], by_motion, by_inputs, size + _NOTHING)
+
+    @property
+    def finite(self) -> bool:
+        """Whether all of its numbers are: no torque is larger than a number can be."""
+        return all(bool(np.isfinite(each).all()) for each in (self.rate, self.by_motion, self.by_inputs, self.size))
 
     def vanishes(self, rows: list[int], share: float) -> bool:
         """Whether these rates are less than a share of what they add up from."""
@@ -266,7 +274,10 @@ class _Steady(ComparedByFields):
     def surplus(self, speed: float) -> float:
         """What is left to accelerate the whole drive at a speed, referred to the input [N.m]: spring and current settled."""
         drive = self.drive.replace(motor=self.drive.motor.replace(inductance=0.0))
-        rate = Flow.of(drive, self.at(speed), self.inputs).rate
+        flow = Flow.of(drive, self.at(speed), self.inputs)
+        if not flow.finite:
+            raise ValueError(_unsteady(self.inputs, OVERFLOW))
+        rate = flow.rate
         inertia = drive.motor.inertia + drive.gear.input_inertia, drive.load.inertia / drive.gear.kinematics.ratio
         return float(inertia[0] * rate[PLACE["input_speed"]].item() + inertia[1] * rate[PLACE["output_speed"]].item())
 
@@ -302,6 +313,7 @@ class _Steady(ComparedByFields):
 # Both
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
     """The numbers at which the rates in question vanish to rounding, from `guess`; none if there are none.
 
@@ -309,6 +321,8 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
     """
     numbers, rows = guess, path.rows
     flow = Flow.of(path.drive, path.moved(numbers), path.inputs)
+    if not flow.finite:
+        raise ValueError(f"no equilibrium can be found: {OVERFLOW}")
     for _ in range(100):
         if flow.vanishes(rows, 1e-15):
             break
@@ -317,7 +331,7 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
         for share in 0.5 ** np.arange(40):
             trial = Flow.of(path.drive, path.moved(numbers + share * step), path.inputs)
             scale = np.maximum(flow.size, trial.size)
-            if np.linalg.norm((trial.rate / scale)[rows]) < np.linalg.norm((flow.rate / scale)[rows]):
+            if trial.finite and np.linalg.norm((trial.rate / scale)[rows]) < np.linalg.norm((flow.rate / scale)[rows]):
                 break
         else:
             break
@@ -328,9 +342,11 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
 def _least(matrix: Array, right: Array) -> Array:
     """The shortest of the best solutions, rows and unknowns brought to one size."""
     rows = _positive(np.abs(matrix).max(axis=1, initial=0.0))
-    scaled = matrix / rows[:, None]
+    scaled, wanted = matrix / rows[:, None], right / rows
     changes = np.abs(scaled).max(axis=0, initial=0.0)
-    solution = np.linalg.lstsq(scaled / _positive(changes), right / rows, rcond=1e-13)[0]
+    if not (np.isfinite(scaled).all() and np.isfinite(wanted).all()):
+        raise ValueError(f"no equilibrium can be found: {OVERFLOW}")
+    solution = np.linalg.lstsq(scaled / _positive(changes), wanted, rcond=1e-13)[0]
     return np.where(changes > 0.0, solution / _positive(changes), 0.0)
 
 

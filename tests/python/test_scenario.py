@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import pickle
 import re
+import sys
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,6 +25,8 @@ from strainwave.scenario import (
     step,
     table,
 )
+
+from tests.little_memory import little_memory
 
 DURATION = 4.0
 
@@ -249,7 +253,7 @@ def test_samples_run_to_the_last_multiple_inside(duration: float, dt: float, sam
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: constant(1.0, 0.0), "constant.duration = 0.0 s must lie in (0, inf)"),
+        (lambda: constant(1.0, 0.0), "constant.duration = 0.0 s must lie in [1e-30, inf)"),
         (lambda: constant(float("nan"), 1.0), "constant.value = nan must be finite"),
         (lambda: step(1.0, 5.0, 5.0), "step.start = 5.0 s must lie in [0, 5)"),
         (lambda: step(1.0, 5.0, -0.1), "step.start = -0.1 s must lie in [0, 5)"),
@@ -272,6 +276,20 @@ def test_samples_run_to_the_last_multiple_inside(duration: float, dt: float, sam
             lambda: step(1.0, 1.0) + step(1.0, 2.0),
             "durations differ, 1.0 s and 2.0 s; a sum needs one duration",
         ),
+        (lambda: step(1.0, 5e-324), "step.duration = 5e-324 s must lie in [1e-30, inf)"),
+        (
+            lambda: table([0.0, 1.0, 1.0 + 1e-15], [0.0, 0.0, 1e300]),
+            "table.value changes so much from row 1 to row 2 that its rate is not finite; take less",
+        ),
+        (lambda: 1e10 * constant(1e300, 1.0), "scenario.level = inf must be finite"),
+        (lambda: constant(1e308, 1.0) + constant(1e308, 1.0), "scenario.level = inf must be finite"),
+        (
+            lambda: ramp(1e300, 1e10),
+            "scenario: the command, its rate or the angle of a wave grows beyond 1.8e+308 within 1e+10 s; "
+            "take smaller numbers, or a shorter duration",
+        ),
+        (lambda: step(1.0, 1.0).recording(5e-324, "rad"), "1 s are more than 1e+09 steps of 4.94066e-324 s; take longer ones"),
+        (lambda: pulse_train(1.0, 1e-12, 1e-13, 1.0), "1 s are more than 1e+09 steps of 1e-12 s; take fewer pulses"),
         (lambda: step(1.0, 1.0).recording(2.0, "rad"), "recording.dt = 2.0 s must lie in (0, 1]"),
         (
             lambda: Scenario(1.0, np.array([0.0, 1.0]), np.zeros(2), np.zeros(2)),
@@ -279,7 +297,7 @@ def test_samples_run_to_the_last_multiple_inside(duration: float, dt: float, sam
         ),
         (
             lambda: Scenario(1.0, np.zeros(1), np.zeros(2), np.zeros(1)),
-            "scenario.level must hold one finite number for each piece",
+            "scenario.level must hold one number for each piece",
         ),
         (
             lambda: Scenario(1.0, np.zeros(1), np.zeros(1), np.zeros(1), (Wave(float("nan"), 1.0, 0.0, 0.0),)),
@@ -297,6 +315,7 @@ def test_what_is_no_signal_is_refused(make: Callable[[], object], message: str) 
     [
         (lambda: sine("1", 1.0, 1.0), "sine.amplitude must be a number, not '1'"),  # type: ignore[arg-type]
         (lambda: step(1.0, None), "step.duration must be a number, not None"),  # type: ignore[arg-type]
+        (lambda: step(1.0, 1.0) - [1.0], "unsupported operand type(s) for -: 'Scenario' and 'list'"),  # type: ignore[operator]
         (lambda: step(1.0, 1.0) + 1.0, "unsupported operand type(s) for +: 'Scenario' and 'float'"),  # type: ignore[operator]
         (lambda: np.ones(2) * step(1.0, 1.0), "unsupported operand type(s) for *: 'numpy.ndarray' and 'Scenario'"),  # type: ignore[operator]
         (lambda: step(1.0, 1.0) * step(1.0, 1.0), "unsupported operand type(s) for *: 'Scenario' and 'Scenario'"),  # type: ignore[operator]
@@ -305,3 +324,37 @@ def test_what_is_no_signal_is_refused(make: Callable[[], object], message: str) 
 def test_what_is_no_number_is_refused(make: Callable[[], object], message: str) -> None:
     with pytest.raises(TypeError, match=exactly(message)):
         make()
+
+
+anything = st.floats() | st.sampled_from([5e-324, 1e-300, 1e300, 1.7976931348623157e308])
+made_of_anything = st.one_of(
+    st.tuples(st.just(constant), st.tuples(anything, anything)),
+    st.tuples(st.sampled_from([step, ramp]), st.tuples(anything, anything, anything)),
+    st.tuples(st.just(sine), st.tuples(anything, anything, anything, anything, anything)),
+    st.tuples(st.just(chirp), st.tuples(anything, anything, anything, anything)),
+    st.tuples(
+        st.just(table), st.tuples(st.lists(anything, min_size=2, max_size=2), st.lists(anything, min_size=2, max_size=2))
+    ),
+)
+
+
+@given(made_of_anything, anything)
+def test_a_command_of_any_numbers_is_refused_or_finite_to_its_end(made: tuple[Any, Any], factor: float) -> None:
+    """Warnings are errors here."""
+    make, numbers = made
+    try:
+        command = factor * make(*numbers)
+        command = command + command - 0.5 * command
+    except ValueError:
+        return
+    instants = [0.0, 0.3 * command.duration, command.duration]
+    for values in (command.value(instants), command.rate(instants), command.value_before(instants)):
+        assert np.isfinite(values).all()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
+def test_more_samples_or_pulses_than_memory_holds_are_told_in_a_line() -> None:
+    with little_memory(64 << 20), pytest.raises(MemoryError, match=r"^1e\+08 samples take 4 GB, more memory than there is; "):
+        step(1.0, 1e4).recording(1e-4, "rad")
+    with little_memory(64 << 20), pytest.raises(MemoryError, match=r"^1e\+08 pulses take 20 GB, more memory than there is; "):
+        pulse_train(1.0, 1e-4, 1e-5, 1e4)

@@ -8,6 +8,7 @@ import os
 import pickle
 import re
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -21,6 +22,7 @@ from hypothesis import strategies as st
 from strainwave import _core, simulation
 from strainwave.simulation import ROOM_TEMPERATURE, Course, Excitation, differentiate
 
+from tests.little_memory import little_memory
 from tests.reference_drive import DRIVE, command
 
 DT = 2.0**-12  # s: its multiples are exact, so that the steps of a run and of a part of it are the same
@@ -295,6 +297,28 @@ def test_more_steps_than_can_be_are_refused() -> None:
         voltage = sw.scenario.sine(1.0, frequency, duration)
         with pytest.raises(ValueError, match=r" s are more than 1e\+09 steps of .* s; take longer steps or slower inputs$"):
             sw.simulate_adaptively(DRIVE, voltage)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
+@pytest.mark.parametrize(
+    "run",
+    [
+        lambda long: sw.simulate(DRIVE, long),
+        lambda long: sw.simulate_adaptively(DRIVE, long, sample=2e-4),
+        lambda long: sw.derivatives(DRIVE, long, ["gear.damping"]),
+        lambda long: sw.simulate_many(DRIVE, long, {"gear.damping": [1.0]}),
+    ],
+)
+def test_a_run_too_long_for_the_memory_says_how_large_it_is_and_what_to_do(run: Callable[[sw.scenario.Scenario], Any]) -> None:
+    said = f"5e+07 steps take 1.65 GB, more memory than there is; {simulation.LONG_RUN}"
+    with little_memory(64 << 20), pytest.raises(MemoryError, match=f"^{re.escape(said)}$"):
+        run(sw.scenario.constant(0.1, 1e4))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
+def test_outputs_too_many_for_the_memory_say_how_large_they_are() -> None:
+    with little_memory(48 << 20), pytest.raises(MemoryError, match=r"^5e\+05 samples take 0\.064 GB, .*; sample less often$"):
+        sw.simulate(DRIVE, sw.scenario.constant(0.1, 100.0))
 
 
 def test_a_run_that_leaves_all_bounds_is_no_result_though_its_numbers_are_finite() -> None:

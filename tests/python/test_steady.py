@@ -210,6 +210,27 @@ def test_what_has_no_equilibrium_says_why() -> None:
         sw.equilibrium(geared(control=sw.control.PID(proportional=2.0, limit=12.0)), load_torque=1000.0)
 
 
+@pytest.mark.parametrize("amplitude", [1e154, 1e160, 1e300])
+def test_torques_beyond_all_numbers_are_told_in_a_line_without_a_word_of_libraries(
+    amplitude: float, capfd: pytest.CaptureFixture[str]
+) -> None:
+    error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[amplitude], phase=[0.3])
+    drive = sw.drives.PositionDrive(gear=sw.Gear(kinematic_error=error))
+    for look in (sw.equilibrium, sw.linearise):
+        with pytest.raises(ValueError, match=r"^no equilibrium can be found: torques or .* grow beyond all numbers"):
+            look(drive, load_torque=1.0)
+    with pytest.raises(ValueError, match=r"^the drive cannot be linearised: torques or .* grow beyond all numbers"):
+        sw.linearise(drive, drive.rest())
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("load_torque", [1e160, 1e300, 1.7e308])
+def test_a_load_beyond_all_numbers_is_told_in_a_line(load_torque: float, capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(ValueError, match=r"^[^\n]*(nothing limits its speed|grow beyond all numbers)[^\n]*$"):
+        sw.equilibrium(sw.drives.PositionDrive(), load_torque=load_torque)
+    assert capfd.readouterr() == ("", "")
+
+
 def test_inputs_that_make_no_sense_are_refused() -> None:
     with pytest.raises(ValueError, match="command = nan must be finite"):
         sw.equilibrium(geared(), command=float("nan"))

@@ -1,0 +1,41 @@
+"""What does not fit into memory is said in one line: how much there is of it, how large it is, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+MOST_INSTANTS = 1e9  # of a run or a signal: what memory could hold
+
+
+@contextmanager
+def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None]:
+    """Says what takes the memory that is not there.
+
+    Args:
+        what: takes it, in the plural
+        count: how many there are
+        each: size of one [bytes]
+        remedy: what to do about it
+
+    >>> with room_for("samples", 2e9, 8.0, "take fewer"):
+    ...     raise MemoryError
+    Traceback (most recent call last):
+    MemoryError: 2e+09 samples take 16 GB, more memory than there is; take fewer
+    """
+    try:
+        yield
+    except MemoryError:
+        size = f"{1e-9 * count * each:.3g} GB"
+        raise MemoryError(f"{count:.3g} {what} take {size}, more memory than there is; {remedy}") from None
+
+
+def check_instants(duration: float, step: float, remedy: str) -> None:
+    """Refuses to cut a duration [s] into so many steps [s] that no memory could hold them.
+
+    >>> check_instants(1.0, 1e-12, "take longer ones")
+    Traceback (most recent call last):
+    ValueError: 1 s are more than 1e+09 steps of 1e-12 s; take longer ones
+    """
+    if duration > MOST_INSTANTS * step:
+        raise ValueError(f"{duration:g} s are more than {MOST_INSTANTS:g} steps of {step:g} s; {remedy}")
