@@ -48,7 +48,7 @@ def column(name: str) -> str:
     return str(ratio) if ratio <= 50 else "> 50"
 
 
-RATED = [name for name in SETS if "ratings" in SETS[name]]
+RATED = [name for name in SETS if "rated_torque" in SETS[name].get("ratings", {})]
 every_set = pytest.mark.parametrize("name", SETS)
 every_rated_set = pytest.mark.parametrize("name", RATED)
 with_transcriptions = pytest.mark.skipif(
@@ -95,6 +95,9 @@ SHG_RATED = {
     50: {80: 484, 100: 611, 120: 688, 160: 688}, 58: {80: 714, 100: 905, 120: 969, 160: 969},
 }  # fmt: skip
 SIZES = tuple(SHG_RATED)
+# Ratcheting torque of CSF at the ratios 50, 80 and 100, and buckling torque, in N.m.
+RATCHETING = {14: (88, 110, 84), 17: (150, 200, 160), 20: (220, 350, 260), 25: (450, 680, 500), 32: (980, 1400, 1000)}
+BUCKLING = {14: 190, 17: 330, 20: 560, 25: 1000, 32: 2200}
 # No-load torques: CSF, in N.m; CPL-20-160 at 20 degC, in N.m and rad/s.
 STARTING_TORQUE = {(17, 100): 0.034, (25, 50): 0.15}
 BACKDRIVING_TORQUE = {(17, 100): 3.3, (25, 50): 9.0}
@@ -111,6 +114,7 @@ RATINGS = {
     "average_input_speed": "Limit for average input speed [rpm]",
 }
 TORQUES = tuple(RATINGS)[:4]
+ENDS = ("ratcheting_torque", "buckling_torque")
 MISLABELLED = {("HFUS", 50, 80): "SHG", ("HFUS", 58, 80): "SHG"}
 MISPRINTED_T1 = 0.2  # of CSG size 14
 LOW_SPEED: dict[int, tuple[int, set[int]]] = {
@@ -160,21 +164,22 @@ UNITS: dict[str, dict[str, str | None]] = {
     "friction_input": {"coulomb": "N.m", "breakaway": "N.m", "viscous": "N.m.s/rad"},
     "friction_output": {"viscous": "N.m.s/rad"},
     "gear": {"damping": "N.m.s/rad", "input_inertia": "kg.m2"},
-    "ratings": {key: "N.m" if key in TORQUES else "rpm" for key in RATINGS},
+    "ratings": {key: "rpm" if key.endswith("speed") else "N.m" for key in (*RATINGS, *ENDS)},
 }  # fmt: skip
 
 
 def numbers(name: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Table, key and entry of every number of a set."""
     for table in UNITS.keys() & SETS[name].keys():
-        for key in UNITS[table]:
+        for key in UNITS[table].keys() & SETS[name][table].keys():
             yield table, key, SETS[name][table][key]
 
 
 @every_set
 def test_a_set_has_exactly_the_tables_and_keys_of_a_gear(name: str) -> None:
     assert SETS[name].keys() - {"note", "ratings"} == {"name", "maker"} | UNITS.keys() - {"ratings"}
-    for table in UNITS.keys() & SETS[name].keys():
+    assert SETS[name].get("ratings", {}).keys() in (set(), set(RATINGS), set(ENDS))
+    for table in UNITS.keys() & SETS[name].keys() - {"ratings"}:
         assert SETS[name][table].keys() == UNITS[table].keys() | CHOICES[table].keys()
         assert CHOICES[table].items() <= SETS[name][table].items()
 
@@ -204,7 +209,7 @@ def test_a_figure_that_is_not_published_says_assumed(name: str) -> None:
     borrowed = name.startswith("hfuc-45-")  # the tables have no HFUC of this size
     for table, key, entry in numbers(name):
         if table != "kinematics":
-            published = not borrowed and (table in {"stiffness", "ratings"} or key == "input_inertia")
+            published = not borrowed and (table == "stiffness" or key in {*RATINGS, "input_inertia"})
             assert entry["source"].startswith("Harmonic Drive AG catalogue, " if published else "assumed: "), (
                 table,
                 key,
@@ -277,6 +282,19 @@ def test_ratings_are_those_of_the_transcription_but_for_the_low_speeds(name: str
 @pytest.mark.parametrize("size", CSG_100)
 def test_csg_ratings_at_ratio_100_are_those_of_the_maker(size: int) -> None:
     assert figures(f"csg-{size}-100", "ratings", *TORQUES) == CSG_100[size]
+
+
+def test_ratcheting_and_buckling_torques_of_hfuc_are_those_published_for_csf() -> None:
+    """They lie above the repeated peak torque of the standard class, which is that of CSG less 30 %."""
+    published = {
+        f"hfuc-{size}-{ratio}": (torque, BUCKLING[size])
+        for size, torques in RATCHETING.items()
+        for ratio, torque in zip((50, 80, 100), torques, strict=True)
+    }
+    assert {name: figures(name, "ratings", *ENDS) for name in SETS if ENDS[0] in SETS[name].get("ratings", {})} == published
+    for name, (ratcheting, buckling) in published.items():
+        (peak,) = figures(name.replace("hfuc", "csg"), "ratings", "peak_torque")
+        assert peak / 1.3 < ratcheting < buckling
 
 
 @pytest.mark.parametrize("size", SIZES)
