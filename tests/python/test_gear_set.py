@@ -156,14 +156,24 @@ def test_what_a_fit_kept_or_could_not_tell_says_so() -> None:
     assert sources["gear.friction_mesh.viscous"] == Entry("not given")
 
 
-def test_the_fit_of_a_drive_keeps_its_paths_and_leaves_out_what_belongs_to_the_measurement() -> None:
+def test_the_fit_of_a_drive_keeps_its_paths() -> None:
     drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01), control=sw.control.OpenLoop(gain=1.0))
     log = sw.simulate(drive, sw.scenario.sine(2.0, 3.0, 0.2), sample=1e-3).select(["time", "command", "input_speed"])
     fit = sw.fit(drive, log, ["motor.resistance"])
     gear_set = GearSet.of(fit, name="x", source="log")
     assert gear_set.drive == fit.model
-    (estimate,) = fit.estimates
-    assert gear_set.sources["motor.resistance"] == Entry("log", uncertainty=estimate.sigma)
+    assert gear_set.sources["motor.resistance"] == Entry("log", uncertainty=fit.estimates[0].sigma)
+
+
+def test_unknowns_of_the_measurement_are_no_numbers_of_the_set() -> None:
+    truth = sw.Gear(stiffness=sw.stiffness.Linear(k=800.0))
+    twist = 1e-3 * np.sin(np.linspace(0.0, 2.0 * np.pi, 50))
+    loop = sw.Recording({"twist": twist + 1e-4, "torque": 800.0 * twist + 0.1}, {"twist": "rad", "torque": "N.m"})
+    fit = sw.fit(truth, loop, ["stiffness.k"])
+    assert len(fit.estimates) > 1
+    sources = GearSet.of(fit, name="x", source="loop").sources
+    assert sources["gear.stiffness.k"] == Entry("loop", uncertainty=fit.estimates[0].sigma)
+    assert sources.keys() == GearSet.of(truth, name="x", source="x").sources.keys()
 
 
 def test_a_catalogue_set_becomes_a_drive_with_the_parts_it_lacks() -> None:
