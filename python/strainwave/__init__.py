@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from strainwave.identify.fit import Fit, fit
     from strainwave.identify.twin import Twin, twin
     from strainwave.linear import LinearView, linearise
+    from strainwave.ratings import RatingCheck, RatingWarning, check_ratings
     from strainwave.recording import Recording
     from strainwave.response import FrequencyResponse, frequency_response
     from strainwave.sensitivity import Derivatives, derivatives
@@ -47,10 +48,13 @@ _LAZY = {
     "FrequencyResponse": "response",
     "GearSet": "gear_set",
     "LinearView": "linear",
+    "RatingCheck": "ratings",
+    "RatingWarning": "ratings",
     "Recording": "recording",
     "Run": "simulation",
     "Twin": "identify.twin",
     "catalogue": "gear_set",
+    "check_ratings": "ratings",
     "derivatives": "sensitivity",
     "equilibrium": "steady",
     "fit": "identify.fit",
@@ -76,10 +80,13 @@ __all__ = [
     "GearSet",
     "LinearView",
     "PassivityWarning",
+    "RatingCheck",
+    "RatingWarning",
     "Recording",
     "Run",
     "Twin",
     "catalogue",
+    "check_ratings",
     "control",
     "derivatives",
     "drives",

@@ -53,6 +53,11 @@ def left_out(gear_set: GearSet) -> frozenset[str]:
     return frozenset(table.path for table, model in _filled(gear_set) if _is_left_out(table, model, gear_set.sources))
 
 
+def idle(gear_set: GearSet) -> list[str]:
+    """Path of every number of the parts that do nothing, which a file may do without."""
+    return [path for table, model in _filled(gear_set) if _does_nothing(table, model) for path in own_paths(table.path, model)]
+
+
 # The tables of a file, as the models describe themselves
 
 

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from math import isfinite
+from operator import attrgetter
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar, overload
+from typing import Any, NamedTuple, Protocol, TypeVar, overload, runtime_checkable
 
 from strainwave import arguments
 from strainwave._core import Gear
@@ -85,9 +87,31 @@ class Quantity(Entry):
         return dataclasses.replace(self, value=convert(self.value, self.unit, unit), unit=unit, uncertainty=uncertainty)
 
 
+class Estimated(Protocol):
+    """A number that was fitted: its path in the model, and its standard deviation, infinite where the data do not tell."""
+
+    @property
+    def path(self) -> str: ...
+    @property
+    def sigma(self) -> float: ...
+
+
+@runtime_checkable
+class Fitted(Protocol):
+    """A model with fitted numbers, as `sw.fit` gives it. Estimates that are no numbers of the model are of no concern here."""
+
+    @property
+    def model(self) -> Any: ...
+    @property
+    def estimates(self) -> Iterable[Estimated]: ...
+
+
 @dataclass(frozen=True)
 class GearSet:
     """A gear, the source of each of its numbers, and what else is known of it.
+
+    Two sets are equal if all members are, sources and ratings too. Their gears are equal if models and numbers are: as the
+    published tables give HFUC-20-80 and CSG-20-80 the same stiffness and inertia, their gears are equal, the sets are not.
 
     Args:
         name: what the gear is called, one line of text
@@ -104,8 +128,8 @@ class GearSet:
         TypeError: a text is none, a model is of the wrong family, or a source or rating not of its type
 
     >>> gear_set = GearSet.read("csg-20-100")
-    >>> gear_set.gear.stiffness.k1, gear_set.sources["gear.stiffness.k1"].spread
-    (16000.0, 0.3)
+    >>> gear_set.gear.stiffness.k2, gear_set.sources["gear.stiffness.k2"].spread
+    (25000.0, 0.3)
     >>> gear_set.ratings["rated_torque"].value
     52.0
     """
@@ -159,22 +183,51 @@ class GearSet:
         return gear_file.left_out(self)
 
     @classmethod
-    def of(cls, model: Gear | PositionDrive, *, name: str, source: str) -> GearSet:
-        """The set of a model whose numbers all come from one source.
+    def of(
+        cls, model: Gear | PositionDrive | Fitted, *, name: str, source: str, sources: Mapping[str, Entry] | None = None
+    ) -> GearSet:
+        """The set of a model, or of a fit.
+
+        A model does not remember which of its numbers were given. So a part that does nothing is "not given", and the
+        source of a number that equals its default says so.
 
         Args:
-            model: a gear, or a whole drive
+            model: a gear, a whole drive, or a fit of one
             name: what the gear is called, one line of text
-            source: where the numbers come from, one line of text
+            source: where the numbers come from, one line of text; of a fit, where the fitted ones come from
+            sources: other sources of some numbers, by path: of one number as "gear.stiffness.k1", of all numbers of a
+                part as "gear.stiffness"; the longer path counts. A fitted number keeps the source of the fit.
+
+        Returns:
+            The set. Fitted numbers have their standard deviation as `uncertainty`.
+
+        Raises:
+            ValueError: `sources` names what the model does not have, or a text is no line of text
+            TypeError: the model is none, or a source is no `Entry`
 
         >>> import strainwave as sw
-        >>> GearSet.of(sw.Gear(damping=3.0), name="printed", source="assumed").sources["gear.damping"]
-        Entry(source='assumed', spread=None, uncertainty=None)
+        >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=800.0), damping=3.0)
+        >>> printed = GearSet.of(gear, name="printed", source="torsion loop", sources={"gear.damping": Entry("assumed")})
+        >>> for path in ("stiffness.k", "damping", "input_inertia", "friction_input.viscous"):
+        ...     print(path, "=", printed.sources[f"gear.{path}"].source)
+        stiffness.k = torsion loop
+        damping = assumed
+        input_inertia = assumed: the default, unless given by: torsion loop
+        friction_input.viscous = not given
         """
-        whole = isinstance(model, PositionDrive)
-        models = {part.name: getattr(model, part.name) for part in parts(model)} if whole else {"gear": model}
+        from strainwave import gear_file
+
+        whole = model.model if isinstance(model, Fitted) else model
+        models = _models(whole)
         _drive(models)  # refuses what is no gear
-        return cls(name=name, sources=dict.fromkeys(_paths(models), Entry(source)), **models)
+        rest = Entry("assumed: kept by the fit, its source is not given" if isinstance(model, Fitted) else source)
+        alike = cls(name=name, sources=dict.fromkeys(_paths(models), rest), **models)
+        entries = {path: _unless_default(alike, path) for path in alike.sources}
+        entries |= {path: Entry(NOT_GIVEN) for path in gear_file.idle(alike)}
+        entries |= _named(alike, sources or {})
+        if isinstance(model, Fitted):
+            entries |= _estimated(alike, model, source)
+        return alike.replace(sources=entries)
 
     @staticmethod
     def read(name_or_path: str | Path) -> GearSet:
@@ -206,6 +259,27 @@ class GearSet:
         """
         return dataclasses.replace(self, **changes)
 
+    def with_parts(self, *, source: str, motor: Any = None, control: Any = None, load: Any = None) -> GearSet:
+        """The same with these parts of a drive, whose numbers come from one source.
+
+        Args:
+            source: where they come from, one line of text; a number that equals its default says so, as in `of`
+            motor, control, load: models of `sw.motor`, `sw.control` and `sw.loads`; what is not given stays
+
+        >>> import strainwave as sw
+        >>> disc = sw.loads.Inertia(inertia=2.0)
+        >>> whole = GearSet.read("hfuc-25-100").with_parts(motor=sw.motor.DC(resistance=0.3), load=disc, source="data sheet")
+        >>> whole.sources["motor.resistance"].source, whole.drive.load.inertia
+        ('data sheet', 2.0)
+        """
+        added = {name: part for name, part in (("motor", motor), ("control", control), ("load", load)) if part is not None}
+        old = tuple(f"{name}." for name in added)
+        kept = {path: entry for path, entry in self.sources.items() if not path.startswith(old)}
+        _drive({"gear": self.gear} | added)  # refuses what is no model of its family
+        paths = list(_paths(added))
+        alike = self.replace(**added, sources=kept | dict.fromkeys(paths, Entry(source)))
+        return alike.replace(sources=kept | {path: _unless_default(alike, path) for path in paths})
+
     def save(self, path: str | Path) -> None:
         """Write a gear file that `read` reads back equal, bit for bit.
 
@@ -236,35 +310,50 @@ def catalogue() -> list[str]:
     return sorted(file.stem for file in CATALOGUE.glob("*.toml"))
 
 
-def load(name_or_path: str | Path) -> Gear:
-    """The gear of a catalogue set or of a gear file.
+def load(name_or_path: str | Path) -> Any:
+    """What a file holds: the drive, where it has a motor and a load, else the gear.
+
+    What was saved is what is loaded: a gear, or a drive. Where the type must be known beforehand, `GearSet.read(path).gear`
+    is the gear of any file, and `GearSet.read(path).drive` the drive.
 
     Args:
         name_or_path: a name in `catalogue()`, or a path: what ends in .toml or has a folder
 
-    Raises:
-        ValueError: as `GearSet.read`, which also gives sources, ratings, motor, control and load.
+    Returns:
+        A `Gear` or a `PositionDrive`; of a set of the catalogue a `Gear`.
 
-    >>> load("hfuc-25-100").stiffness.k1
-    31000.0
+    Raises:
+        ValueError: as `GearSet.read`, which also gives sources and ratings.
+
+    >>> load("hfuc-25-100").stiffness.k2
+    50000.0
     """
-    return GearSet.read(name_or_path).gear
+    gear_set = GearSet.read(name_or_path)
+    return gear_set.gear if gear_set.motor is None or gear_set.load is None else gear_set.drive
 
 
 @overload
 def save(model: GearSet, path: str | Path) -> None: ...
 @overload
-def save(model: Gear | PositionDrive, path: str | Path, *, name: str, source: str) -> None: ...
-def save(model: GearSet | Gear | PositionDrive, path: str | Path, **naming: str) -> None:
-    """Write a gear file.
+def save(
+    model: Gear | PositionDrive | Fitted,
+    path: str | Path,
+    *,
+    name: str,
+    source: str,
+    sources: Mapping[str, Entry] | None = None,
+) -> None: ...
+def save(model: GearSet | Gear | PositionDrive | Fitted, path: str | Path, **naming: Any) -> None:
+    """Write a gear file, which `load` reads back equal, bit for bit.
 
     Args:
-        model: a set, or a gear or a drive whose numbers all come from one source
+        model: a set, a gear, a drive, or a fit: then its fitted numbers keep their standard deviation
         path: the file, which must end in .toml
-        name, source: of a gear or a drive; a set has its own
+        name, source, sources: as `GearSet.of`; a set has its own
 
     Raises:
-        ValueError: the path does not end in .toml, or a text is no line of text.
+        ValueError: the path does not end in .toml, or as `GearSet.of`
+        TypeError: name and source are missing, or given for a set which has its own, or as `GearSet.of`
 
     >>> import tempfile, strainwave as sw
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -272,10 +361,10 @@ def save(model: GearSet | Gear | PositionDrive, path: str | Path, **naming: str)
     ...     load(f"{folder}/mine.toml").damping
     0.30000000000000004
     """
-    if isinstance(model, GearSet):
-        model.replace(**naming).save(path)
-    else:
-        GearSet.of(model, **naming).save(path)
+    gear_set = model if isinstance(model, GearSet) else GearSet.of(model, **naming)
+    if gear_set is model and naming:
+        raise TypeError(f"{min(naming)} = {naming[min(naming)]!r}: a set has its own; change it by replace before it is saved")
+    gear_set.save(path)
 
 
 # What the models say of their numbers
@@ -327,6 +416,53 @@ def _paths(models: Mapping[str, Any]) -> Iterator[str]:
     for name in ("gear", "motor", "control", "load"):
         if models.get(name) is not None:
             yield from _all_paths(name, models[name])
+
+
+def _models(model: Any) -> dict[str, Any]:
+    """Gear, motor, control and load of a drive, or the gear alone."""
+    return (
+        {part.name: getattr(model, part.name) for part in parts(model)} if isinstance(model, PositionDrive) else {"gear": model}
+    )
+
+
+def _unless_default(gear_set: GearSet, path: str) -> Entry:
+    """The entry of a number, which says so where the number equals the default of its model."""
+    entry, (place, _, name) = gear_set.sources[path], path.rpartition(".")
+    name, _, index = name.partition("[")
+    model = attrgetter(place)(gear_set)
+    value, default = getattr(model, name), getattr(type(model)(), name)
+    if index:
+        number = int(index.removesuffix("]"))
+        value, default = value[number], default[number] if number < len(default) else None
+    if value != default or entry.source.startswith("assumed"):
+        return entry
+    return Entry(f"assumed: the default, unless given by: {entry.source}")
+
+
+def _named(gear_set: GearSet, sources: Mapping[str, Entry]) -> dict[str, Entry]:
+    """The entries of numbers that are named by themselves or by what they are part of; the longer name counts."""
+    arguments.mapping("sources", sources, '{"gear.damping": Entry("assumed")}')
+    named: dict[str, Entry] = {}
+    for place, entry in sorted(_frozen(sources, Entry).items(), key=lambda item: len(item[0])):
+        inside = [path for path in gear_set.sources if path == place or path.startswith((f"{place}.", f"{place}["))]
+        if not inside:
+            near = ", ".join(difflib.get_close_matches(place, gear_set.sources, n=3, cutoff=0.0))
+            raise ValueError(
+                f"{gear_set.name}: sources name {place}, which is no number or part of the model; near it are {near}"
+            )
+        named |= dict.fromkeys(inside, entry)
+    return named
+
+
+def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
+    """The entries of fitted numbers; the paths of a gear's fit begin inside the gear."""
+    before = "" if isinstance(fit.model, PositionDrive) else "gear."
+    entries = {}
+    for estimate in fit.estimates:
+        told = isfinite(estimate.sigma)
+        entry = Entry(source, uncertainty=estimate.sigma) if told else Entry(f"not determined by: {source}")
+        entries[before + estimate.path] = entry
+    return {path: entry for path, entry in entries.items() if path in gear_set.sources}
 
 
 def _drive(models: Mapping[str, Any]) -> PositionDrive:

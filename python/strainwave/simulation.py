@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
+from strainwave.gear_set import GearSet
 from strainwave.memory import check_instants, room_for
+from strainwave.ratings import drive_of, warn_of_ratings
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
 
@@ -179,7 +181,7 @@ def _title(method: str) -> str:
 
 
 def simulate(
-    drive: PositionDrive,
+    drive: PositionDrive | GearSet,
     command: Scenario,
     dt: float = 2e-4,
     *,
@@ -197,7 +199,7 @@ def simulate(
     taken to slide on, one that sets off and stops before to stick on.
 
     Args:
-        drive: what is commanded
+        drive: what is commanded; of a gear set its drive
         command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
         dt: largest step [s] where steps are fixed
         sample: distance of samples in the recording [s]; `dt` if not given
@@ -229,6 +231,7 @@ def simulate(
 
     Warns:
         RuntimeWarning: a `method` was asked for whose steps cannot follow a shaft on its bristles
+        RatingWarning: a run of a gear set exceeded one of its ratings (`check_ratings`); one for each
 
     >>> import strainwave as sw
     >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
@@ -240,14 +243,14 @@ def simulate(
     """
     if method not in (None, *METHODS):
         raise ValueError(f'method = "{method}" is not known; there are {", ".join(METHODS)}')
-    arguments.drive(drive)
+    model, drive = drive, drive_of(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
     state = drive.rest() if start is None else arguments.state("start", start)
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, interval)
     if method is None and course.longest * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
-        return simulate_adaptively(
+        run = simulate_adaptively(
             drive,
             command,
             sample=interval,
@@ -257,6 +260,8 @@ def simulate(
             most_steps=max(MOST_STEPS, MOST_FOR_ONE * (len(course.instants) - 1)),
             progress=progress,
         )
+        warn_of_ratings(model, run)
+        return run
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
         check_resolution(drive, course.longest, 0.0)
     taken = method or "exponential"
@@ -272,7 +277,9 @@ def simulate(
     if method != "rosenbrock":
         check_resolution(drive, course.longest, _largest_twist(outputs))
     warn_of_bristles(drive, course.longest)
-    return Run._made(drive, time, outputs, state, f"{_named(taken, drive)}, steps of {course.longest:g} s")
+    run = Run._made(drive, time, outputs, state, f"{_named(taken, drive)}, steps of {course.longest:g} s")
+    warn_of_ratings(model, run)
+    return run
 
 
 def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, samples: int) -> Array:
@@ -301,7 +308,7 @@ def _named(method: Method, drive: PositionDrive) -> str:
 
 
 def simulate_adaptively(
-    drive: PositionDrive,
+    drive: PositionDrive | GearSet,
     command: Scenario,
     rtol: float = 1e-6,
     atol: float = 1e-12,
@@ -331,6 +338,9 @@ def simulate_adaptively(
     Returns:
         as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
 
+    Warns:
+        RatingWarning: as `simulate`
+
     Raises:
         TypeError: as `simulate`
         ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `most_steps` lies below 1, and as `simulate`
@@ -343,7 +353,7 @@ def simulate_adaptively(
     >>> run.method.partition(":")[0]
     'exponential Runge-Kutta, adaptive, rtol 1e-08, atol 1e-12'
     """
-    arguments.drive(drive)
+    model, drive = drive, drive_of(drive)
     rtol = arguments.number("rtol", rtol, brackets="[]", low=1e-11, high=1e-2)
     atol = arguments.number("atol", atol, low=0.0)
     sample = arguments.seconds("sample", sample)
@@ -360,7 +370,9 @@ def simulate_adaptively(
         )
     _check_meaning(samples, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
-    return Run._made(drive, samples, outputs, state, f"{_named('exponential', drive)}, {kept}")
+    run = Run._made(drive, samples, outputs, state, f"{_named('exponential', drive)}, {kept}")
+    warn_of_ratings(model, run)
+    return run
 
 
 def differentiate(

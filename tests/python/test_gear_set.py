@@ -8,10 +8,11 @@ import pickle
 import re
 import shutil
 import tomllib
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import strainwave as sw
 from hypothesis import given
@@ -58,6 +59,145 @@ def test_a_set_is_frozen_hashable_and_survives_pickling_and_copying() -> None:
     with pytest.raises(TypeError, match="does not support item assignment"):
         gear_set.sources["gear.damping"] = Entry("x")  # type: ignore[index]
     assert gear_set.replace(note="other") != gear_set
+
+
+def test_a_file_without_motor_or_load_is_loaded_as_its_gear(tmp_path: Path) -> None:
+    whole = whole_set()
+    for part in ("motor", "load"):
+        sources = {path: entry for path, entry in whole.sources.items() if not path.startswith(f"{part}.")}
+        whole.replace(**{part: None}, sources=sources).save(tmp_path / "part.toml")
+        assert load(tmp_path / "part.toml") == whole.gear
+
+
+# Where numbers come from
+
+
+@given(drives)
+def test_of_a_drive_each_number_has_the_source_given_or_says_that_it_may_be_none(drive: sw.drives.PositionDrive) -> None:
+    """No number that nobody gave has the source: it does nothing, or equals its default."""
+    gear_set = GearSet.of(drive, name="x", source="measured")
+    default = {path: value for path, value, *_ in _core.parameters(sw.drives.PositionDrive())}
+    for path, value, *_ in _core.parameters(drive):
+        source = gear_set.sources[path].source
+        assert source in ("measured", "not given", "assumed: the default, unless given by: measured")
+        if path.startswith("motor.") and type(drive.motor) is sw.motor.DC:
+            assert (source == "measured") == (value != default[path])
+    for path, entry in gear_set.sources.items():
+        assert (entry == Entry("not given")) == (path.rpartition(".")[0] in gear_set.left_out)
+
+
+def test_an_element_of_a_sequence_is_a_default_only_where_the_default_has_it() -> None:
+    gear = sw.Gear(hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[5e3], breakaway=[0.5]))
+    sources = GearSet.of(gear, name="x", source="loop").sources
+    assert sources["gear.hysteresis.stiffness[0]"] == sources["gear.hysteresis.breakaway[0]"] == Entry("loop")
+
+
+def test_a_source_may_be_named_for_a_number_a_sequence_or_a_part_and_the_longer_name_counts() -> None:
+    named = {
+        "gear.kinematics": Entry("counted"),
+        "gear.friction_input.coulomb": Entry("run", uncertainty=1e-3),
+        "gear.friction_input": Entry("data sheet"),
+        "gear.hysteresis.stiffness": Entry("loop"),
+    }
+    sources = GearSet.of(load("csg-20-80"), name="x", source="rest", sources=named).sources
+    assert sources["gear.kinematics.flexspline_teeth"] == Entry("counted")
+    assert sources["gear.friction_input.coulomb"] == Entry("run", uncertainty=1e-3)
+    assert sources["gear.friction_input.breakaway"] == Entry("data sheet")
+    assert sources["gear.hysteresis.stiffness[2]"] == Entry("loop")
+    assert sources["gear.hysteresis.breakaway[2]"] == Entry("rest")
+
+
+@pytest.mark.parametrize(
+    ("sources", "error", "message"),
+    [
+        (
+            {"gear.frictoin": Entry("x")},
+            ValueError,
+            "x: sources name gear.frictoin, which is no number or part of the model; near it are "
+            "gear.friction_input.viscous, gear.friction_mesh.viscous, gear.friction_output.viscous",
+        ),
+        ({"gear.stiff": Entry("x")}, ValueError, None),
+        ({"gear": "x"}, TypeError, "gear must have a strainwave.gear_set.Entry, not 'x'"),
+        (3, TypeError, 'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not 3'),
+    ],
+)
+def test_a_source_that_fits_nothing_is_refused(sources: Any, error: type[Exception], message: str | None) -> None:
+    with pytest.raises(error, match=message and exactly(message)):
+        GearSet.of(sw.Gear(), name="x", source="x", sources=sources)
+
+
+def test_what_a_fit_found_is_saved_with_its_standard_deviation_and_the_rest_with_its_source(tmp_path: Path) -> None:
+    start = GearSet.read("csg-20-80")
+    speed = np.linspace(1.0, 50.0, 20)
+    torque = start.gear.friction_input.steady(speed) * 1.1 + 1e-4 * np.sin(9.0 * speed)
+    table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    free = ["friction_input.coulomb", "friction_input.viscous"]
+    fit = sw.fit(start.gear, table, free)
+    save(fit, tmp_path / "mine.toml", name="mine", source="friction table", sources=start.sources)
+    again = GearSet.read(tmp_path / "mine.toml")
+    assert again.gear == fit.gear
+    for path, estimate in zip(free, fit.estimates, strict=True):
+        assert estimate.sigma > 0.0
+        assert again.sources[f"gear.{path}"] == Entry("friction table", uncertainty=estimate.sigma)
+    rest = [path for path in start.sources if path.removeprefix("gear.") not in free]
+    assert {path: again.sources[path] for path in rest} == {path: start.sources[path] for path in rest}
+
+
+def test_what_a_fit_kept_or_could_not_tell_says_so() -> None:
+    """Of Coulomb's law a friction table does not tell the breakaway."""
+    truth = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.03, viscous=3e-4), damping=2.0)
+    speed = np.linspace(1.0, 50.0, 20)
+    table = sw.Recording({"speed": speed, "torque": truth.friction_input.steady(speed)}, {"speed": "rad/s", "torque": "N.m"})
+    fit = sw.fit(truth, table, ["friction_input.coulomb", "friction_input.breakaway"])
+    sources = GearSet.of(fit, name="x", source="friction table").sources
+    assert sources["gear.friction_input.coulomb"].source == "friction table"
+    assert sources["gear.friction_input.breakaway"] == Entry("not determined by: friction table")
+    assert sources["gear.friction_input.viscous"] == Entry("assumed: kept by the fit, its source is not given")
+    assert sources["gear.friction_mesh.viscous"] == Entry("not given")
+
+
+def test_the_fit_of_a_drive_keeps_its_paths() -> None:
+    drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01), control=sw.control.OpenLoop(gain=1.0))
+    log = sw.simulate(drive, sw.scenario.sine(2.0, 3.0, 0.2), sample=1e-3).select(["time", "command", "input_speed"])
+    fit = sw.fit(drive, log, ["motor.resistance"])
+    gear_set = GearSet.of(fit, name="x", source="log")
+    assert gear_set.drive == fit.model
+    assert gear_set.sources["motor.resistance"] == Entry("log", uncertainty=fit.estimates[0].sigma)
+
+
+def test_unknowns_of_the_measurement_are_no_numbers_of_the_set() -> None:
+    truth = sw.Gear(stiffness=sw.stiffness.Linear(k=800.0))
+    twist = 1e-3 * np.sin(np.linspace(0.0, 2.0 * np.pi, 50))
+    loop = sw.Recording({"twist": twist + 1e-4, "torque": 800.0 * twist + 0.1}, {"twist": "rad", "torque": "N.m"})
+    fit = sw.fit(truth, loop, ["stiffness.k"])
+    assert len(fit.estimates) > 1
+    sources = GearSet.of(fit, name="x", source="loop").sources
+    assert sources["gear.stiffness.k"] == Entry("loop", uncertainty=fit.estimates[0].sigma)
+    assert sources.keys() == GearSet.of(truth, name="x", source="x").sources.keys()
+
+
+def test_a_catalogue_set_becomes_a_drive_with_the_parts_it_lacks() -> None:
+    start = GearSet.read("csg-20-80")
+    motor, disc = sw.motor.DC(resistance=0.3), sw.loads.Inertia(inertia=2.0)
+    whole = start.with_parts(motor=motor, load=disc, source="data sheet")
+    assert whole.drive == sw.drives.PositionDrive(gear=start.gear, motor=motor, load=disc)
+    assert whole.ratings == start.ratings
+    assert {path: whole.sources[path] for path in start.sources} == start.sources
+    assert whole.sources["motor.resistance"] == whole.sources["load.inertia"] == Entry("data sheet")
+    assert whole.sources["motor.inertia"] == Entry("assumed: the default, unless given by: data sheet")
+    other = whole.with_parts(motor=motor.replace(resistance=0.4), source="measured")
+    assert other.sources["motor.resistance"] == Entry("measured")
+    assert other.sources["load.inertia"] == Entry("data sheet")
+
+
+def test_a_part_of_another_family_is_refused() -> None:
+    with pytest.raises(TypeError, match=exactly("position_drive.motor must be one of DC, not 3")):
+        GearSet.read("csg-20-80").with_parts(motor=3, source="x")
+
+
+def test_a_set_is_saved_under_its_own_name(tmp_path: Path) -> None:
+    with pytest.raises(TypeError, match=exactly("name = 'y': a set has its own; change it by replace before it is saved")):
+        save(whole_set(), tmp_path / "x.toml", name="y")  # type: ignore[call-overload]
 
 
 @pytest.mark.parametrize(
@@ -126,6 +266,46 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
 def test_the_uncertainty_of_a_temperature_is_a_difference() -> None:
     kelvin = Quantity(value=20.0, unit="degC", source="x", uncertainty=0.5).to("K")
     assert (kelvin.value, kelvin.uncertainty) == (293.15, 0.5)
+
+
+# Equality
+
+
+def whole_set() -> GearSet:
+    """A set that has every member."""
+    drive = sw.drives.PositionDrive(
+        gear=load("csg-20-80"), control=sw.control.OpenLoop(gain=2.0), load=sw.loads.Inertia(inertia=3.0)
+    )
+    ratings = {"peak_torque": Quantity(value=1.0, unit="N.m", source="x")}
+    return GearSet.of(drive, name="whole", source="x").replace(maker="x", note="x", ratings=ratings)
+
+
+def changed(gear_set: GearSet, member: str) -> dict[str, Any]:
+    """Another value of a member of a set."""
+    known = {"gear.damping": Entry("x", uncertainty=1e-3)}
+    others = {
+        "gear": gear_set.gear.replace(damping=5.0),
+        "sources": {**gear_set.sources, **known},
+        "ratings": {"peak_torque": Quantity(value=1.0, unit="N.m", source="y")},
+        "motor": gear_set.motor.replace(resistance=5.0),
+        "control": sw.control.OpenLoop(gain=3.0),
+        "load": sw.loads.Inertia(inertia=4.0),
+    }
+    return {member: others.get(member, "other")}
+
+
+@pytest.mark.parametrize("member", [field.name for field in fields(GearSet)])
+def test_sets_that_differ_in_one_member_are_different(member: str) -> None:
+    whole = whole_set()
+    assert whole.replace(**{member: getattr(whole, member)}) == whole
+    assert whole.replace(**changed(whole, member)) != whole
+
+
+def test_the_sets_of_the_catalogue_are_all_different_though_some_gears_are_equal() -> None:
+    sets = [GearSet.read(name) for name in catalogue()]
+    assert all(one != other for i, one in enumerate(sets) for other in sets[:i])
+    assert load("hfuc-20-80") == load("csg-20-80")  # the published tables give both the same stiffness and inertia
+    assert load("hfuc-20-80") != load("shg-20-80")
 
 
 # The catalogue

@@ -28,9 +28,9 @@ def test_the_ratio_of_breakaway_is_kept_where_the_table_is_silent() -> None:
     assert found.breakaway / found.coulomb == pytest.approx(1.0388, rel=1e-12)
 
 
-@pytest.mark.parametrize("law", [sw.friction.Stribeck, sw.friction.LuGre])
+@pytest.mark.parametrize("law", [sw.friction.Viscous, sw.friction.Coulomb, sw.friction.Stribeck, sw.friction.LuGre])
 def test_a_fall_at_low_speed_is_found_where_there_is_one(law: type[sw.friction.LuGre]) -> None:
-    truth = law(coulomb=0.03, breakaway=0.05, stribeck_speed=3.0, viscous=2e-4)
+    truth = sw.friction.Stribeck(coulomb=0.03, breakaway=0.05, stribeck_speed=3.0, viscous=2e-4)
     speed = np.geomspace(0.1, 300.0, 60)
     noise = 3e-4 * np.random.default_rng(1).normal(size=len(speed))
     best, other = fit_friction(FrictionTable(speed, truth.steady(speed) + noise), sw.Gear(friction_input=law()))

@@ -94,7 +94,6 @@ def test_a_measured_value_is_contradicted_and_never_averaged() -> None:
 
 def test_a_catalogue_stiffness_within_its_spread_is_no_contradiction() -> None:
     start = sw.GearSet.read("hfuc-25-100")
-    assert start.gear.stiffness.k1 == 31e3
     assert not [c for c in sw.twin(start, torsion=loop()).contradictions if "stiffness" in c.path]
 
 
@@ -126,12 +125,12 @@ def test_a_log_needs_motor_and_load() -> None:
 
 def test_springs_of_different_kinds_are_compared_by_their_stiffness_at_zero_twist() -> None:
     soft = loop()
-    torque = soft["torque"] - 2.7e4 * soft["twist"]  # a spring of 3000 N.m/rad where the catalogue has 31 000
+    torque = soft["torque"] - 2.85e4 * soft["twist"]  # a spring of 1500 N.m/rad where the catalogue has 26 700
     recording = sw.Recording({"twist": soft["twist"], "torque": torque}, {"twist": "rad", "torque": "N.m"})
     found = sw.twin(sw.GearSet.read("hfuc-25-100"), torsion=recording)
     (contradiction,) = (c for c in found.contradictions if "stiffness" in c.path)
-    assert contradiction.earlier == 31e3
-    assert contradiction.measured == pytest.approx(3e3, rel=0.05)
+    assert contradiction.earlier == found.start.gear.stiffness.k1
+    assert contradiction.measured == pytest.approx(1.5e3, rel=0.05)
 
 
 def test_a_value_that_follows_from_a_fit_does_not_keep_its_old_source(found: sw.Twin) -> None:
