@@ -83,7 +83,7 @@ def twin(
     is taken for, or the model does not explain it, that is said first, no gear is written, and the exit code is 3.
     """
     from strainwave.gear_set import GearSet
-    from strainwave.identify.measurement import COLUMNS, read_measurements
+    from strainwave.identify.measurement import COLUMNS, columns_in, read_measurements, unused_columns
     from strainwave.identify.twin import twin as identify
     from strainwave.report.twin import twin_report
 
@@ -109,6 +109,9 @@ def twin(
         _write(out, None if doubted else found.gear_set, report)
     _tell_doubts(found)
     _summarise(found)
+    for kind, path in files.items():
+        if unused := unused_columns(kind, path, columns_in(kind, path, columns)):
+            print(f"{path.name}: columns not used: {', '.join(unused)}")
     if doubted:
         print(f"wrote {out / 'report.html'} alone: no gear is written while a measurement is doubted; --accept writes it")
         raise typer.Exit(DOUBTED)
@@ -224,6 +227,9 @@ def _summarise(found: Twin) -> None:
     width = max((len(verdict.path) for verdict in fitted), default=0)
     for v in fitted:
         print(f"  {v.path:{width}}  {v.value:11.5g} ± {v.sigma:<8.2g} {v.unit:12} {v.state}")
+    for check in found.ratings:
+        if check.exceeded:
+            print(f"rating: {check.recording}: {check}")
     for c in found.contradictions:
         print(f"contradiction: {c.path} = {c.earlier:g} {c.unit} ({c.earlier_source}) against {c.measured:.4g} ({c.source})")
 

@@ -108,7 +108,8 @@ class LinearView(ComparedByFields):
         each = 64.0 * len(self.A) ** 2
         try:
             with np.errstate(over="ignore", invalid="ignore"), room_for("frequencies", frequencies.size, each, "take fewer"):
-                answer = self._transferred(tau * 1j * frequencies[..., None], row, column)
+                at: Complex = np.asarray(tau * 1j * frequencies[..., None], dtype=np.complex128)
+                answer = self._transferred(at, row, column)
         except np.linalg.LinAlgError:
             answer = np.full(frequencies.shape, np.inf, dtype=np.complex128)
         if not np.isfinite(answer).all():

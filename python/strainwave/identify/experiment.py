@@ -330,6 +330,11 @@ class DriveLog(ComparedByFields):
             if name in ENCODERS
         )
 
+    @property
+    def interval(self) -> float:
+        """The shortest time between two instants compared [s]."""
+        return float(np.min(np.diff(self.time)))
+
     def stands_still(self, predicted: Array) -> bool:
         """Whether a prediction, shape (channels, n), has no motion where the measurement has some."""
         moving = [row for row, name in enumerate(self.channels) if name.endswith(("_angle", "_speed"))]

@@ -101,18 +101,22 @@ def read_measurements(
         ValueError: as `read_measurement`, or no file has a column that is named
     """
     named, given = dict(columns or {}), dict(units or {})
-    own_columns: dict[Kind, dict[str, str]] = {}
-    own_units: dict[Kind, dict[str, str]] = {}
-    for kind, path in files.items():
-        present = labels(path)
-        there = {text for label in present for text in (label.text, label.name)}
-        own_columns[kind] = {name: named[name] for name in named.keys() & COLUMNS[kind].keys() if named[name] in there}
-        own_units[kind] = {name: given[name] for name in given.keys() & _found(kind, path, present, own_columns[kind]).keys()}
+    own_columns = {kind: columns_in(kind, path, named) for kind, path in files.items()}
+    own_units = {
+        kind: {name: given[name] for name in given.keys() & _found(kind, path, labels(path), own_columns[kind]).keys()}
+        for kind, path in files.items()
+    }
     for name in named.keys() - {name for own in own_columns.values() for name in own}:
         raise ValueError(f"no file has a column {quoted(named[name])} that can be the {quoted(name)} of a measurement")
     for name in given.keys() - {name for own in own_units.values() for name in own}:
         raise ValueError(f"a unit is given for {quoted(name)}, but no file has this column")
     return {kind: read_measurement(kind, path, own_columns[kind], own_units[kind]) for kind, path in files.items()}
+
+
+def columns_in(kind: Kind, path: str | Path, columns: Mapping[str, str]) -> dict[str, str]:
+    """Those columns that a measurement of this kind can have, and the file has."""
+    there = {text for label in labels(path) for text in (label.text, label.name)}
+    return {name: columns[name] for name in columns.keys() & COLUMNS[kind].keys() if columns[name] in there}
 
 
 def unused_columns(kind: Kind, path: str | Path, columns: Mapping[str, str] | None = None) -> tuple[str, ...]:

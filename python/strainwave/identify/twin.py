@@ -25,7 +25,9 @@ from strainwave.identify.measurement import Kind, read_measurement
 from strainwave.identify.plausible import doubts_of_loop, doubts_of_table
 from strainwave.identify.torsion import Candidate, Friction, Nothing, fit_loop, held_out_blocks
 from strainwave.identify.verdict import Verdict, estimated, judged, known, numbers, verdicts
+from strainwave.ratings import RatingCheck, check_ratings
 from strainwave.recording import Recording
+from strainwave.simulation import simulate
 
 CONTRADICTION = 3.0  # standard deviations
 SURE = 0.9973002039367398  # the share of a normal distribution within three
@@ -74,6 +76,7 @@ class Twin(ComparedByFields):
         evidence: the measurements used
         verdicts: every parameter of the gear
         contradictions: where measurement and starting set exclude each other
+        ratings: what the maker allows, beside what the gear went through in the measurements
     """
 
     start: GearSet
@@ -81,6 +84,7 @@ class Twin(ComparedByFields):
     evidence: tuple[Evidence, ...]
     verdicts: tuple[Verdict, ...]
     contradictions: tuple[Contradiction, ...]
+    ratings: tuple[RatingCheck, ...]
 
     @property
     def doubts(self) -> tuple[Doubt, ...]:
@@ -149,6 +153,7 @@ def twin(
         tuple(evidence),
         tuple(found),
         tuple(_contradictions(start, evidence)),
+        tuple(check for each in evidence for check in check_ratings(start, _load(each))),
     )
 
 
@@ -348,6 +353,22 @@ def _with_cause(what: str, found: Fit, recording: Recording, drive: PositionDriv
         what,
         "no single mistake in sign, unit, side or ratio explains it; look at the plot, and at what is known of the drive",
     )
+
+
+def _load(evidence: Evidence) -> Recording:
+    """What the gear went through in a measurement: torque at the output or, in a friction table, speed and torque at the input.
+
+    Of a log, whose torque nobody measured, as the fitted drive has it.
+    """
+    experiment = evidence.fit.experiment
+    if isinstance(experiment, DriveLog):
+        run = simulate(evidence.fit.model, experiment.command, experiment.dt, sample=experiment.interval)
+        return Recording(run.columns, run.units, evidence.source)
+    assert isinstance(experiment, TorsionLoop | FrictionTable)
+    columns = {"torque": experiment.torque}
+    if isinstance(experiment, FrictionTable):
+        columns["speed"] = experiment.speed
+    return Recording(columns, {name: {"torque": "N.m", "speed": "rad/s"}[name] for name in columns}, evidence.source)
 
 
 def _sources(start: GearSet, found: Sequence[Verdict]) -> dict[str, Entry]:

@@ -106,7 +106,7 @@ def test_the_two_friction_data_sets_of_document_p_are_shown_as_contradictory() -
     assert coulomb.measured == pytest.approx(0.012554434963, rel=1e-9)
     assert viscous.measured == pytest.approx(0.030840444789, rel=1e-9)
     assert viscous.measured / viscous.earlier == pytest.approx(77.1, abs=0.05)
-    assert min(coulomb.distance, viscous.distance) > 10.0
+    assert min(coulomb.distance, viscous.distance) > 4.0  # of five speeds: Student's distribution with three degrees of freedom
 
 
 def test_a_twin_without_measurement_is_refused() -> None:
