@@ -8,7 +8,7 @@ exact derivatives then refine stiffness, breakaway and the spring together.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Protocol
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from strainwave import friction, hysteresis, stiffness
 from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields
+from strainwave.identify.branches import PRESLIDING
 from strainwave.identify.experiment import TorsionLoop
 from strainwave.identify.fit import Fit, fit
 from strainwave.identify.friction import dissipating
@@ -151,23 +152,29 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], beside:
     """The fit, without elements that the loop cannot tell from the spring or from nothing.
 
     An element that never slips within the loop is a linear spring, one that holds no torque is none, and two that slip at the
-    same twist are one.
+    same twist are one. One that slips before the loop can tell is given the least twist to slip at that it can.
     """
     half, span = half_span(loop), float(np.ptp(loop.torque))
+    least = half * (SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING)
+    stiff: set[int] = set()
     while True:
-        free = [f"stiffness.{field['name']}" for field in gear.stiffness.fields] + beside.free(gear)
+        free = [f"stiffness.{field['name']}" for field in gear.stiffness.fields] + beside.free(gear, stiff)
         found = _in_order(fit(gear, loop, free, training=training))
         fitted = beside.elements(found.gear)
         slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < SLIPPING * half * k]
-        if len(slipping) == len(fitted):
-            if not _alike(slipping):
-                return found
-            gear = _merged(found.gear)
-            continue
-        spring = found.gear.stiffness
-        assert isinstance(spring, Spring)
-        spring = _stiffened(spring, sum(k for k, f in fitted if f >= SLIPPING * half * k))
-        gear = gear.replace(stiffness=spring, hysteresis=_maxwell(slipping))
+        if len(slipping) < len(fitted):
+            spring = found.gear.stiffness
+            assert isinstance(spring, Spring)
+            spring = _stiffened(spring, sum(k for k, f in fitted if f >= SLIPPING * half * k))
+            gear, stiff = gear.replace(stiffness=spring, hysteresis=_maxwell(slipping)), set()
+        elif _alike(slipping):
+            gear, stiff = _merged(found.gear), set()
+        elif stiffer := {i for i, (k, f) in enumerate(fitted) if f < 0.999 * least * k}:
+            stiff |= stiffer
+            slower = [(f / least if i in stiff else k, f) for i, (k, f) in enumerate(fitted)]
+            gear = found.gear.replace(hysteresis=_maxwell(slower))
+        else:
+            return found
 
 
 def _pairs(gear: Gear) -> list[tuple[float, float]]:
@@ -227,8 +234,8 @@ class Beside(Protocol):
         """The gear with these parameters."""
         ...
 
-    def free(self, gear: Gear) -> list[str]:
-        """Paths of the parameters asked for."""
+    def free(self, gear: Gear, stiff: Collection[int]) -> list[str]:
+        """Paths of the parameters asked for; of `stiff` Maxwell elements the breakaway alone."""
         ...
 
     def elements(self, gear: Gear) -> list[tuple[float, float]]:
@@ -256,8 +263,10 @@ class Elements:
     def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
         return gear.replace(hysteresis=_elements(weights, half_span(loop) * SLIPS))
 
-    def free(self, gear: Gear) -> list[str]:
-        return ["hysteresis.stiffness", "hysteresis.breakaway"] if _pairs(gear) else []
+    def free(self, gear: Gear, stiff: Collection[int]) -> list[str]:
+        count = range(len(_pairs(gear)))
+        stiffnesses = [f"hysteresis.stiffness[{i}]" for i in count if i not in stiff]
+        return stiffnesses + [f"hysteresis.breakaway[{i}]" for i in count]
 
     def elements(self, gear: Gear) -> list[tuple[float, float]]:
         return _pairs(gear)
@@ -281,7 +290,7 @@ class Nothing:
     def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
         return gear
 
-    def free(self, gear: Gear) -> list[str]:
+    def free(self, gear: Gear, stiff: Collection[int]) -> list[str]:
         return []
 
     def elements(self, gear: Gear) -> list[tuple[float, float]]:
@@ -310,7 +319,7 @@ class Friction:
         with warnings.catch_warnings(action="ignore", category=PassivityWarning):
             return gear.replace(friction_input=law.replace(coulomb=0.0, breakaway=breakaway))
 
-    def free(self, gear: Gear) -> list[str]:
+    def free(self, gear: Gear, stiff: Collection[int]) -> list[str]:
         return ["friction_input.breakaway"]
 
     def elements(self, gear: Gear) -> list[tuple[float, float]]:

@@ -263,7 +263,10 @@ def _of_friction(loop: TorsionLoop, best: Candidate, gear: Gear, friction_measur
 
 
 def _shared(best: Candidate, gear: Gear, loop: TorsionLoop, friction_measured: bool) -> dict[str, str]:
-    """Parameters that a loop from the input tells only together with what was kept."""
+    """Parameters that a loop tells only together with what was kept."""
+    if loop.single_branch:
+        why = "a single branch tells the torque of spring and hysteresis together, and the hysteresis was kept"
+        return {f"gear.{estimate.path}": why for estimate in best.fit.estimates}
     if loop.input_ratio is None or friction_measured or not np.any(loop.friction(gear)):
         return {}
     ratio = abs(loop.input_ratio)
