@@ -2,8 +2,8 @@
 
 The joint and its measurements are a program that shares nothing with this package (STRAINWAVE_RIG points to its folder). Of
 each seed a friction table, the torsion loop of one rig from both sides, a loading branch and a log of voltage from rest become
-twins. What they identify must lie within two standard deviations of the truth in 90 % of the cases, and the loops that the twins
-make must be as wide as the true ones, within 3 %.
+twins. What they identify must lie within two standard deviations of the truth in 90 % of the cases, and the loops that these
+twins make must be as wide as the true ones, within 3 %.
 """
 
 from __future__ import annotations

@@ -90,7 +90,7 @@ def causes(recording: Recording, drive: PositionDrive) -> list[Cause]:
             log = DriveLog.of(cause.recording, cause.drive)
             zeros = np.array([nuisance.start for nuisance in log.nuisances])
             predicted, _ = log.predict(cause.drive, [], zeros)
-        except ValueError:  # such a log could not be, or not be run
+        except (ValueError, FloatingPointError):  # such a log could not be, or not be run
             continue
         middle = np.mean(log.measured - predicted, axis=1, keepdims=True)
         scored.append((float(np.max(left(log.measured, predicted + middle))), cause))

@@ -303,7 +303,7 @@ class _Problem:
         def residuals(x: Array) -> Array:
             try:
                 predicted, _ = self.predict(x)
-            except ValueError:  # out of the model's domain; of a step to where nothing is finite SciPy takes a quarter
+            except (ValueError, FloatingPointError):  # out of the domain, or diverged: SciPy takes a quarter of such a step
                 predicted = np.full_like(self.experiment.measured, np.inf)
             return ((predicted - self.experiment.measured) * weights)[:, self.training].ravel()
 
