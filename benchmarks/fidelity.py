@@ -309,7 +309,12 @@ def axis_scores(folder: Path) -> list[Score]:
         ),
         "MaxwellSlipFriction, 2": (
             lambda x: sw.friction.MaxwellSlipFriction(
-                stiffness=[x[2] + 1e-9, x[3] + 1e-9], share=[1.0, 1.0], coulomb=x[1], breakaway=x[1], viscous=x[0]
+                stiffness=[x[2] + 1e-9, x[3] + 1e-9],
+                share=[1.0, 1.0],
+                coulomb=x[1],
+                stribeck_speed=2.0,
+                attraction=0.3,
+                viscous=x[0],
             ),
             [[200.0, 20.0, 1e4, 1e5]],
         ),
@@ -408,7 +413,7 @@ def joint_scores(file: Path) -> list[Score]:
         return f.LoadDependent(driving_forward=x[0], backdriving_reverse=x[1])
 
     def efficiency(x: Array) -> Any:
-        return f.TorqueEfficiency(average_loss=x[0] + abs(x[1] - 1.0), difference_loss=x[1] - 1.0, viscous=0.0)
+        return f.TorqueEfficiency(average_loss=x[0] + abs(x[1] - 1.0), difference_loss=x[1] - 1.0, presliding=0.01)
 
     own, base = [5.0, 5.0], [4.0, 5.0, 3.0, 1.0]
     laws: dict[str, tuple[Callable[[Array], list[Any]], list[float]]] = {
@@ -462,7 +467,7 @@ def main() -> None:
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="folder of the measurements of others")
     options = parser.parse_args()
     warnings.simplefilter("ignore", sw.PassivityWarning)  # a fit tries what it likes
-    print(table("Document T's loop, % of the span of the torque", torsion_scores(published_loop(), sw.stiffness.Linear())))
+    print(table("Document T's loop, % of the span of the torque", torsion_scores(published_loop(), sw.stiffness.Linear(k=1e4))))
     friction = FrictionTable.of(sw.Recording.from_csv(PUBLISHED / "position-control-friction.csv"))
     print(table("Document P's Table 2, % of its greatest torque", table_scores(friction)))
     for folder, tell in OTHERS.items():
@@ -477,7 +482,7 @@ def loops(folder: Path) -> str:
     title = "Six loops of printed cycloidal gears, % of the span of the torque"
     tables = (
         loops_table(
-            f"{title}: hysteresis beside a cubic spring", [torsion_scores(one, sw.stiffness.Cubic()) for one in measured]
+            f"{title}: hysteresis beside a cubic spring", [torsion_scores(one, sw.stiffness.Cubic(a1=1e4)) for one in measured]
         ),
         loops_table(f"{title}: springs beside MaxwellSlip, 4", [spring_scores(one) for one in measured]),
     )

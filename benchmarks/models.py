@@ -18,7 +18,7 @@ import os
 import platform
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from importlib import metadata
 from pathlib import Path
@@ -37,6 +37,9 @@ ROUNDS = 8  # over all models: a busy minute of the machine spoils one of them o
 LAW_RUNS, DRIVE_RUNS = 5, 15  # of each model in each round
 DOUBLE = 8  # bytes
 
+LUGRE = sw.friction.LuGre(
+    coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, bristle_stiffness=50.0, bristle_damping=5e-5, viscous=5e-5
+)
 SLIP = 5e-5 * 1.6 ** np.arange(16)  # twist at which each element slips [rad]
 
 
@@ -64,8 +67,8 @@ SUITED: dict[str, list[dict[str, Any]]] = {
         {"stiffness": np.full(n, 50.0 / n), "share": np.arange(1.0, n + 1.0), "breakaway": 0.045} for n in (1, 4, 8)
     ],
     "load_dependent": [{f"{way}_{sense}": 0.2 for way in ("driving", "backdriving") for sense in ("forward", "reverse")}],
-    "cyclic": [{"law": sw.friction.LuGre(), "order": [1, 2], "amplitude": [0.2, 0.2], "phase": [0, 0]}],
-    "thermal": [{"law": sw.friction.LuGre(), "dry_fall": 0.01, "viscous_fall": 0.02}],
+    "cyclic": [{"law": LUGRE, "order": [1, 2], "amplitude": [0.2, 0.2], "phase": [0, 0]}],
+    "thermal": [{"law": LUGRE, "dry_fall": 0.01, "viscous_fall": 0.02}],
     "linear": [{"k": 1.2e4}],
     "piecewise": [{"k1": 1.2e4, "k2": 6e3}],
     "three_segment": [{"k1": 1.2e4, "k2": 1.8e4, "k3": 2.1e4, "t1": 10.0, "t2": 40.0}],
@@ -126,7 +129,12 @@ def models() -> Iterator[tuple[str, Any]]:
     for family, kinds in _core.families.items():
         for name, kind in kinds.items():
             for numbers in SUITED.get(name, [{}]):
-                yield family, filled(kind(**numbers))
+                yield family, filled(usual(kind, numbers))
+
+
+def usual(kind: type[Any], numbers: Mapping[str, Any]) -> Any:
+    """A model of these numbers, the others of the order of magnitude that the package knows."""
+    return kind(**({field["name"]: field["default"] for field in kind.fields} | dict(numbers)))
 
 
 def filled(model: Any) -> Any:
@@ -159,7 +167,7 @@ def placed(whole: Any, model: Any, within: tuple[type, ...] = ()) -> Any | None:
         for kind in kinds:
             if kind in within:
                 continue
-            part = getattr(whole, field["name"]) if not field["options"] else kind()
+            part = getattr(whole, field["name"]) if not field["options"] else usual(kind, {})
             found = placed(part, model, (*within, kind))
             if found is not None:
                 return whole.replace(**{field["name"]: found})

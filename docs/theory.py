@@ -65,11 +65,15 @@ def caption(shown: dict[str, Any]) -> str:
 
 def call(model: Any) -> str:
     """The call that makes a model, without what has its default."""
-    plain = type(model)()
-    numbers = {field["name"]: getattr(model, field["name"]) for field in model.fields}
-    told = {name: value for name, value in numbers.items() if value != getattr(plain, name)}
+    numbers = {field["name"]: (getattr(model, field["name"]), field) for field in model.fields}
+    told = {name: value for name, (value, field) in numbers.items() if field["required"] or value != unasked(model, field)}
     words = (f"{name}={call(value) if hasattr(value, 'fields') else said(value)}" for name, value in told.items())
     return f"{type(model).__name__}({', '.join(words)})"
+
+
+def unasked(model: Any, field: dict[str, Any]) -> Any:
+    """What a parameter is if it is not given."""
+    return getattr(model, field["follows"]) if field["follows"] else field["default"]
 
 
 def said(value: Any) -> str:
@@ -146,13 +150,17 @@ TARGETS = anchors() | references() | {f"document {letter}": "errata.md" for lett
 def parameters(model: Model) -> str:
     rows = ["| parameter | unit | default | limits | meaning |", "|---|---|---|---|---|"]
     for field in model.fields:
-        cells = (field["unit"] or "—", default(model, field["name"]), limits(model, field), field["doc"])
+        cells = (field["unit"] or "—", default(field), limits(model, field), field["doc"])
         rows.append(f"| `{field['name']}` | " + " | ".join(escaped(cell) for cell in cells) + " |")
     return "\n".join(rows)
 
 
-def default(model: Model, name: str) -> str:
-    value = getattr(model(), name)
+def default(field: dict[str, Any]) -> str:
+    if field["required"]:
+        return "required"
+    if field["follows"]:
+        return f"as `{field['follows']}`"
+    value = field["default"]
     if hasattr(value, "fields"):
         return type(value).__name__
     if isinstance(value, tuple):
@@ -168,7 +176,7 @@ def limits(model: Model, field: dict[str, Any]) -> str:
         return f"any {families[0]}" if families else "—"
     if field["options"]:
         return ", ".join(field["options"])
-    found = re.search(rf"^{field['name']}: .*, in ([(\[].*[)\]]); default", model.__doc__ or "", re.MULTILINE)
+    found = re.search(rf"^{field['name']}: .*, in ([(\[].*[)\]]); (?:default|required)", model.__doc__ or "", re.MULTILINE)
     return found[1].replace(" ", "\N{NO-BREAK SPACE}") if found else "—"
 
 
@@ -194,17 +202,41 @@ SHOWN: dict[str, dict[str, Any]] = {
     "fourier": {"": sw.kinematic_error.Fourier(order=[1, 2, 4], amplitude=[5e-5, 2e-4, 4e-5], phase=[0.0, 0.3, 1.1])},
     "misalignment": {
         f"{name}:": sw.kinematic_error.Misalignment(
-            housing_eccentricity=20e-6, generator_eccentricity=10e-6, generator_direction=0.9, combine=name
+            major_radius=25.25e-3,
+            minor_radius=24.75e-3,
+            pitch_radius=25e-3,
+            housing_eccentricity=20e-6,
+            generator_eccentricity=10e-6,
+            generator_direction=0.9,
+            combine=name,
         )
         for name in ("single", "max", "mean")
     },
-    "position_dependent": {"": sw.friction.PositionDependent()},
+    "position_dependent": {
+        "": sw.friction.PositionDependent(
+            quadratic=1.5738e-6,
+            linear=-3.7901e-4,
+            constant=0.0720,
+            static_ratio=1.0388,
+            speed_factor=0.0004,
+            reference_speed=0.8,
+            domain_start=0.0,
+            domain_end=240.8,
+        )
+    },
     "load_dependent": {
         "": sw.friction.LoadDependent(
             driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.3
         )
     },
-    "cyclic": {"": sw.friction.Cyclic(law=sw.friction.Stribeck(), order=[1, 2], amplitude=[0.1, 0.3], phase=[0.0, 1.0])},
+    "cyclic": {
+        "": sw.friction.Cyclic(
+            law=sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5),
+            order=[1, 2],
+            amplitude=[0.1, 0.3],
+            phase=[0.0, 1.0],
+        )
+    },
     "thermal": {
         "": sw.friction.Thermal(
             law=sw.friction.Coulomb(coulomb=0.03, breakaway=0.04, viscous=2e-3), dry_fall=0.005, viscous_fall=0.025
@@ -221,8 +253,6 @@ SHOWN: dict[str, dict[str, Any]] = {
         "not symmetric:": preisach(sw.hysteresis.GridDensity(limit=1e-3, weight=[0.6, 0.1, 0.0])),
     },
     "preisach": {"": preisach(sw.hysteresis.PowerDensity(limit=1e-3, saturation=1.0, exponent=2.0))},
-    "regimes": {"": sw.hysteresis.Regimes()},
-    "multi_compliance": {"": sw.stiffness.MultiCompliance()},
 }
 
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <new>
 
 #include "describe.hpp"
 
@@ -20,12 +21,22 @@ using Values = nb::ndarray<nb::numpy, double, nb::c_contig>;
 using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
+/// Room for so many numbers, not yet filled; or a MemoryError that says how many they are.
+template <class T = double>
+std::unique_ptr<T[]> room(std::size_t size) {
+    std::unique_ptr<T[]> numbers(new (std::nothrow) T[size + 1]);
+    if (numbers) return numbers;
+    PyErr_Format(PyExc_MemoryError, "there is no memory for %zu numbers, which take %zu MB; take fewer at a time", size,
+                 size / 1000000 * sizeof(T));
+    throw nb::python_error();
+}
+
 /// An array that Python owns, not yet filled.
 template <class T = double>
 nb::ndarray<nb::numpy, T, nb::c_contig> array(const std::vector<std::size_t>& shape) {
     std::size_t size = 1;
     for (std::size_t n : shape) size *= n;
-    auto* data = new T[size + 1];
+    auto* const data = room<T>(size).release();
     nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
     return {data, shape.size(), shape.data(), owner};
 }
@@ -57,6 +68,19 @@ inline std::string outside(const Domain<double>& domain) {
 
 inline std::string text_of(nb::handle value) { return nb::cast<std::string>(nb::repr(value)); }
 
+/// The same, cut short where it is long; of a value that was never made, that.
+inline std::string shortened(nb::handle value) {
+    if (nb::inst_check(value) && !nb::inst_ready(value))
+        return "a " + nb::cast<std::string>(value.type().attr("__name__")) + " that was never made";
+    return nb::cast<std::string>(nb::module_::import_("reprlib").attr("repr")(value));
+}
+
+/// Whether a value is a T that was made: one from `T.__new__` alone holds nothing.
+template <class T>
+bool is_made(nb::handle value) {
+    return nb::isinstance<T>(value) && nb::inst_ready(value);
+}
+
 /// Whether a number counts something.
 template <class T>
 constexpr bool is_whole(const Field& field) {
@@ -68,7 +92,7 @@ struct Reader {
     std::string owner;
 
     [[noreturn]] void refuse_type(const Field& field, const std::string& wanted, nb::handle value) const {
-        throw nb::type_error((owner + "." + field.name + " must be " + wanted + ", not " + text_of(value)).c_str());
+        throw nb::type_error((owner + "." + field.name + " must be " + wanted + ", not " + shortened(value)).c_str());
     }
     double number(nb::handle value, const Field& field, const std::string& name) const {
         double x = 0.0;
@@ -87,10 +111,8 @@ struct Reader {
         } else if constexpr (is_slots<T>) {
             return {sequence<decltype(T{}.slot)>(value, field)};
         } else if constexpr (Described<T>) {
-            T part{};
-            if (!nb::try_cast<T>(value, part))
-                refuse_type(field, "a " + nb::cast<std::string>(nb::type<T>().attr("__name__")), value);
-            return part;
+            if (!is_made<T>(value)) refuse_type(field, "a " + nb::cast<std::string>(nb::type<T>().attr("__name__")), value);
+            return nb::cast<T>(value);
         } else if constexpr (is_sequence<T> || is_array<T>) {
             return sequence<T>(value, field);
         } else if constexpr (std::is_enum_v<T>) {
@@ -115,7 +137,7 @@ private:
         bool found = false;
         const auto attempt = [&]<class Law>(const Law*) {
             names += (names.empty() ? "" : ", ") + std::string(nb::cast<std::string>(nb::type<Law>().attr("__name__")));
-            if (!found && nb::isinstance<Law>(value)) {
+            if (!found && is_made<Law>(value)) {
                 choice.model = nb::cast<Law>(value);
                 found = true;
             }
@@ -242,11 +264,14 @@ std::string documentation() {
             }
             if constexpr (std::is_enum_v<T>) text += ", one of " + text_of(options_of<T>());
         }
-        text += "; default " + text_of(to_python(member)) + "\n";
+        text += field.required  ? "; required\n"
+                : field.follows ? std::string("; default as ") + field.follows + "\n"
+                                : "; default " + text_of(to_python(member)) + "\n";
     };
     M::fields(model, describe);
     text +=
-        "\nRaises\n------\nTypeError: an unknown parameter, or one of the wrong kind\nValueError: a number that is not finite or "
+        "\nRaises\n------\nTypeError: an unknown parameter, one of the wrong kind, or none where it is required\nValueError: a "
+        "number that is not finite or "
         "out of its range\n";
     if constexpr (requires { M::source; }) text += std::string("\nSource\n------\n") + M::source + "\n";
     return text;
@@ -272,22 +297,59 @@ void check_passivity(const M& model) {
     }
 }
 
-/// `model` with the members that `values` names; an unknown name is refused.
+/// The names of all members, for messages.
 template <class M>
-M replaced(M model, const nb::kwargs& values, const std::string& name) {
+std::string names_of() {
+    std::string names;
+    const M model{};
+    M::fields(model, [&](const auto&, const Field& field) { names += (names.empty() ? "" : ", ") + std::string(field.name); });
+    return names;
+}
+
+/// Sets the members that `values` names; an unknown name is refused.
+template <class M>
+void set_members(M& model, const nb::kwargs& values, const std::string& name) {
     const Reader reader{name};
     nb::dict unknown(values);
-    std::string known;
     M::fields(model, [&]<class T>(T& member, const Field& field) {
-        known += (known.empty() ? "" : ", ") + std::string(field.name);
         if (!values.contains(field.name)) return;
         member = reader.template read<T>(values[field.name], field);
         nb::del(unknown[field.name]);
     });
     for (auto [key, value] : unknown)
-        throw nb::type_error((name + " has no parameter " + text_of(key) + "; it has " + known).c_str());
+        throw nb::type_error((name + " has no parameter " + shortened(key) + "; it has " + names_of<M>()).c_str());
+}
+
+/// `model` with other values of the members that `values` names.
+template <class M>
+M replaced(M model, const nb::kwargs& values, const std::string& name) {
+    set_members(model, values, name);
     check_relations(model, name);
     return model;
+}
+
+/// A new model of these values; refused where one that is required is not among them.
+template <class M>
+M made(nb::kwargs values, const std::string& name) {
+    M model{};
+    std::string missing;
+    M::fields(model, [&](const auto&, const Field& field) {
+        if (values.contains(field.name)) return;
+        if (field.required) missing += (missing.empty() ? "" : ", ") + std::string(field.name);
+        if (field.follows && values.contains(field.follows)) values[field.name] = values[field.follows];
+    });
+    set_members(model, values, name);
+    if (!missing.empty()) throw nb::type_error((name + " needs " + missing + ": no value suits most gears").c_str());
+    check_relations(model, name);
+    return model;
+}
+
+/// Refuses parameters given by place, which nobody could read.
+template <class M>
+void check_named(const nb::args& unnamed, const std::string& name) {
+    if (unnamed.size() > 0)
+        throw nb::type_error(
+            (name + " takes its parameters by name, not " + shortened(unnamed[0]) + " alone; it has " + names_of<M>()).c_str());
 }
 
 /// The members as Python sees them, by name.
@@ -307,23 +369,25 @@ std::string represented(const M& model, const std::string& name) {
     return name + "(" + text + ")";
 }
 
+/// "def head(self, *, name: type = ..., ...) -> result"; required members have no value by default where a model is made.
 template <class M>
-std::string signature(const std::string& head, const std::string& result) {
+std::string signature(const std::string& head, const std::string& result, bool makes) {
     std::string text = "def " + head + "(self, *";
     const M defaults{};
     M::fields(defaults, [&]<class T>(const T&, const Field& field) {
-        text += std::string(", ") + field.name + ": " + python_type<T>(true) + " = ...";
+        text += std::string(", ") + field.name + ": " + python_type<T>(true) + (makes && field.required ? "" : " = ...");
     });
     return text + ") -> " + result;
 }
 
 /// What is known of each member besides its value: name, unit, doc, limits (None: no limit) and whether the lower one is open, its
-/// kind, and what it may be chosen from.
+/// kind, and what it may be chosen from; whether it is required, the member it follows if it is not given, and its value by
+/// default: an order of magnitude where that is not used.
 template <class M>
 nb::tuple schema() {
     nb::list list;
     const M model{};
-    M::fields(model, [&]<class T>(const T&, const Field& field) {
+    M::fields(model, [&]<class T>(const T& member, const Field& field) {
         nb::dict entry;
         entry["name"] = field.name;
         entry["unit"] = field.unit;
@@ -337,32 +401,37 @@ nb::tuple schema() {
                                                                      : "number";
         entry["open"] = field.min == smallest;
         entry["options"] = options_of<T>();
+        entry["required"] = field.required;
+        entry["follows"] = field.follows ? nb::object(nb::str(field.follows)) : nb::none();
+        entry["default"] = to_python(member);
         list.append(entry);
     });
     return nb::tuple(list);
 }
 
-/// Binds a described struct as a frozen value.
+/// Binds a described struct as a frozen value. None can be derived from: what is compiled would not call what Python overrides.
 template <class M>
 nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string& name) {
     static_assert(fully_described<M>, "every member needs a Field");
-    auto c = nb::class_<M>(scope, python_name, kept(documentation<M>()));
+    auto c = nb::class_<M>(scope, python_name, nb::is_final(), kept(documentation<M>()));
     c.def(
         "__init__",
-        [name](M* self, const nb::kwargs& values) {
-            const M model = replaced(M{}, values, name);
+        [name](M* self, const nb::args& unnamed, const nb::kwargs& values) {
+            check_named<M>(unnamed, name);
+            const M model = made<M>(values, name);
             check_passivity(model);
             new (self) M(model);
         },
-        nb::sig(kept(signature<M>("__init__", "None"))));
+        nb::sig(kept(signature<M>("__init__", "None", true))));
     c.def(
         "replace",
-        [name](const M& self, const nb::kwargs& values) {
+        [name](const M& self, const nb::args& unnamed, const nb::kwargs& values) {
+            check_named<M>(unnamed, name);
             const M model = replaced(self, values, name);
             check_passivity(model);
             return model;
         },
-        nb::sig(kept(signature<M>("replace", python_type<M>(false)))), "The same with the named parameters changed.");
+        nb::sig(kept(signature<M>("replace", python_type<M>(false), false))), "The same with the named parameters changed.");
     const M defaults{};
     M::fields(defaults, [&]<class T>(const T& member, const Field& field) {
         const auto offset = reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&defaults);
@@ -377,10 +446,7 @@ nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string&
     c.def("__repr__", [python_name](const M& self) { return represented(self, python_name); });
     c.def(
         "__eq__",
-        [](const M& self, nb::handle other) {
-            M right{};
-            return nb::isinstance<M>(other) && nb::try_cast<M>(other, right) && parts_of(self) == parts_of(right);
-        },
+        [](const M& self, nb::handle other) { return is_made<M>(other) && parts_of(self) == parts_of(nb::cast<M>(other)); },
         nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"));
     c.def("__hash__", [](const M& self) { return nb::hash(nb::tuple(members(self).values())); });
     c.def("__getstate__", [](const M& self) { return members(self); }, nb::sig("def __getstate__(self) -> dict[str, object]"));
@@ -388,6 +454,13 @@ nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string&
         "__setstate__",
         [name](M* self, const nb::dict& state) { new (self) M(replaced(M{}, nb::borrow<nb::kwargs>(state), name)); },
         nb::sig("def __setstate__(self, state: dict[str, object], /) -> None"));
+    c.def(
+        "__reduce__",
+        [](nb::handle self) {  // as every protocol of pickle can write it
+            return nb::make_tuple(nb::module_::import_("copyreg").attr("__newobj__"), nb::make_tuple(self.type()),
+                                  self.attr("__getstate__")());
+        },
+        nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
     c.attr("name") = name;
     if constexpr (requires { M::source; }) c.attr("source") = M::source;
     c.attr("fields") = schema<M>();

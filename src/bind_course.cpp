@@ -37,12 +37,13 @@ Values inputs_of(const Signal& command, const Signal& load_torque, const Signal&
 
 /// 0, step, 2 step, … and `duration`, which is always the last.
 Values grid(double step, double duration, double tolerance) {
-    std::vector<double> instants(std::size_t(duration / step) + 3);
-    std::size_t count = 1;  // 0
+    const auto instants = room(std::size_t(duration / step) + 3);
+    std::size_t count = 0;
+    instants[count++] = 0.0;
     for (double next = step; next < duration - tolerance; next = double(count) * step) instants[count++] = next;
     instants[count++] = duration;
     Values out = array({count});
-    std::copy_n(instants.begin(), count, out.data());
+    std::copy_n(instants.get(), count, out.data());
     return out;
 }
 
@@ -57,14 +58,17 @@ struct Queue {
 /// Instants from three series: whatever is within `tolerance` of its neighbour is one. Which are samples, and the longest step.
 nb::tuple course_of(const Numbers& steps, const Numbers& samples, const Numbers& breaks, double tolerance) {
     const std::size_t most = steps.size() + samples.size() + breaks.size();
-    std::vector<double> instants(most);
-    std::vector<std::uint8_t> sampled(most);
+    const auto instants = room(most);
+    const auto sampled = room<std::uint8_t>(most);
     Queue step(steps), sample(samples), jump(breaks);
     std::size_t count = 0;
     double before = -unbounded;
     for (std::size_t i = 0; i < most; ++i) {
         const double instant = std::min(std::min(step.first(), sample.first()), jump.first());
-        if (instant - before > tolerance) instants[count++] = instant;
+        if (instant - before > tolerance) {
+            sampled[count] = 0;
+            instants[count++] = instant;
+        }
         before = instant;
         if (step.first() == instant) {
             ++step.next;
@@ -78,8 +82,8 @@ nb::tuple course_of(const Numbers& steps, const Numbers& samples, const Numbers&
     }
     Values out = array({count});
     auto flags = array<std::uint8_t>({count});
-    std::copy_n(instants.begin(), count, out.data());
-    std::copy_n(sampled.begin(), count, flags.data());
+    std::copy_n(instants.get(), count, out.data());
+    std::copy_n(sampled.get(), count, flags.data());
     double longest = 0.0;
     for (std::size_t i = 1; i < count; ++i) longest = std::max(longest, instants[i] - instants[i - 1]);
     return nb::make_tuple(out, flags, longest);

@@ -80,8 +80,8 @@ std::string text_of(const StepsSpent& error) {
 }
 
 nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Numbers& values, const Numbers& instants,
-                   const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded, double fastest, double largest,
-                   int threads, const Series& out, const nb::object& progress) {
+                   const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded, double fastest, int threads,
+                   const Series& out, const nb::object& progress) {
     const Request request(instants, inputs, keep);
     if (values.ndim() != 2 || values.shape(0) != numbers.size())
         throw nb::value_error("values of n numbers and m members have shape (n, m)");
@@ -93,8 +93,7 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
     std::vector<Verdict> verdicts;
     {
         nb::gil_scoped_release free;
-        verdicts =
-            simulate_many(drive, variation, request.course, recorded, fastest, largest, threads, out.data(), request.kept, pause);
+        verdicts = simulate_many(drive, variation, request.course, recorded, fastest, threads, out.data(), request.kept, pause);
     }
     auto sound = array<bool>({variation.members});
     Values twists = array({variation.members}), rates = array({variation.members}), on_bristles = array({variation.members});
@@ -203,13 +202,13 @@ nb::tuple loop_derivatives(const AnyGear<double>& gear, const Numbers& twist, co
     const std::size_t n = twist.size();
     for (std::size_t i = 0; i < n; ++i) check_domain("gear.stiffness", domain<double>(gear.stiffness, twist.data()[i]));
     Values out = array({n}), slopes = array({parameters.size() + 1, n});
-    kernels().differentiate_loop(gear, twist.data(), n, parameters, out.data(), slopes.data());
+    kernels().differentiate_loop(gear, twist.data(), n, parameters, out.data(), slopes.data(), pausing(nb::none()));
     return nb::make_tuple(out, slopes);
 }
 
 nb::tuple steady_derivatives(const AnyGear<double>& gear, const Numbers& speed, const std::vector<int>& parameters) {
     Values out = array({speed.size()}), slopes = array({parameters.size(), speed.size()});
-    kernels().differentiate_steady(gear, speed.data(), speed.size(), parameters, out.data(), slopes.data());
+    kernels().differentiate_steady(gear, speed.data(), speed.size(), parameters, out.data(), slopes.data(), pausing(nb::none()));
     return nb::make_tuple(out, slopes);
 }
 
@@ -276,7 +275,8 @@ public:
             high = at + (reach *= 2.0);
             if (!std::isfinite(high)) throw nb::value_error(("no twist gives the torque " + with_unit(wanted, "N.m")).c_str());
         }
-        for (int i = 0; i < 2000 && low != high; ++i) {
+        for (std::size_t i = 0; i < 2000 && low != high; ++i) {
+            let_interrupt(i);
             const double middle = low + 0.5 * (high - low);
             if (middle == low || middle == high) break;
             (away * (torque(middle) - wanted) < 0.0 ? low : high) = middle;
@@ -285,19 +285,20 @@ public:
     }
 };
 
-Values trace_of(const AnyGear<double>& gear, nb::handle twist) {
-    const auto path = path_of(twist, "twist");
+Values trace_of(const AnyGear<double>& gear, const Call& call) {
+    const auto path = steps_of(call["twist"], "twist", "rad");
     auto [out, torque] = like(path);
     QuasiStatic moved(gear);
     for (std::size_t i = 0; i < path.size(); ++i) {
+        let_interrupt(i);
         moved.move(path.data()[i]);
         torque[i] = moved.torque(path.data()[i]);
     }
     return out;
 }
 
-Values twist_of(const AnyGear<double>& gear, nb::handle torque) {
-    const auto path = path_of(torque, "torque");
+Values twist_of(const AnyGear<double>& gear, const Call& call) {
+    const auto path = path_of(call["torque"], "torque");
     auto [out, twist] = like(path);
     QuasiStatic moved(gear);
     for (std::size_t i = 0; i < path.size(); ++i) moved.move(twist[i] = moved.twist(path.data()[i]));
@@ -313,19 +314,19 @@ void bind_drives(nb::module_& core) {
     core.attr("drives") = drives;
 
     auto gear = bind<Gear>(core, "Gear", "gear");
-    gear.def(
-        "save",
-        [](nb::handle self, nb::handle path, const nb::kwargs& words) {
-            nb::module_::import_("strainwave.gear_set").attr("save")(self, path, **words);
-        },
-        nb::arg("path"), nb::arg("words"), nb::sig("def save(self, path: str | pathlib.Path, *, name: str, source: str) -> None"),
-        "Writes a gear file, as `strainwave.save` does.");
-    gear.def("trace", &trace_of, nb::arg("twist"), nb::sig("def trace(self, twist: " SW_NUMBERS ") -> " SW_ARRAY),
-             "Torque [N.m], shape (n,), of spring and hysteresis along a slow path of `twist` [rad], shape (n,), from twist 0 and "
-             "without history.");
-    gear.def("twist", &twist_of, nb::arg("torque"), nb::sig("def twist(self, torque: " SW_NUMBERS ") -> " SW_ARRAY),
-             "Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of "
-             "`trace`, to rounding, for every spring and hysteresis.");
+    verb(gear, "save", {{"path", "str | pathlib.Path"}, {"*", ""}, {"name", "str"}, {"source", "str"}}, "None",
+         "Writes a gear file, as `strainwave.save` does.", [](const Gear& self, const Call& call) {
+             nb::module_::import_("strainwave.gear_set")
+                 .attr("save")(self, call["path"], nb::arg("name") = call["name"], nb::arg("source") = call["source"]);
+         });
+    verb(gear, "trace", {{"twist", SW_NUMBERS}}, SW_ARRAY,
+         "Torque [N.m], shape (n,), of spring and hysteresis along a slow path of `twist` [rad], shape (n,), from twist 0 and "
+         "without history.",
+         &trace_of);
+    verb(gear, "twist", {{"torque", SW_NUMBERS}}, SW_ARRAY,
+         "Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of "
+         "`trace`, to rounding, for every spring and hysteresis.",
+         &twist_of);
     nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
         try {
             std::rethrow_exception(thrown);
@@ -343,49 +344,57 @@ void bind_drives(nb::module_& core) {
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
     bind<Drive::Motion>(core, "Motion", "motion");
     bind<Drive::State>(core, "State", "state");
-    drive.def(
-        "rest", [](const Drive& self) { return self.rest(); }, "The state at rest, untwisted and without history, input angle 0.");
-    drive.def(
-        "step",
-        [](const Drive& self, const Drive::State& state, double command, double command_rate, double load_torque,
-           double temperature, double dt) {
-            const auto require = [](bool holds, const char* name, double value, const char* unit, const char* allowed) {
-                if (!holds)
-                    throw nb::value_error(
-                        (std::string("step.") + name + " = " + with_unit(value, unit) + " must " + allowed).c_str());
-            };
-            require(std::isfinite(command), "command", command, "1", "be finite");
-            require(std::isfinite(command_rate), "command_rate", command_rate, "1/s", "be finite");
-            require(std::isfinite(load_torque), "load_torque", load_torque, "N.m", "be finite");
-            require(temperature > 0.0 && std::isfinite(temperature), "temperature", temperature, "K", "lie in (0, inf)");
-            require(dt > 0.0 && std::isfinite(dt), "dt", dt, "s", "lie in (0, inf)");
-            const auto at = [&](double share) {
-                return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
-            };
-            const Interval<double> u{at(0.0), at(0.5), at(1.0)};
-            const auto before = self.standing(self.consistent(state), u.start);
-            check_bounds<double>(self, before, 0.0);
-            const auto after = step<double>(self, before, u, dt, called_step<double, Drive>);
-            check_bounds<double>(self, after, dt);
-            bool finite = true;
-            const auto numbers = flattened<double>(after.state);
-            for (int i = 0; i < numbers.size(); ++i) finite = finite && std::isfinite(numbers[i]);
-            if (!finite) {
-                PyErr_SetString(PyExc_FloatingPointError, "the step diverged; take a smaller dt or check the parameters");
-                throw nb::python_error();
-            }
-            return after.state;
-        },
-        nb::arg("state"), nb::kw_only(), nb::arg("command") = 0.0, nb::arg("command_rate") = 0.0, nb::arg("load_torque") = 0.0,
-        nb::arg("temperature") = friction::room_temperature, nb::arg("dt"),
-        "The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, for a `dt` or a "
-        "`temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.");
+    verb(drive, "rest", {}, python_type<Drive::State>(false), "The state at rest, untwisted and without history, input angle 0.",
+         [](const Drive& self, const Call&) { return self.rest(); });
+    verb(drive, "step",
+         {{"state", kept(python_type<Drive::State>(false))},
+          {"*", ""},
+          {"command", "float", "0.0"},
+          {"command_rate", "float", "0.0"},
+          {"load_torque", "float", "0.0"},
+          {"temperature", "float", "293.15"},
+          {"dt", "float"}},
+         python_type<Drive::State>(false),
+         "The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, for a `dt` or a "
+         "`temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.",
+         [](const Drive& self, const Call& call) {
+             const auto state = call.part<Drive::State>("state");
+             const double command = call.real("command"), command_rate = call.real("command_rate"),
+                          load_torque = call.real("load_torque"), temperature = call.real("temperature"), dt = call.real("dt");
+             const auto require = [](bool holds, const char* name, double value, const char* unit, const char* allowed) {
+                 if (!holds)
+                     throw nb::value_error(
+                         (std::string("step.") + name + " = " + with_unit(value, unit) + " must " + allowed).c_str());
+             };
+             require(std::isfinite(command), "command", command, "1", "be finite");
+             require(std::isfinite(command_rate), "command_rate", command_rate, "1/s", "be finite");
+             require(std::isfinite(load_torque), "load_torque", load_torque, "N.m", "be finite");
+             require(temperature > 0.0 && std::isfinite(temperature), "temperature", temperature, "K", "lie in (0, inf)");
+             require(dt > 0.0 && std::isfinite(dt), "dt", dt, "s", "lie in (0, inf)");
+             const auto at = [&](double share) {
+                 return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
+             };
+             const Interval<double> u{at(0.0), at(0.5), at(1.0)};
+             const auto before = self.standing(self.consistent(state), u.start);
+             check_bounds<double>(self, before, 0.0);
+             const auto after = step<double>(self, before, u, dt, called_step<double, Drive>);
+             check_bounds<double>(self, after, dt);
+             bool finite = true;
+             const auto numbers = flattened<double>(after.state);
+             for (int i = 0; i < numbers.size(); ++i) finite = finite && std::isfinite(numbers[i]);
+             if (!finite) {
+                 PyErr_SetString(PyExc_FloatingPointError, "the step diverged; take a smaller dt or check the parameters");
+                 throw nb::python_error();
+             }
+             return after.state;
+         });
 
     nb::list outputs;
     const Output<double> output{};
     Output<double>::fields(
         output, [&](const double&, const Field& field) { outputs.append(nb::make_tuple(field.name, field.unit, field.doc)); });
     core.attr("lanes") = lanes;
+    core.attr("largest") = largest;
     core.attr("outputs") = nb::tuple(outputs);
     nb::enum_<Method>(core, "Method", "How steps are taken.")
         .value("exponential", Method::exponential)
@@ -411,15 +420,14 @@ void bind_drives(nb::module_& core) {
              "the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.");
     core.def(
         "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("instants"), nb::arg("inputs"),
-        nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("largest"), nb::arg("threads"),
-        nb::arg("out").noconvert(), nb::arg("progress").none() = nb::none(),
+        nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("threads"), nb::arg("out").noconvert(),
+        nb::arg("progress").none() = nb::none(),
         nb::sig(
             "def simulate_many(drive: strainwave.drives.PositionDrive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
-            ", " SW_COURSE ", recorded: collections.abc.Sequence[int], fastest: float, largest: float, threads: int, "
-            "out: " SW_ARRAY SW_PROGRESS ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY
-            ", dict[int, str]]"),
+            ", " SW_COURSE ", recorded: collections.abc.Sequence[int], fastest: float, threads: int, out: " SW_ARRAY SW_PROGRESS
+            ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
         "Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no "
-        "output, recorded or not, is larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to "
+        "output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to "
         "there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape "
         "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at "
         "rest are not run.");

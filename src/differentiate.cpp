@@ -111,9 +111,10 @@ void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<d
 }
 
 void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
-                        double* out, double* slopes) {
+                        double* out, double* slopes, const Pause& pause) {
     const Parts parts = parts_of(gear);
     const std::size_t shift = parameters.size();
+    Pauses pauses(pause);
     for (std::size_t first = 0; first <= shift; first += width) {
         const auto dual = seeded<AnyGear, width>(parts, parameters, first);
         const auto point = [&](std::size_t i) {
@@ -123,6 +124,7 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
         };
         auto held = typename decltype(dual.hysteresis)::State{};
         for (std::size_t i = 0; i < n; ++i) {
+            pauses(i, i);
             if (i > 0) held = dual.hysteresis.advance(held, point(i) - point(i - 1));
             const Slope torque = dual.stiffness.torque(point(i)) + dual.hysteresis.torque(held, Slope(0.0));
             out[i] = torque.value;
@@ -132,11 +134,13 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
 }
 
 void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters,
-                          double* out, double* slopes) {
+                          double* out, double* slopes, const Pause& pause) {
     const Parts parts = parts_of(gear);
+    Pauses pauses(pause);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
         const auto law = compiled(seeded<AnyGear, width>(parts, parameters, first).friction_input);
         for (std::size_t i = 0; i < n; ++i) {
+            pauses(i, i);
             const Slope torque = friction::steady(law, friction::Contact<Slope>{Slope(speed[i])});
             out[i] = torque.value;
             for (std::size_t p = first; p < first + width && p < parameters.size(); ++p)

@@ -48,6 +48,18 @@ Interval<S> interval(const double* inputs) {
 /// Called now and then with the number of steps done; may throw.
 using Pause = std::function<void(std::size_t)>;
 
+/// What an output may be at most: no angle beyond is told to within a radian.
+inline constexpr double largest = 1e15;
+
+/// 1 where every output is a number up to the largest, else 0.
+template <class S>
+S soundness(const Output<S>& output) {
+    S sound{1.0};
+    const auto values = flattened<S>(output);
+    for (int c = 0; c < values.size(); ++c) sound = select(S(largest) >= abs(values[c]), sound, S(0.0));
+    return sound;
+}
+
 /// A drive has left the range that one of its parts is valid in.
 struct OutOfBounds {
     const char* part;
@@ -100,7 +112,7 @@ template <class S, class Drive>
 
 /// Runs a compiled drive from `start` through one step or more and calls record(output) at the end of each step to be kept.
 /// `advance` takes a step. Returns the state at the end. What a step returns is made where it stays: to copy it would take a
-/// twentieth of the step.
+/// twentieth of the step. A drive that has diverged, in all lanes, stays where that is noticed, and so do its outputs.
 template <class S, class Drive, class Record, class Advance>
 typename Drive::State run_compiled(const Drive& drive, const typename Drive::State& start, const Course& course, Record& record,
                                    const Pause& pause, const Advance& advance) {
@@ -110,8 +122,14 @@ typename Drive::State run_compiled(const Drive& drive, const typename Drive::Sta
     using Standing = typename Drive::Standing;
     Standing places[2]{drive.standing(drive.consistent(start), u.start), {}}, *here = places, *there = places + 1;
     if (has_bounds) check_bounds<S>(drive, *here, course.instants[0]);
+    bool lost = false;
     for (std::size_t i = 0; i < course.steps; ++i) {
         pauses(i, i);
+        if (i % 64 == 0) lost = lost || !any(soundness(drive.output(*here, u.end)) > S(0.0));
+        if (lost) {
+            if (course.keep[i]) record(drive.output(*here, u.end));
+            continue;
+        }
         if (i > 0) {
             const double *const inputs = course.inputs + 3 * driving * i, *const before = inputs - driving;
             u = interval<S>(inputs);

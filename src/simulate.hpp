@@ -36,7 +36,7 @@ struct Verdict {
     double twist = 0.0;                    ///< largest recorded, rad
     double fastest = 0.0;                  ///< what steps had to follow up to that twist, rad/s
     double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
-    bool sound = false;                    ///< whether it ran, and all outputs at all samples mean something
+    bool sound = false;                    ///< whether it ran, and all outputs at all samples are numbers up to the largest
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
     std::string problem{};                 ///< why it did not begin, if it did not
 };
@@ -80,10 +80,10 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
 /// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
 /// not-a-number behind. Of a member whose gear vibrates faster than `fastest` [rad/s] at rest only that is told, with a twist of
-/// 0; what is beyond `largest` means nothing. `pause` is called with the number of steps done, on this thread.
+/// 0. `pause` is called with the number of steps done, on this thread.
 std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
-                                   const std::vector<int>& recorded, double fastest, double largest, int threads, double* out,
-                                   std::size_t kept, const Pause& pause);
+                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
+                                   const Pause& pause);
 
 /// The outputs of a drive in state `x`.
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
@@ -100,11 +100,11 @@ void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<d
 /// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i], the last
 /// by a shift of all points but the first.
 void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
-                        double* out, double* slopes);
+                        double* out, double* slopes, const Pause& pause);
 
 /// Steady friction torque at the input; derivatives in slopes[p * n + i].
 void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters,
-                          double* out, double* slopes);
+                          double* out, double* slopes, const Pause& pause);
 
 /// All of them, as one module holds them.
 struct Kernels {

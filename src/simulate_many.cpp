@@ -65,7 +65,7 @@ class Crowd {
     const Variation& variation;
     const Course& course;
     const std::vector<int>& recorded;
-    const double fastest, largest;
+    const double fastest;
     double* const out;
     const std::size_t samples;
     std::vector<int> place_of;  // of each number in the variation, or -1
@@ -75,13 +75,12 @@ class Crowd {
 
 public:
     Crowd(const Drive& drive, const Variation& variation_, const Course& course_, const std::vector<int>& recorded_,
-          double fastest_, double largest_, double* out_, std::size_t kept)
+          double fastest_, double* out_, std::size_t kept)
         : parts(parts_of(drive)),
           variation(variation_),
           course(course_),
           recorded(recorded_),
           fastest(fastest_),
-          largest(largest_),
           out(out_),
           samples(kept + 1),
           place_of(parts.numbers.size(), -1),
@@ -153,9 +152,8 @@ private:
         Rows<S> rows(recorded, out + first * samples, variation.members, samples, count);
         S twist{0.0}, sound{1.0};
         const auto record = [&](const Output<S>& output) {
-            const auto values = flattened<S>(output);
-            rows.add(values);
-            for (int c = 0; c < channels; ++c) sound = select(S(largest) >= abs(values[c]), sound, S(0.0));
+            rows.add(flattened<S>(output));
+            sound = min(sound, soundness(output));
             twist = max(twist, abs(output.twist));
         };
         const Input<S> at_start = interval<S>(course.inputs).start;
@@ -190,9 +188,9 @@ private:
 }  // namespace
 
 std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
-                                   const std::vector<int>& recorded, double fastest, double largest, int threads, double* out,
-                                   std::size_t kept, const Pause& pause) {
-    Crowd crowd(drive, variation, course, recorded, fastest, largest, out, kept);
+                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
+                                   const Pause& pause) {
+    Crowd crowd(drive, variation, course, recorded, fastest, out, kept);
     std::mutex lock;
     std::condition_variable ended;
     std::exception_ptr failure;

@@ -32,6 +32,21 @@ AROUND_ONE = (10**-1.5, 10**1.5)
 Field = dict[str, Any]
 
 
+def usual(model: Any) -> dict[str, Any]:
+    """Every parameter of a model as it is by default, those too that whoever makes it must give."""
+    return {field["name"]: field["default"] for field in model.fields}
+
+
+def made(model: Any, **changed: Any) -> Any:
+    """A model of usual numbers with some changed: for tests that the others do not matter to."""
+    return model(**(usual(model) | changed))
+
+
+def suited(part: Any, kinematics: Any) -> Any:
+    """A part of a gear as the gear takes it: with its ratio, if the part asks for one."""
+    return part.replace(reduction=max(1.0, abs(kinematics.ratio))) if type(part) is sw.stiffness.MultiCompliance else part
+
+
 def log_uniform(low: float, high: float) -> st.SearchStrategy[float]:
     """Every decade between `low` and `high` equally likely."""
     return st.floats(0.0, 1.0).map(lambda share: low * (high / low) ** share)
@@ -75,6 +90,8 @@ def drawn(draw: st.DrawFn, model: Any) -> Any:
     for _ in range(8):
         length = draw(st.integers(0, 8))
         members = {field["name"]: draw(values(field, length)) for field in model.fields}
+        if "kinematics" in members:
+            members["stiffness"] = suited(members["stiffness"], members["kinematics"])
         try:
             with warnings.catch_warnings(action="ignore", category=_core.PassivityWarning):
                 return model(**members)

@@ -205,6 +205,11 @@ constexpr S inertia_of(const Choice<S, Body...>& body) {
     return body.visit([](const auto& chosen) { return chosen.inertia; });
 }
 
+template <class S, class... Spring>
+constexpr S reduction_of(const Choice<S, Spring...>& spring) {
+    return spring.visit([](const auto& chosen) { return reduction_of<S>(chosen); });
+}
+
 template <class S>
 using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
                      AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>,

@@ -17,12 +17,29 @@ struct Field {
     const char* doc;
     double min = -unbounded;
     double max = unbounded;
-    bool whole = false;  ///< Only whole numbers
+    bool whole = false;             ///< Only whole numbers
+    bool required = false;          ///< Whoever makes the model must give it: no number of its kind suits most gears
+    const char* follows = nullptr;  ///< The member, listed before, whose value it takes where it is not given
+
+    constexpr Field needed() const {
+        Field field = *this;
+        field.required = true;
+        return field;
+    }
+    constexpr Field following(const char* leader) const {
+        Field field = *this;
+        field.follows = leader;
+        return field;
+    }
 };
 
 /// Describes a number, or a sequence of numbers: SW_FIELD(m, member, unit, doc, min, max).
 #define SW_FIELD(self, member, ...) \
     (self).member, ::strainwave::Field { #member, __VA_ARGS__ }
+/// The same for one that whoever makes the model must give. The value in the struct is then an order of magnitude.
+#define SW_REQUIRED(self, member, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.needed()
+/// The same for one that is as large as another, listed before, unless it is given: SW_FOLLOWS(m, member, leader, unit, doc, ...).
+#define SW_FOLLOWS(self, member, leader, ...) (self).member, ::strainwave::Field{#member, __VA_ARGS__}.following(#leader)
 /// Describes a member that is itself described: SW_PART(m, member, doc).
 #define SW_PART(self, member, doc) \
     (self).member, ::strainwave::Field { #member, "", doc }

@@ -6,6 +6,15 @@
 
 namespace strainwave {
 
+/// What a spring takes the ratio of its gear for, without sign; 0 if it does not ask.
+template <class S, class Spring>
+constexpr S reduction_of(const Spring& spring) {
+    if constexpr (requires { spring.reduction; })
+        return spring.reduction;
+    else
+        return S(0.0);
+}
+
 template <class S, class Kinematics, class KinematicError, class KinematicNoise, class Stiffness, class Hysteresis,
           class FrictionInput, class FrictionMesh, class FrictionOutput>
 struct Gear {
@@ -58,6 +67,13 @@ struct Gear {
         visit(SW_PART(m, friction_mesh, "Friction of the mesh, at the output's scale, over the speed of the input referred to it"));
         visit(SW_PART(m, friction_output, "Friction at the output, over the output speed"));
         visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
+    }
+
+    constexpr const char* problem() const {
+        const S told = reduction_of<S>(stiffness), ratio = abs(kinematics.ratio()), rounding(1e-9);
+        return all((told == S(0.0)) | (abs(told - ratio) <= rounding * ratio))
+                   ? nullptr
+                   : "stiffness.reduction must be the ratio of kinematics, without its sign; give both";
     }
 
     /// Every part as the integrator wants it.

@@ -35,8 +35,8 @@ struct Harmonics {
         Sum sum{};
         if (top > 0) sum = whole_orders(sincos(angle.within));
         for (int h = 0; h < order.count; ++h) {
-            const S turned = order[h] * angle.turns;
-            const SinCos<S> p = sincos(order[h] * angle.within + phase[h] + S(2.0 * pi) * (turned - rint(turned)));
+            const S turned = finite(order[h] * angle.turns), within = finite(order[h] * angle.within);
+            const SinCos<S> p = sincos(within + phase[h] + S(2.0 * pi) * (turned - rint(turned)));
             sum.value = sum.value + amplitude[h] * p.sin;
             sum.slope = sum.slope + amplitude[h] * order[h] * p.cos;
         }
@@ -44,6 +44,9 @@ struct Harmonics {
     }
 
 private:
+    /// An angle so large that its place in the turn is lost, but of which a sine is a number in every scalar.
+    static constexpr S finite(const S& angle) { return clip(angle, S(-1e18), S(1e18)); }
+
     constexpr void add_whole(int n, const S& order_, const S& amplitude_, const S& phase_) {
         const SinCos<S> p = sincos(phase_);
         const int pair = (n - 1) / 2, s = 2 * ((n - 1) % 2), c = s + 1;

@@ -99,7 +99,7 @@ class Gear:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -164,6 +164,8 @@ class Gear:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'gear'
 
     source: str = ...
@@ -199,7 +201,7 @@ class Motion:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
     """
 
@@ -254,6 +256,8 @@ class Motion:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'motion'
 
     fields: tuple[dict[str, Any], ...]
@@ -273,7 +277,7 @@ class State:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
     """
 
@@ -324,11 +328,15 @@ class State:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'state'
 
     fields: tuple[dict[str, Any], ...]
 
 lanes: int = 8
+
+largest: float = 1000000000000000.0
 
 outputs: tuple[tuple[str, str, str], ...]
 
@@ -351,9 +359,9 @@ def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, co
     The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.
     """
 
-def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, largest: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
+def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
     """
-    Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is larger than `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.
+    Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.
     """
 
 def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float:

@@ -21,7 +21,7 @@ class OpenLoop:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -47,6 +47,8 @@ class OpenLoop:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'open_loop'
 
@@ -80,7 +82,7 @@ class PID:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -118,6 +120,8 @@ class PID:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'pid'
 

@@ -23,7 +23,6 @@ from strainwave.scenario import Scenario
 from strainwave.simulation import (
     COARSEST,
     FASTEST_ON_BRISTLES,
-    LARGEST,
     ROOM_TEMPERATURE,
     Course,
     Excitation,
@@ -195,7 +194,6 @@ class _Plan(ComparedByFields):
             self.course.samples[1:],
             channels,
             COARSEST / self.course.longest,
-            LARGEST,
             self.threads,
             outputs,
             shown,  # type: ignore[arg-type]

@@ -25,7 +25,7 @@ class Viscous:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -51,6 +51,8 @@ class Viscous:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'viscous'
 
@@ -104,7 +106,7 @@ class Coulomb:
 
     with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, b = viscous. At rest F balances whatever
     drives the side, up to F_s; there is no smoothed sign and no dead band of speed, both of which leave an error that no
-    step size removes. A breakaway below coulomb counts as coulomb.
+    step size removes. A breakaway that is not given equals coulomb; one below coulomb counts as coulomb.
 
     >>> from strainwave.friction import Coulomb
     >>> Coulomb(coulomb=0.07, breakaway=0.075, viscous=5e-4).steady(-20.0)
@@ -113,12 +115,12 @@ class Coulomb:
     Parameters
     ----------
     coulomb: Kinetic friction torque F_c [N.m], in [0, inf); default 0.0
-    breakaway: Static friction torque F_s [N.m], in [0, inf); default 0.0
+    breakaway: Static friction torque F_s [N.m], in [0, inf); default as coulomb
     viscous: Torque per speed [N.m.s/rad], in [0, inf); default 0.0
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -152,6 +154,8 @@ class Coulomb:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'coulomb'
 
@@ -213,14 +217,14 @@ class Stribeck:
 
     Parameters
     ----------
-    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); default 0.03
-    breakaway: Static friction torque F_s [N.m], in [0, inf); default 0.045
-    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); default 2.0
-    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 5e-05
+    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); required
+    breakaway: Static friction torque F_s [N.m], in [0, inf); required
+    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); required
+    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 0.0
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -228,7 +232,7 @@ class Stribeck:
     Stribeck1902; ArmstrongHelouvry1994, eq. (3) with exponent 2
     """
 
-    def __init__(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous: float = ...) -> None: ...
+    def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, viscous: float = ...) -> None: ...
 
     def replace(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous: float = ...) -> Stribeck:
         """The same with the named parameters changed."""
@@ -258,6 +262,8 @@ class Stribeck:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'stribeck'
 
@@ -315,10 +321,11 @@ class PositionDependent:
 
     with q the angle and v the speed of the place it acts on, s_1 = quadratic, s_2 = linear, s_3 = constant, a_k = cosine and
     b_k = sine, by their place k = 1, 2 ..., kappa = static_ratio, epsilon = speed_factor, v_c = reference_speed (at which
-    f_aver was measured), b = viscous. A level below zero counts as zero. Document P prints no a_k and b_k.
+    f_aver was measured), b = viscous. A level below zero counts as zero. Document P has s_1 = 1.5738e-6, s_2 = -3.7901e-4,
+    s_3 = 0.0720, kappa = 1.0388, epsilon = 0.0004 and v_c = 0.8, all SI, and prints no a_k and b_k.
 
     Valid for q from domain_start to domain_end. A parabola grows without bound: the one of document P has its minimum,
-    0.0491812523669 N.m, at 120.412377685 rad, and the default domain ends where it is back at its start (E-P8). Beyond it,
+    0.0491812523669 N.m, at 120.412377685 rad, and is back at its start at twice that angle (E-P8). Beyond the domain,
     outside says what f_aver does: ``"clamp"`` keeps the value of the nearer end, ``"periodic"`` repeats the domain,
     ``"refuse"`` is an error. f_peri repeats with every turn anyway.
 
@@ -327,28 +334,28 @@ class PositionDependent:
     and is left out (E-P9).
 
     >>> from strainwave.friction import PositionDependent
-    >>> law = PositionDependent(quadratic=0.0, linear=0.0, constant=0.5, cosine=[0.25], speed_factor=0.0, viscous=0.125)
+    >>> law = PositionDependent(constant=0.5, cosine=[0.25], viscous=0.125, domain_start=0.0, domain_end=6.3)
     >>> law.steady([2.0, -2.0])
     array([ 1., -1.])
 
     Parameters
     ----------
-    quadratic: Coefficient s_1 of the average friction [N.m/rad2]; default 1.5738e-06
-    linear: Coefficient s_2 of the average friction [N.m/rad]; default -0.00037901
-    constant: Average friction s_3 at angle 0 [N.m]; default 0.072
+    quadratic: Coefficient s_1 of the average friction [N.m/rad2]; default 0.0
+    linear: Coefficient s_2 of the average friction [N.m/rad]; default 0.0
+    constant: Average friction s_3 at angle 0 [N.m]; required
     cosine: Amplitudes a_k of cos k q, k = 1, 2 ... [N.m]; default ()
     sine: Amplitudes b_k of sin k q, k = 1, 2 ... [N.m]; default ()
-    static_ratio: Static over kinetic friction kappa, in [1, inf); default 1.0388
-    speed_factor: Relative rise of the average friction with speed [s/rad], in [0, inf); default 0.0004
-    reference_speed: Speed v_c at which the average friction was measured [rad/s], in [0, inf); default 0.8
+    static_ratio: Static over kinetic friction kappa, in [1, inf); default 1.0
+    speed_factor: Relative rise of the average friction with speed [s/rad], in [0, inf); default 0.0
+    reference_speed: Speed v_c at which the average friction was measured [rad/s], in [0, inf); default 0.0
     viscous: Torque per speed, besides [N.m.s/rad], in [0, inf); default 0.0
-    domain_start: Least angle at which the average friction was measured [rad]; default 0.0
-    domain_end: Greatest angle at which the average friction was measured [rad]; default 240.82475536917013
+    domain_start: Least angle at which the average friction was measured [rad]; required
+    domain_end: Greatest angle at which the average friction was measured [rad]; required
     outside: What the average friction does beyond its domain, one of ('clamp', 'periodic', 'refuse'); default 'refuse'
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -356,7 +363,7 @@ class PositionDependent:
     document P, friction model of the motor side; errata E-P3, E-P4, E-P5, E-P8, E-P9
     """
 
-    def __init__(self, *, quadratic: float = ..., linear: float = ..., constant: float = ..., cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float = ..., domain_end: float = ..., outside: str = ...) -> None: ...
+    def __init__(self, *, quadratic: float = ..., linear: float = ..., constant: float, cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float, domain_end: float, outside: str = ...) -> None: ...
 
     def replace(self, *, quadratic: float = ..., linear: float = ..., constant: float = ..., cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float = ..., domain_end: float = ..., outside: str = ...) -> PositionDependent:
         """The same with the named parameters changed."""
@@ -418,6 +425,8 @@ class PositionDependent:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'position_dependent'
 
@@ -482,22 +491,24 @@ class LuGre:
     also necessary. A set that violates this is accepted, and ``check()`` warns with both sides.
 
     >>> from strainwave.friction import LuGre
-    >>> LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, viscous=4e-4).steady(1.0)
+    >>> law = LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, bristle_stiffness=50.0, bristle_damping=5e-5,
+    ...             viscous=4e-4)
+    >>> law.steady(1.0)
     0.0504
 
     Parameters
     ----------
-    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); default 0.03
-    breakaway: Static friction torque F_s [N.m], in [0, inf); default 0.045
-    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); default 2.0
-    bristle_stiffness: Torque per bristle deflection [N.m/rad], in (0, inf); default 50.0
-    bristle_damping: Torque per bristle rate, at rest [N.m.s/rad], in [0, inf); default 5e-05
-    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 5e-05
+    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); required
+    breakaway: Static friction torque F_s [N.m], in [0, inf); required
+    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); required
+    bristle_stiffness: Torque per bristle deflection [N.m/rad], in (0, inf); required
+    bristle_damping: Torque per bristle rate, at rest [N.m.s/rad], in [0, inf); required
+    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 0.0
     damping_fading: Reciprocal of the speed at which bristle_damping has fallen to 1/e [s/rad], in [0, inf); default 0.0
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -505,7 +516,7 @@ class LuGre:
     CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000; fading damping: document R
     """
 
-    def __init__(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ..., damping_fading: float = ...) -> None: ...
+    def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, bristle_stiffness: float, bristle_damping: float, viscous: float = ..., damping_fading: float = ...) -> None: ...
 
     def replace(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ..., damping_fading: float = ...) -> LuGre:
         """The same with the named parameters changed."""
@@ -550,6 +561,8 @@ class LuGre:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'lugre'
 
     source: str = ...
@@ -588,7 +601,7 @@ class LuGre:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -610,6 +623,8 @@ class LuGre:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'lugre.state'
 
@@ -647,7 +662,7 @@ class MaxwellSlipFriction:
     with v the speed of the place it acts on, k_i = stiffness, alpha_i = share over the sum of all shares, F_c = coulomb,
     F_s = breakaway, v_s = stribeck_speed, C = attraction, sigma_2 = viscous; up to 8 elements, none at all is no dry
     friction. An element sticks until it carries alpha_i s(v), and slips until the motion stops or turns round. A slipping
-    element follows s(v) with the time constant s/C. A breakaway below coulomb counts as coulomb. Where dry friction is
+    element follows s(v) with the time constant s/C. A breakaway that is not given equals coulomb; one below counts as coulomb. Where dry friction is
     scaled (Cyclic, Thermal), s and C scale, stiffness and time constant do not.
 
     With breakaway = coulomb no element lags, it is Maxwell's slip with the levels alpha_i F_c, and dissipates for every
@@ -656,23 +671,24 @@ class MaxwellSlipFriction:
     Leaves out load, position and temperature.
 
     >>> from strainwave.friction import MaxwellSlipFriction
-    >>> law = MaxwellSlipFriction(stiffness=[60, 30, 10], share=[0.2, 0.3, 0.5], coulomb=0.05, breakaway=0.05)
+    >>> law = MaxwellSlipFriction(stiffness=[60, 30, 10], share=[0.2, 0.3, 0.5], coulomb=0.05, stribeck_speed=2.0,
+    ...                           attraction=0.3)
     >>> law.trace([0.0, 1.0, 2.0], [1e-3, 1e-3, 1e-3]).round(6)
     array([0.   , 0.035, 0.045])
 
     Parameters
     ----------
-    stiffness: Stiffness k_i of each element while it sticks [N.m/rad], in (0, inf); default ()
-    share: Share alpha_i of each element in the friction torque, relative to the sum of all, in [0, inf); default ()
-    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); default 0.03
-    breakaway: Static friction torque F_s [N.m], in [0, inf); default 0.03
-    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); default 2.0
-    attraction: Rate C at which slipping elements are drawn to the Stribeck curve [N.m/s], in (0, inf); default 0.3
-    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 5e-05
+    stiffness: Stiffness k_i of each element while it sticks [N.m/rad], in (0, inf); required
+    share: Share alpha_i of each element in the friction torque, relative to the sum of all, in [0, inf); required
+    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); required
+    breakaway: Static friction torque F_s [N.m], in [0, inf); default as coulomb
+    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); required
+    attraction: Rate C at which slipping elements are drawn to the Stribeck curve [N.m/s], in (0, inf); required
+    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 0.0
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -680,7 +696,7 @@ class MaxwellSlipFriction:
     AlBenderLampaertSwevers2005, generalized Maxwell-slip model, slip law with a constant attraction
     """
 
-    def __init__(self, *, stiffness: float | Sequence[float] = ..., share: float | Sequence[float] = ..., coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., attraction: float = ..., viscous: float = ...) -> None: ...
+    def __init__(self, *, stiffness: float | Sequence[float], share: float | Sequence[float], coulomb: float, breakaway: float = ..., stribeck_speed: float, attraction: float, viscous: float = ...) -> None: ...
 
     def replace(self, *, stiffness: float | Sequence[float] = ..., share: float | Sequence[float] = ..., coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., attraction: float = ..., viscous: float = ...) -> MaxwellSlipFriction:
         """The same with the named parameters changed."""
@@ -727,6 +743,8 @@ class MaxwellSlipFriction:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'maxwell_slip_friction'
 
     source: str = ...
@@ -766,7 +784,7 @@ class MaxwellSlipFriction:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -794,6 +812,8 @@ class MaxwellSlipFriction:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'maxwell_slip_friction.state'
 
@@ -849,7 +869,7 @@ class LoadDependent:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -887,6 +907,8 @@ class LoadDependent:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'load_dependent'
 
@@ -952,19 +974,19 @@ class TorqueEfficiency:
     m / (1 - m) here.
 
     >>> from strainwave.friction import TorqueEfficiency
-    >>> TorqueEfficiency(average_loss=0.25, difference_loss=0.05, viscous=0.0).steady([10.0, -10.0], load=4.0)
+    >>> TorqueEfficiency(average_loss=0.25, difference_loss=0.05, presliding=0.001).steady([10.0, -10.0], load=4.0)
     array([ 1.2, -0.8])
 
     Parameters
     ----------
-    average_loss: Loss per torque transmitted, mean of driving and back-driving, in [0, inf); default 0.2
+    average_loss: Loss per torque transmitted, mean of driving and back-driving, in [0, inf); required
     difference_loss: Half of what driving loses more than back-driving, per torque transmitted; default 0.0
-    presliding: Angle h over which the loss turns round after a reversal [rad], in (0, inf); default 0.01
-    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 5e-05
+    presliding: Angle h over which the loss turns round after a reversal [rad], in (0, inf); required
+    viscous: Torque per speed [N.m.s/rad], in [0, inf); default 0.0
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -972,7 +994,7 @@ class TorqueEfficiency:
     public thread google-deepmind/mujoco#3528, comment of 2026-09-18 (there tau is the electrical torque of the motor)
     """
 
-    def __init__(self, *, average_loss: float = ..., difference_loss: float = ..., presliding: float = ..., viscous: float = ...) -> None: ...
+    def __init__(self, *, average_loss: float, difference_loss: float = ..., presliding: float, viscous: float = ...) -> None: ...
 
     def replace(self, *, average_loss: float = ..., difference_loss: float = ..., presliding: float = ..., viscous: float = ...) -> TorqueEfficiency:
         """The same with the named parameters changed."""
@@ -1004,6 +1026,8 @@ class TorqueEfficiency:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'torque_efficiency'
 
@@ -1043,7 +1067,7 @@ class TorqueEfficiency:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -1065,6 +1089,8 @@ class TorqueEfficiency:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'torque_efficiency.state'
 
@@ -1113,7 +1139,7 @@ class Cyclic:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -1151,6 +1177,8 @@ class Cyclic:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'cyclic'
 
@@ -1190,7 +1218,7 @@ class Cyclic:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -1212,6 +1240,8 @@ class Cyclic:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'cyclic.state'
 
@@ -1256,7 +1286,7 @@ class Thermal:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -1294,6 +1324,8 @@ class Thermal:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'thermal'
 
@@ -1333,7 +1365,7 @@ class Thermal:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -1355,6 +1387,8 @@ class Thermal:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'cyclic.state'
 

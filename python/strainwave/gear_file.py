@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_type_hints
 
 from strainwave.drives import PositionDrive
 from strainwave.files import replacing
-from strainwave.gear_set import NOT_GIVEN, Entry, GearSet, Parameter, Part, Quantity, own_paths, parameters, parts
+from strainwave.gear_set import NOT_GIVEN, Entry, GearSet, Parameter, Part, Quantity, default_of, own_paths, parameters, parts
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -237,7 +237,7 @@ def _table_form(path: str, model: Any) -> _Form:
     """The keys of a table with the parameters of this class of models."""
     keys: dict[str, Any] = {parameter.name: (_content(parameter), ...) for parameter in parameters(model)}
     examples = {
-        parameter.name: f"{parameter.name} = {_example(parameter, getattr(model(), parameter.name))}"
+        parameter.name: f"{parameter.name} = {_example(parameter, default_of(model, parameter.name))}"
         for parameter in parameters(model)
     }
     for inner in _inner(path, model):

@@ -395,6 +395,11 @@ def parameters(model: Any) -> list[Parameter]:
     return [Parameter(*map(field.get, Parameter._fields)) for field in model.fields if field["kind"] != "part"]
 
 
+def default_of(model: Any, name: str) -> Any:
+    """What a parameter of a model, or of a class of models, is by default; an order of magnitude where it must be given."""
+    return next(field["default"] for field in model.fields if field["name"] == name)
+
+
 def own_paths(path: str, model: Any) -> Iterator[str]:
     """Path of every number of a model, but for those of its parts."""
     for name, kind, _ in parameters(model):
@@ -430,7 +435,7 @@ def _unless_default(gear_set: GearSet, path: str) -> Entry:
     entry, (place, _, name) = gear_set.sources[path], path.rpartition(".")
     name, _, index = name.partition("[")
     model = attrgetter(place)(gear_set)
-    value, default = getattr(model, name), getattr(type(model)(), name)
+    value, default = getattr(model, name), default_of(model, name)
     if index:
         number = int(index.removesuffix("]"))
         value, default = value[number], default[number] if number < len(default) else None

@@ -32,7 +32,7 @@ class PrandtlIshlinskii:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -63,6 +63,8 @@ class PrandtlIshlinskii:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'prandtl_ishlinskii'
 
     source: str = 'KrejciKuhnen2001 (plays, the inverse of stops)'
@@ -78,7 +80,7 @@ class PrandtlIshlinskii:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -104,6 +106,8 @@ class PrandtlIshlinskii:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'prandtl_ishlinskii.state'
 
@@ -136,13 +140,13 @@ class PowerDensity:
 
     Parameters
     ----------
-    limit: Twist L at which everything slips [rad], in (0, inf); default 0.001
-    saturation: Torque T_s once everything slips [N.m], in [0, inf); default 0.0
+    limit: Twist L at which everything slips [rad], in (0, inf); required
+    saturation: Torque T_s once everything slips [N.m], in [0, inf); required
     exponent: Power p: 1 elastic, 2 uniform density, in [1, 100]; default 2.0
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -150,7 +154,7 @@ class PowerDensity:
     Rayleigh1887 (exponent 2); Everett1955; the power is assumed
     """
 
-    def __init__(self, *, limit: float = ..., saturation: float = ..., exponent: float = ...) -> None: ...
+    def __init__(self, *, limit: float, saturation: float, exponent: float = ...) -> None: ...
 
     def replace(self, *, limit: float = ..., saturation: float = ..., exponent: float = ...) -> PowerDensity:
         """The same with the named parameters changed."""
@@ -176,6 +180,8 @@ class PowerDensity:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'power_density'
 
@@ -205,12 +211,12 @@ class GridDensity:
 
     Parameters
     ----------
-    limit: Twist L at which everything slips [rad], in (0, inf); default 0.001
-    weight: Torque w_ij that each cell carries [N.m], in [0, inf); default ()
+    limit: Twist L at which everything slips [rad], in (0, inf); required
+    weight: Torque w_ij that each cell carries [N.m], in [0, inf); required
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -218,7 +224,7 @@ class GridDensity:
     Mayergoyz1986; Everett integrals of uniform cells: own derivation
     """
 
-    def __init__(self, *, limit: float = ..., weight: float | Sequence[float] = ...) -> None: ...
+    def __init__(self, *, limit: float, weight: float | Sequence[float]) -> None: ...
 
     def replace(self, *, limit: float = ..., weight: float | Sequence[float] = ...) -> GridDensity:
         """The same with the named parameters changed."""
@@ -240,6 +246,8 @@ class GridDensity:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'grid_density'
 
@@ -272,7 +280,7 @@ class MaxwellSlip:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -303,6 +311,8 @@ class MaxwellSlip:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'maxwell_slip'
 
     source: str = ...
@@ -317,7 +327,7 @@ class MaxwellSlip:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -339,6 +349,8 @@ class MaxwellSlip:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'maxwell_slip.state'
 
@@ -403,7 +415,7 @@ class FadingMemory:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -436,6 +448,8 @@ class FadingMemory:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'fading_memory'
 
     source: str = ...
@@ -450,7 +464,7 @@ class FadingMemory:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -472,6 +486,8 @@ class FadingMemory:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'fading_memory.state'
 
@@ -527,14 +543,14 @@ class BoucWen:
 
     Parameters
     ----------
-    stiffness: Stiffness A at zero torque [N.m/rad], in (0, inf); default 1000.0
-    saturation: Torque T_s approached by a long motion [N.m], in (0, inf); default 0.5
+    stiffness: Stiffness A at zero torque [N.m/rad], in (0, inf); required
+    saturation: Torque T_s approached by a long motion [N.m], in (0, inf); required
     sharpness: Exponent n: how sharply the torque bends towards its saturation, in [1, inf); default 2.0
     shape: Share sigma = beta / (beta + gamma): 1/2 unloads straight, 1 most curved, in [0.5, 1]; default 0.5
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -542,7 +558,7 @@ class BoucWen:
     Bouc1967; Wen1976; passivity: ErlicherPoint2004; IkhouaneRodellar2007
     """
 
-    def __init__(self, *, stiffness: float = ..., saturation: float = ..., sharpness: float = ..., shape: float = ...) -> None: ...
+    def __init__(self, *, stiffness: float, saturation: float, sharpness: float = ..., shape: float = ...) -> None: ...
 
     def replace(self, *, stiffness: float = ..., saturation: float = ..., sharpness: float = ..., shape: float = ...) -> BoucWen:
         """The same with the named parameters changed."""
@@ -575,6 +591,8 @@ class BoucWen:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'bouc_wen'
 
     source: str = ...
@@ -589,7 +607,7 @@ class BoucWen:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -611,6 +629,8 @@ class BoucWen:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'bouc_wen.state'
 
@@ -679,7 +699,7 @@ class Preisach:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -706,6 +726,8 @@ class Preisach:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'preisach'
 
     source: str = ...
@@ -722,7 +744,7 @@ class Preisach:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -754,6 +776,8 @@ class Preisach:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'preisach.state'
 
@@ -796,28 +820,30 @@ class Regimes:
     cycle creeps. Virgin is s = 0.
 
     The table's stiffnesses read as secants from 0 to +-0.36 N.m do not close (E-T4); they do as slopes between the stops, of
-    a loop 50.5 degrees wide. They hold at the shaft they were measured at: behind a gear of ratio N, torques grow by N,
-    twists shrink by N.
+    a loop 50.5 degrees wide. They hold at the input, where they were measured, and are
+    those of the example. In a gear the law acts on the output: behind a ratio N, torques grow by N, twists shrink by N.
 
     It is a whole spring: in a gear, the ``stiffness`` acts in parallel, and is what is stiff beside it (Linear with a
     negligible stiffness if nothing is).
 
     >>> from strainwave.hysteresis import Regimes
-    >>> Regimes().trace([0.0, 0.6, 0.5, -0.6, 0.6]).round(6)
+    >>> law = Regimes(positive_unloading=4.51, negative_loading=0.31, negative_unloading=4.85, positive_loading=0.30,
+    ...               onset=0.03, lost_motion=0.8813912722571364)
+    >>> law.trace([0.0, 0.6, 0.5, -0.6, 0.6]).round(6)
     array([ 0.      ,  0.718463,  0.267463, -0.772626,  0.718463])
 
     Parameters
     ----------
-    positive_unloading: Stiffness while a positive torque falls, and beyond the stop [N.m/rad], in (0, inf); default 4.51
-    negative_loading: Stiffness while a negative torque builds up [N.m/rad], in [0, inf); default 0.31
-    negative_unloading: Stiffness while a negative torque falls, and beyond the stop [N.m/rad], in (0, inf); default 4.85
-    positive_loading: Stiffness while a positive torque builds up [N.m/rad], in [0, inf); default 0.3
-    onset: Torque T_0 at which the soft regimes set in [N.m], in [0, inf); default 0.03
-    lost_motion: Plastic twist w between the stops: width of the loop at zero torque [rad], in [0, inf); default 0.8813912722571364
+    positive_unloading: Stiffness while a positive torque falls, and beyond the stop [N.m/rad], in (0, inf); required
+    negative_loading: Stiffness while a negative torque builds up [N.m/rad], in [0, inf); required
+    negative_unloading: Stiffness while a negative torque falls, and beyond the stop [N.m/rad], in (0, inf); required
+    positive_loading: Stiffness while a positive torque builds up [N.m/rad], in [0, inf); required
+    onset: Torque T_0 at which the soft regimes set in [N.m], in [0, inf); required
+    lost_motion: Plastic twist w between the stops: width of the loop at zero torque [rad], in [0, inf); required
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -825,7 +851,7 @@ class Regimes:
     document T, Table 2, row 0 degrees (at the input); erratum E-T4; generalised play: Visintin1994
     """
 
-    def __init__(self, *, positive_unloading: float = ..., negative_loading: float = ..., negative_unloading: float = ..., positive_loading: float = ..., onset: float = ..., lost_motion: float = ...) -> None: ...
+    def __init__(self, *, positive_unloading: float, negative_loading: float, negative_unloading: float, positive_loading: float, onset: float, lost_motion: float) -> None: ...
 
     def replace(self, *, positive_unloading: float = ..., negative_loading: float = ..., negative_unloading: float = ..., positive_loading: float = ..., onset: float = ..., lost_motion: float = ...) -> Regimes:
         """The same with the named parameters changed."""
@@ -866,6 +892,8 @@ class Regimes:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'regimes'
 
     source: str = ...
@@ -881,7 +909,7 @@ class Regimes:
 
         Raises
         ------
-        TypeError: an unknown parameter, or one of the wrong kind
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
         ValueError: a number that is not finite or out of its range
         """
 
@@ -907,6 +935,8 @@ class Regimes:
         def __getstate__(self) -> dict[str, object]: ...
 
         def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
 
         name: str = 'regimes.state'
 

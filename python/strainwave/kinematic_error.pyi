@@ -28,7 +28,7 @@ class Fourier:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -62,6 +62,8 @@ class Fourier:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'fourier'
 
@@ -128,14 +130,16 @@ class Misalignment:
     against it (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
 
     >>> from strainwave.kinematic_error import Misalignment
-    >>> round(Misalignment(housing_eccentricity=20e-6, combine="single").error(0.0), 10)
+    >>> law = Misalignment(major_radius=25.25e-3, minor_radius=24.75e-3, pitch_radius=25e-3, housing_eccentricity=20e-6,
+    ...                    combine="single")
+    >>> round(law.error(0.0), 10)
     -0.0002911762
 
     Parameters
     ----------
-    major_radius: Major half axis a of the wave generator [m], in (0, inf); default 0.02525
-    minor_radius: Minor half axis b of the wave generator [m], in (0, inf); default 0.02475
-    pitch_radius: Pitch radius r_g [m], in (0, inf); default 0.025
+    major_radius: Major half axis a of the wave generator [m], in (0, inf); required
+    minor_radius: Minor half axis b of the wave generator [m], in (0, inf); required
+    pitch_radius: Pitch radius r_g [m], in (0, inf); required
     pressure_angle: Pressure angle alpha_t of the teeth [rad], in (0, 1.5]; default 0.3490658503988659
     offset: Axial distance h of the section from the centre of tilt [m]; default 0.0
     housing_eccentricity: Distance e_1 of the input shaft from the axis of the circular spline [m], in [0, inf); default 0.0
@@ -150,7 +154,7 @@ class Misalignment:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -158,7 +162,7 @@ class Misalignment:
     document A, section Kinematic error, worked out: the document prints no equation; erratum E-A4; `combine` and the default values (teeth of module 0.25 mm, 200 and 202) are assumed
     """
 
-    def __init__(self, *, major_radius: float = ..., minor_radius: float = ..., pitch_radius: float = ..., pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> None: ...
+    def __init__(self, *, major_radius: float, minor_radius: float, pitch_radius: float, pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> None: ...
 
     def replace(self, *, major_radius: float = ..., minor_radius: float = ..., pitch_radius: float = ..., pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> Misalignment:
         """The same with the named parameters changed."""
@@ -232,6 +236,8 @@ class Misalignment:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'misalignment'
 
@@ -309,7 +315,7 @@ class Stochastic:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -367,6 +373,8 @@ class Stochastic:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'stochastic'
 

@@ -27,7 +27,7 @@ class StrainWave:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -62,6 +62,8 @@ class StrainWave:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'strain_wave'
 
     source: str = ...
@@ -90,7 +92,7 @@ class PlainRatio:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -116,6 +118,8 @@ class PlainRatio:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'plain_ratio'
 

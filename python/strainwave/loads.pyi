@@ -21,7 +21,7 @@ class Inertia:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -48,6 +48,8 @@ class Inertia:
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
 
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
     name: str = 'inertia'
 
     source: str = 'definition'
@@ -73,7 +75,7 @@ class Pendulum:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -103,6 +105,8 @@ class Pendulum:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'pendulum'
 

@@ -28,7 +28,7 @@ class DC:
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -70,6 +70,8 @@ class DC:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'dc'
 

@@ -25,7 +25,7 @@ from strainwave.scenario import Scenario
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of a drive's own motion
 ROOM_TEMPERATURE = 293.15  # K
-LARGEST = 1e15  # of all that is recorded: no angle beyond is told to within a radian
+LARGEST: float = _core.largest  # of all that is recorded
 _TWIST = [name for name, _, _ in _core.outputs].index("twist")
 # What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
 STEP, INPUTS = 33.0, 96.0

@@ -21,11 +21,11 @@ class Linear:
 
     Parameters
     ----------
-    k: Stiffness [N.m/rad], in (0, inf); default 10000.0
+    k: Stiffness [N.m/rad], in (0, inf); required
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -33,7 +33,7 @@ class Linear:
     Hooke's law; document P, K_s
     """
 
-    def __init__(self, *, k: float = ...) -> None: ...
+    def __init__(self, *, k: float) -> None: ...
 
     def replace(self, *, k: float = ...) -> Linear:
         """The same with the named parameters changed."""
@@ -51,6 +51,8 @@ class Linear:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'linear'
 
@@ -103,13 +105,13 @@ class Piecewise:
 
     Parameters
     ----------
-    k1: Stiffness up to the knee [N.m/rad], in (0, inf); default 8000.0
-    k2: What the stiffness above the knee exceeds k1 by [N.m/rad], in [0, inf); default 2000.0
-    knee: Twist of the knee [rad], in [0, inf); default 0.001
+    k1: Stiffness up to the knee [N.m/rad], in (0, inf); required
+    k2: What the stiffness above the knee exceeds k1 by [N.m/rad], in [0, inf); required
+    knee: Twist of the knee [rad], in [0, inf); required
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -117,7 +119,7 @@ class Piecewise:
     document R, section 3, piecewise linear; erratum E-R9
     """
 
-    def __init__(self, *, k1: float = ..., k2: float = ..., knee: float = ...) -> None: ...
+    def __init__(self, *, k1: float, k2: float, knee: float) -> None: ...
 
     def replace(self, *, k1: float = ..., k2: float = ..., knee: float = ...) -> Piecewise:
         """The same with the named parameters changed."""
@@ -143,6 +145,8 @@ class Piecewise:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'piecewise'
 
@@ -196,15 +200,15 @@ class ThreeSegment:
 
     Parameters
     ----------
-    k1: Stiffness below t1 [N.m/rad], in (0, inf); default 31000.0
-    k2: Stiffness between t1 and t2 [N.m/rad], in (0, inf); default 50000.0
-    k3: Stiffness above t2 [N.m/rad], in (0, inf); default 57000.0
-    t1: Torque of the first knee [N.m], in (0, inf); default 14.0
-    t2: Torque of the second knee [N.m], in (0, inf); default 48.0
+    k1: Stiffness below t1 [N.m/rad], in (0, inf); required
+    k2: Stiffness between t1 and t2 [N.m/rad], in (0, inf); required
+    k3: Stiffness above t2 [N.m/rad], in (0, inf); required
+    t1: Torque of the first knee [N.m], in (0, inf); required
+    t2: Torque of the second knee [N.m], in (0, inf); required
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -212,7 +216,7 @@ class ThreeSegment:
     Harmonic Drive AG catalogue, torsional stiffness K1, K2, K3 with torques T1, T2
     """
 
-    def __init__(self, *, k1: float = ..., k2: float = ..., k3: float = ..., t1: float = ..., t2: float = ...) -> None: ...
+    def __init__(self, *, k1: float, k2: float, k3: float, t1: float, t2: float) -> None: ...
 
     def replace(self, *, k1: float = ..., k2: float = ..., k3: float = ..., t1: float = ..., t2: float = ...) -> ThreeSegment:
         """The same with the named parameters changed."""
@@ -246,6 +250,8 @@ class ThreeSegment:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'three_segment'
 
@@ -297,12 +303,12 @@ class Cubic:
 
     Parameters
     ----------
-    a1: Stiffness at zero twist [N.m/rad], in (0, inf); default 10000.0
+    a1: Stiffness at zero twist [N.m/rad], in (0, inf); required
     a3: Hardening [N.m/rad3], in [0, inf); default 0.0
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -310,7 +316,7 @@ class Cubic:
     document R, section 3, cubic polynomial; Tuttle1992
     """
 
-    def __init__(self, *, a1: float = ..., a3: float = ...) -> None: ...
+    def __init__(self, *, a1: float, a3: float = ...) -> None: ...
 
     def replace(self, *, a1: float = ..., a3: float = ...) -> Cubic:
         """The same with the named parameters changed."""
@@ -332,6 +338,8 @@ class Cubic:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'cubic'
 
@@ -383,7 +391,7 @@ class MultiCompliance:
 
     In a compiled model torque rises up to max(1e6 / C_f, 40 N / C_w), at most 1e18 N.m, and stays there, from within
     1e-6 of the bound on. Elastic only: the friction torque that document R puts inside belongs to a law of friction or
-    hysteresis, where it is passive (E-R14). The defaults are assumed.
+    hysteresis, where it is passive (E-R14). A gear refuses a reduction that is not its own ratio.
 
     >>> from strainwave.stiffness import MultiCompliance
     >>> spring = MultiCompliance(flexspline_stiffness=8000.0, flexspline_hardening=0.02, wave_generator_stiffness=2.0,
@@ -393,15 +401,15 @@ class MultiCompliance:
 
     Parameters
     ----------
-    flexspline_stiffness: Stiffness K_f0 of the flexspline at zero torque [N.m/rad], in (0, inf); default 8000.0
-    flexspline_hardening: Hardening C_f of the flexspline per torque at the output [1/(N.m)], in [0, inf); default 0.02
-    wave_generator_stiffness: Stiffness K_w0 of the wave generator at zero torque, at the input [N.m/rad], in (0, inf); default 2.0
-    wave_generator_hardening: Hardening C_w of the wave generator per torque at the input [1/(N.m)], in [0, inf); default 1.5
-    reduction: Ratio N of the gear, without its sign, in [1, inf); default 100.0
+    flexspline_stiffness: Stiffness K_f0 of the flexspline at zero torque [N.m/rad], in (0, inf); required
+    flexspline_hardening: Hardening C_f of the flexspline per torque at the output [1/(N.m)], in [0, inf); required
+    wave_generator_stiffness: Stiffness K_w0 of the wave generator at zero torque, at the input [N.m/rad], in (0, inf); required
+    wave_generator_hardening: Hardening C_w of the wave generator per torque at the input [1/(N.m)], in [0, inf); required
+    reduction: Ratio N of the gear, without its sign, in [1, inf); required
 
     Raises
     ------
-    TypeError: an unknown parameter, or one of the wrong kind
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
     ValueError: a number that is not finite or out of its range
 
     Source
@@ -409,7 +417,7 @@ class MultiCompliance:
     document R, section 4c; erratum E-R14
     """
 
-    def __init__(self, *, flexspline_stiffness: float = ..., flexspline_hardening: float = ..., wave_generator_stiffness: float = ..., wave_generator_hardening: float = ..., reduction: float = ...) -> None: ...
+    def __init__(self, *, flexspline_stiffness: float, flexspline_hardening: float, wave_generator_stiffness: float, wave_generator_hardening: float, reduction: float) -> None: ...
 
     def replace(self, *, flexspline_stiffness: float = ..., flexspline_hardening: float = ..., wave_generator_stiffness: float = ..., wave_generator_hardening: float = ..., reduction: float = ...) -> MultiCompliance:
         """The same with the named parameters changed."""
@@ -445,6 +453,8 @@ class MultiCompliance:
     def __getstate__(self) -> dict[str, object]: ...
 
     def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'multi_compliance'
 

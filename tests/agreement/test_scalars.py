@@ -16,6 +16,7 @@ from strainwave.simulation import differentiate
 
 from tests.reference_drive import DRIVE, command
 from tests.side_by_side import side_by_side
+from tests.strategies import made
 
 Array = NDArray[np.float64]
 
@@ -100,7 +101,8 @@ PLACES = ("friction_input", "friction_mesh", "friction_output")
 OTHER_LAWS: dict[str, dict[str, Any]] = {
     "plain_ratio": {"kinematics": sw.kinematics.PlainRatio(reduction=80.0)},
     "misalignment": {
-        "kinematic_error": sw.kinematic_error.Misalignment(
+        "kinematic_error": made(
+            sw.kinematic_error.Misalignment,
             offset=1e-5,
             housing_eccentricity=2e-5,
             housing_direction=0.3,
@@ -115,7 +117,7 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
     "linear": {"stiffness": sw.stiffness.Linear(k=1.2e4)},
     "piecewise": {"stiffness": sw.stiffness.Piecewise(k1=8e3, k2=2e3, knee=5e-5)},
     "three_segment": {"stiffness": sw.stiffness.ThreeSegment(k1=8e3, k2=1e4, k3=1.3e4, t1=0.4, t2=0.9)},
-    "multi_compliance": {"stiffness": sw.stiffness.MultiCompliance(reduction=100.0)},
+    "multi_compliance": {"stiffness": made(sw.stiffness.MultiCompliance, reduction=100.0)},
     "fading_memory": {"hysteresis": sw.hysteresis.FadingMemory(stiffness=[3e3, 1e3], forgetting=[5e3, 2e3])},
     "bouc_wen": {"hysteresis": sw.hysteresis.BoucWen(stiffness=4e3, saturation=0.4, sharpness=1.5, shape=0.6)},
     "preisach": {

@@ -16,6 +16,8 @@ from scipy.integrate import solve_ivp
 from strainwave.friction import MaxwellSlipFriction
 from strainwave.hysteresis import MaxwellSlip
 
+from tests.strategies import made
+
 STIFFNESS, SHARE = [60.0, 30.0, 10.0], [0.2, 0.3, 0.5]
 COULOMB, BREAKAWAY, STRIBECK_SPEED, ATTRACTION, VISCOUS = 0.05, 0.07, 0.1, 0.5, 4e-4
 JUMP = 1e-12  # s, over which the speed goes from one value to the next
@@ -207,7 +209,7 @@ def test_a_stribeck_fall_can_create_energy_and_is_warned_of() -> None:
     """Slip fast, slow down until the element carries more, go back while it sticks, and fast forward to where it was."""
     stiffness = 20.0
     with pytest.warns(sw.PassivityWarning, match="breakaway"):
-        MaxwellSlipFriction(stiffness=[stiffness], share=[1.0], coulomb=COULOMB, breakaway=BREAKAWAY).check()
+        made(MaxwellSlipFriction, stiffness=[stiffness], share=[1.0], coulomb=COULOMB, breakaway=BREAKAWAY).check()
     law = contact(stiffness=[stiffness], share=[1.0], viscous=0.0)
     back = (BREAKAWAY - COULOMB) / stiffness
     cycle = [(1e-9, 10.0), (-1e-3, back / 1e-3), (1.0, back)]
@@ -218,9 +220,9 @@ def test_a_stribeck_fall_can_create_energy_and_is_warned_of() -> None:
 def test_without_a_stribeck_fall_or_without_elements_there_is_no_warning() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", sw.PassivityWarning)
-        MaxwellSlipFriction().check()
-        MaxwellSlipFriction(coulomb=0.03, breakaway=0.05).check()
-        MaxwellSlipFriction(stiffness=[20.0], share=[1.0], coulomb=0.03, breakaway=0.03).check()
+        made(MaxwellSlipFriction).check()
+        made(MaxwellSlipFriction, coulomb=0.03, breakaway=0.05).check()
+        made(MaxwellSlipFriction, stiffness=[20.0], share=[1.0], coulomb=0.03, breakaway=0.03).check()
 
 
 def test_a_breakaway_below_coulomb_counts_as_coulomb() -> None:
@@ -230,7 +232,7 @@ def test_a_breakaway_below_coulomb_counts_as_coulomb() -> None:
 
 
 def test_no_elements_is_no_dry_friction() -> None:
-    law = MaxwellSlipFriction(viscous=0.01)
+    law = made(MaxwellSlipFriction, viscous=0.01)
     assert law.steady(3.0) == pytest.approx(0.03, rel=1e-15)
 
 
@@ -247,4 +249,4 @@ def test_shares_are_relative_to_their_sum(factor: float) -> None:
 )
 def test_what_makes_no_sense_is_refused(stiffness: list[float], share: list[float], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        MaxwellSlipFriction(stiffness=stiffness, share=share)
+        made(MaxwellSlipFriction, stiffness=stiffness, share=share)

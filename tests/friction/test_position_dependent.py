@@ -10,7 +10,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.friction import PositionDependent
 
-PUBLISHED = PositionDependent()
+from tests.strategies import made
+
+PUBLISHED = PositionDependent(
+    quadratic=1.5738e-6,
+    linear=-3.7901e-4,
+    constant=0.0720,
+    static_ratio=1.0388,
+    speed_factor=0.0004,
+    reference_speed=0.8,
+    domain_start=0.0,
+    domain_end=3.7901e-4 / 1.5738e-6,
+)
 REFERENCE = 0.8  # rad/s
 MINIMUM_PLACE, MINIMUM = 120.412377685, 0.0491812523669  # rad, N.m
 
@@ -36,7 +47,7 @@ def test_the_domain_ends_where_the_average_is_back_at_its_start() -> None:
 def test_it_is_the_sum_that_document_p_prints_with_the_sign_of_friction(
     angle: float, cosine: list[float], sine: list[float], speed: float
 ) -> None:
-    law = PositionDependent(cosine=cosine, sine=sine)
+    law = PUBLISHED.replace(cosine=cosine, sine=sine)
     ripple = math.fsum(
         [a * math.cos(k * angle) for k, a in enumerate(cosine, 1)] + [b * math.sin(k * angle) for k, b in enumerate(sine, 1)]
     )
@@ -51,7 +62,7 @@ def test_it_holds_388_parts_in_ten_thousand_more_than_the_coulomb_level(
     angle: float, cosine: list[float], sine: list[float]
 ) -> None:
     """The Coulomb level was measured at the reference speed; hence steady() there."""
-    law = PositionDependent(cosine=cosine, sine=sine)
+    law = PUBLISHED.replace(cosine=cosine, sine=sine)
     for sense in (1.0, -1.0):
         assert law.hold(sense, angle=angle) == pytest.approx(1.0388 * law.steady(REFERENCE, angle=angle), rel=1e-13, abs=1e-300)
 
@@ -60,7 +71,7 @@ def test_it_holds_388_parts_in_ten_thousand_more_than_the_coulomb_level(
     st.lists(st.floats(-0.004, 0.004), min_size=10, max_size=10), st.lists(st.floats(-0.004, 0.004), min_size=10, max_size=10)
 )
 def test_document_p_s_integrals_give_the_coefficients_back(cosine: list[float], sine: list[float]) -> None:
-    law = PositionDependent(quadratic=0.0, linear=0.0, constant=0.1, cosine=cosine, sine=sine)
+    law = made(PositionDependent, constant=0.1, cosine=cosine, sine=sine)
     angle = 2.0 * math.pi * np.arange(64) / 64
     spectrum = np.fft.rfft(law.steady(REFERENCE, angle=angle)) / 32.0
     np.testing.assert_allclose(spectrum.real[1:11], cosine, rtol=0.0, atol=1e-16)
@@ -69,22 +80,20 @@ def test_document_p_s_integrals_give_the_coefficients_back(cosine: list[float], 
 
 @given(st.integers(-37, 37), st.floats(-math.pi, math.pi))
 def test_the_ripple_repeats_with_every_turn(turns: int, angle: float) -> None:
-    law = PositionDependent(
-        quadratic=0.0, linear=0.0, constant=0.1, cosine=[0.01, 0.02], sine=[0.0, 0.0, 0.03], outside="clamp"
-    )
+    law = made(PositionDependent, constant=0.1, cosine=[0.01, 0.02], sine=[0.0, 0.0, 0.03], outside="clamp")
     later = law.steady(1.0, angle=angle + 2.0 * math.pi * turns)
     assert later == pytest.approx(law.steady(1.0, angle=angle), rel=0.0, abs=1e-13)
 
 
 def test_clamp_keeps_the_value_of_the_nearer_end() -> None:
-    law = PositionDependent(domain_end=100.0, outside="clamp")
+    law = PUBLISHED.replace(domain_end=100.0, outside="clamp")
     ends = law.steady(REFERENCE, angle=[0.0, 100.0])
     assert law.steady(REFERENCE, angle=[-1e6, -1e-9, 100.0 + 1e-9, 1e6]).tolist() == [ends[0], ends[0], ends[1], ends[1]]
 
 
 @given(st.floats(10.0, 90.0), st.integers(-1000, 1000))
 def test_periodic_repeats_the_domain(angle: float, periods: int) -> None:
-    law = PositionDependent(domain_start=5.0, domain_end=105.0, outside="periodic")
+    law = PUBLISHED.replace(domain_start=5.0, domain_end=105.0, outside="periodic")
     later = law.steady(REFERENCE, angle=angle + 100.0 * periods)
     assert later == pytest.approx(law.replace(outside="refuse").steady(REFERENCE, angle=angle), rel=1e-12)
 
@@ -112,13 +121,13 @@ def test_refuse_takes_both_ends() -> None:
 
 @given(coefficients.map(lambda drawn: [100.0 * a for a in drawn]), st.floats(-1e4, 1e4), st.floats(-50.0, 50.0))
 def test_a_ripple_larger_than_the_average_never_pushes(cosine: list[float], angle: float, speed: float) -> None:
-    law = PositionDependent(cosine=cosine, outside="clamp")
+    law = PUBLISHED.replace(cosine=cosine, outside="clamp")
     assert law.steady(speed, angle=angle) * speed >= 0.0
     assert law.hold(angle=angle) >= abs(law.steady(1e-300, angle=angle))
 
 
 def test_the_speed_factor_is_relative_to_the_reference_speed_and_viscous_friction_adds_to_it() -> None:
-    law = PositionDependent(speed_factor=0.01, reference_speed=2.0, viscous=1e-3)
+    law = PUBLISHED.replace(speed_factor=0.01, reference_speed=2.0, viscous=1e-3)
     assert law.steady(12.0) == pytest.approx(0.072 * 1.1 + 0.012, rel=1e-14)
     assert law.steady(-12.0) == -law.steady(12.0)
 
@@ -128,4 +137,4 @@ def test_the_speed_factor_is_relative_to_the_reference_speed_and_viscous_frictio
 )
 def test_what_makes_no_sense_is_refused(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=field):
-        PositionDependent(**{field: value})
+        made(PositionDependent, **{field: value})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import exp, pi
 from typing import Any
 
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from strainwave import friction, hysteresis
 
 from tests.laws.test_friction import in_bounds, laws
-from tests.strategies import log_uniform, models, signed
+from tests.strategies import log_uniform, made, models, signed
 
 paths = st.lists(st.just(0.0) | signed(log_uniform(1e-6, 1e2)), min_size=1, max_size=8)
 there_and_back = [0.0, 0.0, 0.5, 0.5, -0.5, 1.0]
@@ -23,7 +24,7 @@ def test_viscous_friction_vanishes() -> None:
     assert friction.Viscous(viscous=3.0).quasistatic(there_and_back).tolist() == [0.0] * 6
 
 
-@pytest.mark.parametrize("law", [friction.Coulomb, friction.Stribeck])
+@pytest.mark.parametrize("law", [friction.Coulomb, partial(friction.Stribeck, stribeck_speed=2.0)])
 def test_a_law_that_sticks_shows_its_breakaway_in_the_sense_of_the_last_motion(law: Any) -> None:
     torque = law(coulomb=0.25, breakaway=0.5, viscous=4.0).quasistatic(there_and_back)
     assert torque.tolist() == (0.5 * sense).tolist()
@@ -48,15 +49,20 @@ def test_load_dependent_friction_follows_the_load_of_each_point_and_its_quadrant
 
 @given(log_uniform(1e-3, 1.0), log_uniform(1.0, 1e4), paths)
 def test_lugre_is_a_fading_memory(breakaway: float, stiffness: float, path: list[float]) -> None:
-    law = friction.LuGre(
-        coulomb=0.5 * breakaway, breakaway=breakaway, bristle_stiffness=stiffness, bristle_damping=0.0, viscous=0.0
+    law = made(
+        friction.LuGre,
+        coulomb=0.5 * breakaway,
+        breakaway=breakaway,
+        bristle_stiffness=stiffness,
+        bristle_damping=0.0,
+        viscous=0.0,
     )
     memory = hysteresis.FadingMemory(stiffness=stiffness, forgetting=stiffness / breakaway)
     assert law.quasistatic(path) == pytest.approx(memory.trace(path), rel=1e-9, abs=1e-12 * breakaway)
 
 
 def test_lugre_by_hand() -> None:
-    law = friction.LuGre(coulomb=0.25, breakaway=0.5, bristle_stiffness=50.0, bristle_damping=1e-3, viscous=0.5)
+    law = made(friction.LuGre, coulomb=0.25, breakaway=0.5, bristle_stiffness=50.0, bristle_damping=1e-3, viscous=0.5)
     there = 0.5 * (1.0 - exp(-50.0 / 0.5 * 0.02))
     back = -0.5 + (there + 0.5) * exp(-50.0 / 0.5 * 0.01)
     assert law.quasistatic([0.0, 0.02, 0.02, 0.01]) == pytest.approx([0.0, there, there, back], rel=1e-15)
@@ -65,8 +71,14 @@ def test_lugre_by_hand() -> None:
 @given(log_uniform(1e-3, 1.0), paths)
 def test_maxwell_slip_friction_is_maxwell_slip_with_its_shares_of_the_breakaway(breakaway: float, path: list[float]) -> None:
     stiffness = [60.0, 30.0, 10.0]
-    law = friction.MaxwellSlipFriction(
-        stiffness=stiffness, share=[1.0, 1.0, 2.0], coulomb=0.5 * breakaway, breakaway=breakaway, attraction=1e-3, viscous=3.0
+    law = made(
+        friction.MaxwellSlipFriction,
+        stiffness=stiffness,
+        share=[1.0, 1.0, 2.0],
+        coulomb=0.5 * breakaway,
+        breakaway=breakaway,
+        attraction=1e-3,
+        viscous=3.0,
     )
     elements = hysteresis.MaxwellSlip(stiffness=stiffness, breakaway=[0.25 * breakaway, 0.25 * breakaway, 0.5 * breakaway])
     assert law.quasistatic(path) == pytest.approx(elements.trace(path), rel=1e-9, abs=1e-12 * breakaway)

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson
 from strainwave.friction import LoadDependent, TorqueEfficiency
 
+from tests.strategies import made
+
 LAW = TorqueEfficiency(average_loss=0.3, difference_loss=0.1, presliding=0.01, viscous=0.0)
 SPEED = 0.5  # rad/s
 
@@ -43,7 +45,7 @@ def test_steady_motion_loses_what_driving_and_back_driving_lose(speed: float, lo
 def test_two_losses_and_their_mean_and_half_difference_are_the_same_thing(
     loss: tuple[float, float], load: float, speed: float
 ) -> None:
-    law = TorqueEfficiency(average_loss=loss[0], difference_loss=loss[1], viscous=0.0)
+    law = made(TorqueEfficiency, average_loss=loss[0], difference_loss=loss[1])
     with_load, against_load = (abs(law.steady(math.copysign(1.0, load) * v, load=load)) for v in (speed, -speed))
     assert with_load + against_load == pytest.approx(2.0 * loss[0] * abs(load), rel=1e-13, abs=1e-300)
     assert with_load - against_load == pytest.approx(2.0 * loss[1] * abs(load), abs=1e-14 * loss[0] * abs(load) + 1e-300)
@@ -93,8 +95,8 @@ def test_a_load_put_on_before_the_way_back_is_paid_for_by_who_puts_it_on() -> No
 def test_a_loss_that_would_create_energy_in_steady_motion_is_refused() -> None:
     for difference in (0.31, -0.31):
         with pytest.raises(ValueError, match="average_loss"):
-            TorqueEfficiency(average_loss=0.3, difference_loss=difference)
-    TorqueEfficiency(average_loss=0.3, difference_loss=-0.3)
+            made(TorqueEfficiency, average_loss=0.3, difference_loss=difference)
+    made(TorqueEfficiency, average_loss=0.3, difference_loss=-0.3)
 
 
 def test_viscous_friction_adds_to_it() -> None:

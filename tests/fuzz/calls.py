@@ -23,6 +23,7 @@ from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
+from tests.strategies import made as usual_of
 
 MODULES = ("units", "gear_set", "parameters", "scenario", "recording", "identify.experiment", "identify.inverse_dynamics")
 LAWS = ("friction", "hysteresis", "kinematic_error", "stiffness")
@@ -72,7 +73,7 @@ def _junk() -> tuple[Any, ...]:
         np.ma.masked_array([1.0, 2.0], mask=[True, False]), np.array([1e300, -1e300]), np.array([np.nan]),
         np.zeros(3, dtype=bool), np.zeros(2, dtype=[("a", float)]), np.arange(5)[::-1], np.arange(4.0)[::2], Path("nothing"),
         Path("a\x00b"), "a" * 5000, _NoText(), drive, drive.gear, drive.rest(), sw.scenario.constant(1.0, 0.01),
-        sw.scenario.constant(1.0, 1e-30), sw.friction.LuGre(), sw.friction.LuGre,
+        sw.scenario.constant(1.0, 1e-30), usual_of(sw.friction.LuGre, viscous=5e-5), sw.friction.LuGre,
         sw.Recording({"time": [0.0, 1.0]}, {"time": "s"}),
     )  # fmt: skip
 
@@ -133,7 +134,7 @@ def instances() -> tuple[Any, ...]:
     drive, command, table = valid()["drive"], valid()["command"], friction_table()
     run = sw.simulate(drive, command, 1e-3)
     loop = TorsionLoop(np.array([0.0, 1e-3, -1e-3, 0.0]), np.array([0.0, 1.0, -1.0, 0.0]))
-    models = [kind() for family in families().values() for kind in family.values()]
+    models = [usual_of(kind) for family in families().values() for kind in family.values()]
     return (
         *models, drive, drive.gear, drive.rest(), drive.rest().motion, command, run, valid()["recording"], sw.linearise(drive),
         sw.simulate_many(drive, command, {"load.inertia": [0.1, 0.2]}, 1e-3),

@@ -11,6 +11,7 @@ from strainwave.gear_set import CATALOGUE, Entry, Quantity
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import encoded, mutated, picked
+from tests.strategies import made
 
 WORDS = (
     "[gear]", "[friction_input]", "[ratings]", "[motor]", "[control]", "[load]", "[[gear]]", "[gear.stiffness]",
@@ -36,7 +37,7 @@ def _texts() -> tuple[str, ...]:
     )
     whole = sw.GearSet.of(drive, name="whole", source="assumed")
     gear_sets = (whole, sw.GearSet.read("hfuc-25-100"), sw.GearSet.read("csg-14-50"))
-    preisach = sw.Gear(hysteresis=sw.hysteresis.Preisach(), friction_input=sw.friction.LuGre())
+    preisach = sw.Gear(hysteresis=sw.hysteresis.Preisach(), friction_input=made(sw.friction.LuGre, viscous=5e-5))
     rated = sw.GearSet.of(preisach, name="rated", source="assumed").replace(
         ratings={"peak_torque": Quantity(source="assumed", value=50.0, unit="N.m")}
     )

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
+from tests.strategies import made as usual_of
 
 Array = NDArray[np.float64]
 SCALES = (1e-300, 1e-150, 1e-30, 1e-9, 1e-3, 1.0, 1.0, 1.0, 1e3, 1e9, 1e30, 1e150, 1e300)
@@ -32,7 +33,9 @@ def measurements_case(random: Generator, folder: Path) -> Case:
     if len(given) == 1 and "friction" in given and random.random() < 0.5:
         free = ["friction_input.coulomb", "friction_input.viscous"]
         gear = start.gear.replace(
-            friction_input=picked(random, (sw.friction.Coulomb(), sw.friction.Stribeck(), sw.friction.LuGre()))
+            friction_input=picked(
+                random, (sw.friction.Coulomb(), usual_of(sw.friction.Stribeck), usual_of(sw.friction.LuGre, viscous=5e-5))
+            )
         )
         return Case(f"fit {words}", lambda: sw.fit(gear, given["friction"], free), _check_fit)
     return Case(f"twin {words}", lambda: sw.twin(start, **given), lambda twin: _check_twin(twin, folder))

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import hyp2f1
 from strainwave.hysteresis import BoucWen, FadingMemory, MaxwellSlip
 
-from tests.strategies import log_uniform
+from tests.strategies import log_uniform, made
 
 Array = NDArray[np.float64]
 
@@ -192,4 +192,4 @@ def test_minor_loops_do_not_close(shape: float) -> None:
 @pytest.mark.parametrize(("field", "value"), [("sharpness", 0.99), ("shape", 0.49), ("shape", 1.01), ("saturation", 0.0)])
 def test_what_is_no_bouc_wen_or_not_passive_is_refused(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=field):
-        BoucWen(**{field: value})
+        made(BoucWen, **{field: value})

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from strainwave.kinematic_error import Misalignment
 
+from tests.strategies import made
+
 Array = NDArray[np.float64]
 
 A, B, R = 25.3e-3, 24.7e-3, 25e-3  # m
@@ -339,7 +341,7 @@ def test_an_axis_outside_the_generator_is_refused() -> None:
         with pytest.raises(ValueError, match="must pass through the wave generator"):
             Misalignment(**RADII, **far)
     with pytest.raises(ValueError, match="major_radius must lie between"):
-        Misalignment(major_radius=B, minor_radius=A)
+        made(Misalignment, major_radius=B, minor_radius=A)
 
 
 def test_every_sign_of_every_tilt_counts() -> None:

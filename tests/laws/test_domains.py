@@ -25,7 +25,7 @@ BOUND = math.pi / (2.0 * 0.02 * 8000.0) + 1.0 / (100.0 * 1.5 * 2.0)
 
 
 def position_dependent(outside: str) -> sw.friction.PositionDependent:
-    return sw.friction.PositionDependent(outside=outside, domain_start=0.0, domain_end=2.0)
+    return sw.friction.PositionDependent(constant=0.072, outside=outside, domain_start=0.0, domain_end=2.0)
 
 
 @pytest.mark.parametrize("verb", ["steady", "hold"])
@@ -59,7 +59,7 @@ def test_a_twist_beyond_both_compliances_is_refused_with_the_bound(verb: str) ->
 
 def test_a_bristle_that_can_create_energy_warns_with_both_sides() -> None:
     message = r"lugre can create energy: viscous = 0\.0004 N\.m\.s/rad must be at least .* = 0\.008"
-    numbers = {"coulomb": 0.05, "breakaway": 0.07, "stribeck_speed": 0.1, "bristle_damping": 0.02}
+    numbers = {"coulomb": 0.05, "breakaway": 0.07, "stribeck_speed": 0.1, "bristle_stiffness": 50.0, "bristle_damping": 0.02}
     with pytest.warns(_core.PassivityWarning, match=message):
         law = sw.friction.LuGre(**numbers, viscous=4e-4)
     with pytest.warns(_core.PassivityWarning, match=message):

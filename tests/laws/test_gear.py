@@ -18,7 +18,7 @@ from strainwave.friction import LuGre, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
-from tests.strategies import built, drives, gears, models
+from tests.strategies import built, drives, gears, made, models, suited
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,9 @@ temperatures = st.floats(250.0, 350.0)
 
 
 reducers = models("kinematics").filter(lambda kinematics: 1.0 <= abs(kinematics.ratio) <= 1e3)
-reduced_gears = st.builds(lambda gear, kinematics: gear.replace(kinematics=kinematics), gears, reducers)
+reduced_gears = st.builds(
+    lambda gear, kinematics: gear.replace(kinematics=kinematics, stiffness=suited(gear.stiffness, kinematics)), gears, reducers
+)
 
 
 def laws(part: str, model: Any) -> st.SearchStrategy[Any]:
@@ -79,7 +81,7 @@ def laws(part: str, model: Any) -> st.SearchStrategy[Any]:
 
 
 def changed(part: str, law: Any) -> PositionDrive:
-    return DRIVE.replace(gear=GEAR.replace(**{part: law}))
+    return DRIVE.replace(gear=GEAR.replace(**{part: suited(law, GEAR.kinematics)}))
 
 
 def innermost(law: Any) -> Any:
@@ -258,12 +260,13 @@ def gap(spring: Any, error: Any, dt: float, steps: int) -> float:
     return float(np.abs(energy / energy[0] - 1.0).max())
 
 
-SMOOTH_SPRINGS = (Linear(k=8000.0), Cubic(a1=8000.0, a3=4e9), MultiCompliance())
+SMOOTH_SPRINGS = (Linear(k=8000.0), Cubic(a1=8000.0, a3=4e9), made(MultiCompliance))
 CORNERED_SPRINGS = (
     Piecewise(k1=8000.0, k2=4000.0, knee=2e-4),
     ThreeSegment(k1=8000.0, k2=11000.0, k3=14000.0, t1=1.0, t2=4.0),
 )
-ASSEMBLY = Misalignment(
+ASSEMBLY = made(
+    Misalignment,
     minor_radius=20e-3,
     offset=4e-3,
     housing_eccentricity=2e-4,

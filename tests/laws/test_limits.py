@@ -31,7 +31,7 @@ from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
 from tests.reference_drive import DRIVE, command
-from tests.strategies import built, log_uniform, models, signed
+from tests.strategies import built, log_uniform, made, models, signed
 
 Array = NDArray[np.float64]
 
@@ -215,7 +215,7 @@ def test_a_stiff_bristle_follows_the_motion_with_a_path_as_short_as_it_is_stiff(
 @given(log_uniform(1e3, 1e6), st.floats(0.02, 0.5))
 def test_the_loop_of_a_stiff_bristle_loses_what_coulomb_friction_loses(stiffness: float, level: float) -> None:
     """Per cycle of amplitude X, 4 G X less 4 G^2 / sigma_0 tanh(X sigma_0 / G), as of any fading memory."""
-    law = LuGre(coulomb=level, breakaway=level, bristle_stiffness=stiffness, bristle_damping=0.0, viscous=0.0)
+    law = made(LuGre, coulomb=level, breakaway=level, bristle_stiffness=stiffness, bristle_damping=0.0)
     amplitude, points = 1.0, 4001
     swing = amplitude * np.cos(np.pi * np.linspace(0.0, 1.0, points))  # from one end to the other, dense at the ends
     back = FadingMemory(stiffness=stiffness, forgetting=stiffness / level)
@@ -233,7 +233,7 @@ def test_the_loop_of_a_stiff_bristle_loses_what_coulomb_friction_loses(stiffness
 @pytest.mark.parametrize("stiffness", [1e3, 1e6, 1e9, 1e12, 1e20])
 def test_the_stiffest_bristle_slides_in_a_drive_as_the_curve_has_it(stiffness: float) -> None:
     """It follows the speed within G / (sigma_0 v); one step of the integration is up to 1e18 times as long."""
-    law = LuGre(bristle_stiffness=stiffness, bristle_damping=0.0, viscous=1e-4)
+    law = made(LuGre, bristle_stiffness=stiffness, bristle_damping=0.0, viscous=1e-4)
     drive = STEADY_DRIVE.replace(gear=STEADY_DRIVE.gear.replace(friction_input=law))
     run = sw.simulate(drive, sw.scenario.constant(6.0, 0.2), method="exponential").between(0.1, 0.2)
     np.testing.assert_allclose(run["friction_input"], law.steady(run["input_speed"]), rtol=1e-6)
@@ -294,21 +294,13 @@ def test_friction_alike_at_every_angle_is_coulomb_friction(
 
 def flat(level: float, ratio: float, viscous: float) -> PositionDependent:
     return PositionDependent(
-        quadratic=0.0,
-        linear=0.0,
-        constant=level,
-        cosine=[],
-        sine=[],
-        static_ratio=ratio,
-        speed_factor=0.0,
-        viscous=viscous,
-        outside="clamp",
+        constant=level, static_ratio=ratio, viscous=viscous, domain_start=0.0, domain_end=1.0, outside="clamp"
     )
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.0, 1.0), speeds)
 def test_without_a_fall_stribeck_friction_is_coulomb_friction(coulomb: float, viscous: float, speed: float) -> None:
-    law = Stribeck(coulomb=coulomb, breakaway=coulomb, viscous=viscous)
+    law = Stribeck(coulomb=coulomb, breakaway=coulomb, stribeck_speed=2.0, viscous=viscous)
     assert law.steady(speed) == Coulomb(coulomb=coulomb, viscous=viscous).steady(speed)
 
 
@@ -339,7 +331,7 @@ def test_within_its_domain_a_law_is_the_same_whatever_it_is_outside(law: Positio
 @pytest.mark.parametrize("place", ["friction_input", "friction_mesh", "friction_output"])
 def test_laws_that_are_coulomb_friction_are_so_in_a_drive(place: str) -> None:
     coulomb = in_a_drive(**{place: Coulomb(coulomb=0.02, breakaway=0.02, viscous=1e-4)})
-    for law in (flat(0.02, 1.0, 1e-4), Stribeck(coulomb=0.02, breakaway=0.02, viscous=1e-4)):
+    for law in (flat(0.02, 1.0, 1e-4), Stribeck(coulomb=0.02, breakaway=0.02, stribeck_speed=2.0, viscous=1e-4)):
         assert in_a_drive(**{place: law}).tolist() == coulomb.tolist()
 
 
@@ -400,7 +392,8 @@ def test_a_smaller_misalignment_leaves_less_error(combine: str, order: int, size
     """In proportion where one lobe carries, with the square where both carry alike."""
 
     def largest(scale: float) -> float:
-        law = Misalignment(
+        law = made(
+            Misalignment,
             offset=4e-3,
             housing_eccentricity=1e-4 * size * scale,
             housing_direction=direction,
@@ -426,7 +419,7 @@ def test_noise_and_harmonics_of_no_amplitude_do_nothing_in_a_drive() -> None:
     assert in_a_drive(kinematic_error=Fourier(), kinematic_noise=Stochastic(amplitude=0.0, seed=3)).tolist() == plain.tolist()
     zero = Fourier(order=[1.0, 2.02], amplitude=[0.0, 0.0], phase=[0.3, 0.4])
     assert in_a_drive(kinematic_error=zero).tolist() == plain.tolist()
-    aligned = in_a_drive(kinematic_error=Misalignment())
+    aligned = in_a_drive(kinematic_error=made(Misalignment))
     np.testing.assert_allclose(aligned, plain, rtol=0.0, atol=1e-12 * np.abs(plain).max())
 
 

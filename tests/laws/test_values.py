@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 import doctest
 import math
 import pickle
 import re
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -15,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core, units
 
-from tests.strategies import Field, drives, gears, models
+from tests.strategies import Field, drives, gears, models, usual
 
 LISTED = [model for family in _core.families.values() for model in family.values()]
 COMPOSED = [sw.Gear, sw.drives.PositionDrive]
@@ -46,7 +48,7 @@ def refusal(model: Any, field: Field, value: object) -> str:
     """What a model says to one value of a field; nothing if it takes it."""
     try:
         with warnings.catch_warnings(action="ignore", category=_core.PassivityWarning):
-            model(**{field["name"]: [value] if field["kind"] == "sequence" else value})
+            model(**(usual(model) | {field["name"]: [value] if field["kind"] == "sequence" else value}))
     except (TypeError, ValueError) as error:
         return str(error)
     return ""
@@ -120,14 +122,14 @@ def test_not_a_number_is_refused(model: type, field: Field) -> None:
 def test_what_is_no_number_is_refused(model: type, field: Field, value: object) -> None:
     given = [value] if field["kind"] == "sequence" else value
     with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be a number, not "):
-        model(**{field["name"]: given})
+        model(**(usual(model) | {field["name"]: given}))
 
 
 @pytest.mark.parametrize(("model", "field"), EVERY_CHOICE)
 def test_a_choice_is_one_of_its_options(model: type, field: Field) -> None:
     assert len(field["options"]) > 1
     for option in field["options"]:
-        assert getattr(model().replace(**{field["name"]: option}), field["name"]) == option
+        assert getattr(model(**usual(model)).replace(**{field["name"]: option}), field["name"]) == option
     assert refusal(model, field, "neither").endswith("not 'neither'")
 
 
@@ -135,7 +137,7 @@ def test_a_choice_is_one_of_its_options(model: type, field: Field) -> None:
 @pytest.mark.parametrize("value", [None, 1.0, "lugre"])
 def test_a_part_is_a_model_of_its_family(model: type, field: Field, value: object) -> None:
     with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be "):
-        model(**{field["name"]: value})
+        model(**(usual(model) | {field["name"]: value}))
 
 
 @every_model
@@ -143,9 +145,9 @@ def test_an_unknown_parameter_is_refused_and_the_known_ones_are_named(model: typ
     names = ", ".join(field["name"] for field in model.fields)
     message = f"^{model.name} has no parameter 'unheard_of'; it has {names}$"
     with pytest.raises(TypeError, match=message):
-        model(unheard_of=1.0)
+        model(**usual(model), unheard_of=1.0)
     with pytest.raises(TypeError, match=message):
-        model().replace(unheard_of=1.0)
+        model(**usual(model)).replace(unheard_of=1.0)
 
 
 @every_model
@@ -154,10 +156,60 @@ def test_sequences_that_belong_together_are_equally_long_and_not_too_long(model:
     for field in sequences:
         too_long = [1.0] * 1000
         with pytest.raises(ValueError, match=rf"^{model.name}\.{field['name']} holds at most \d+ elements$"):
-            model(**{field["name"]: too_long})
+            model(**(usual(model) | {field["name"]: too_long}))
     if len(sequences) > 1 and model is not sw.friction.PositionDependent:  # a series may have sines alone
         with pytest.raises(ValueError, match=rf"^{model.name}: .* must have equally many elements$"):
-            model(**{sequences[0]["name"]: [1.0]})
+            model(**(usual(model) | {sequences[0]["name"]: [1.0]}))
+
+
+# Required and following
+
+
+@every_model
+def test_what_is_required_is_named_where_it_is_missing_and_nothing_else(model: Any) -> None:
+    required = [field["name"] for field in model.fields if field["required"]]
+    if not required:
+        model()
+        return
+    with pytest.raises(TypeError, match=rf"^{model.name} needs {', '.join(required)}: no value suits most gears$"):
+        model()
+    for name in required:
+        with pytest.raises(TypeError, match=rf"^{model.name} needs {name}: "):
+            model(**{other: value for other, value in usual(model).items() if other != name})
+
+
+@pytest.mark.parametrize(("model", "field"), [case for case in EVERY_FIELD if case.values[1]["follows"]])
+def test_what_follows_is_as_large_as_its_leader_unless_it_is_given(model: Any, field: Field) -> None:
+    names = [each["name"] for each in model.fields]
+    leader = model.fields[names.index(field["follows"])]
+    assert names.index(leader["name"]) < names.index(field["name"])
+    assert leader["unit"] == field["unit"]
+    others = {name: value for name, value in usual(model).items() if name != field["name"]}
+    assert getattr(model(**(others | {leader["name"]: 0.25})), field["name"]) == 0.25
+    given = model(**(others | {leader["name"]: 0.25, field["name"]: 0.5}))
+    assert getattr(given, field["name"]) == getattr(given.replace(**{leader["name"]: 0.125}), field["name"]) == 0.5
+
+
+@every_model
+def test_the_documentation_says_what_is_required_and_what_follows(model: Any) -> None:
+    for field in model.fields:
+        said = "required" if field["required"] else f"default as {field['follows']}" if field["follows"] else "default .+"
+        assert re.search(rf"^{field['name']}: .*; {said}$", model.__doc__, re.MULTILINE)
+
+
+@every_model
+def test_nothing_can_be_derived_from_a_model(model: Any) -> None:
+    with pytest.raises(TypeError, match="prohibits subclassing"):
+        type("Derived", (model,), {})
+
+
+@every_model
+def test_a_model_that_was_never_made_is_no_part_of_another(model: Any) -> None:
+    for whole in EVERY_MODEL:
+        for field in whole.fields:
+            if model in ([*field["options"].values()] if field["kind"] == "part" and field["options"] else []):
+                with pytest.raises(TypeError, match=rf"^{whole.name}\.{field['name']} must be "):
+                    whole(**(usual(whole) | {field["name"]: model.__new__(model)}))
 
 
 # Values
@@ -169,9 +221,20 @@ def test_what_is_printed_is_what_makes_the_same_value(value: Any) -> None:
     assert eval(repr(value), names) == value
 
 
-@given(any_value)
-def test_a_value_survives_pickling(value: Any) -> None:
-    twin = pickle.loads(pickle.dumps(value))
+ways_to_copy = st.sampled_from(
+    [copy.copy, copy.deepcopy]
+    + [
+        lambda value, protocol=protocol: pickle.loads(pickle.dumps(value, protocol))
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1)
+    ]
+)
+states = st.one_of([models(family, "State") for family in ("friction", "hysteresis")]).map(lambda law: law.State())
+run_states = drives.map(lambda drive: drive.rest())
+
+
+@given(any_value | states | run_states, ways_to_copy)
+def test_a_value_survives_pickling_and_copying(value: Any, copied: Callable[[Any], Any]) -> None:
+    twin = copied(value)
     assert twin == value
     assert type(twin) is type(value)
     assert hash(twin) == hash(value)
@@ -182,7 +245,7 @@ def test_a_value_is_made_of_its_fields(value: Any) -> None:
     members = {field["name"]: getattr(value, field["name"]) for field in value.fields}
     assert type(value)(**members) == value
     assert value.replace() == value
-    assert type(value)().replace(**members) == value
+    assert type(value)(**usual(type(value))).replace(**members) == value
 
 
 @given(any_value, any_value)

@@ -29,6 +29,7 @@ from strainwave.ensemble import EnsembleWarning
 from strainwave.simulation import differentiate
 
 from tests.reference_drive import DRIVE, command
+from tests.strategies import made
 
 Array = NDArray[np.float64]
 
@@ -274,9 +275,7 @@ def test_outputs_that_do_not_fit_into_memory_are_told_by_their_size(monkeypatch:
 # Members that fail
 
 OUT_OF_DOMAIN = DRIVE.replace(
-    gear=DRIVE.gear.replace(
-        friction_input=sw.friction.PositionDependent(quadratic=0.0, linear=0.0, constant=0.03, domain_start=-50.0)
-    )
+    gear=DRIVE.gear.replace(friction_input=sw.friction.PositionDependent(constant=0.03, domain_start=-50.0, domain_end=240.0))
 )
 RISE = command(0.1)
 UNLIMITED = DRIVE.replace(control=DRIVE.control.replace(limit=1e30))
@@ -285,7 +284,7 @@ FAILING = {  # drive, path, a value that works, one that does not, how its reaso
     "too coarse a step at rest": (DRIVE, "gear.stiffness.a1", 1.2e4, 2e6, "dt = 0.0005 s is too coarse for this drive: "),
     "too coarse a step": (DRIVE, "gear.stiffness.a3", 1e9, 1e13, "dt = 0.0005 s is too coarse for this drive: "),
     "relation": (
-        DRIVE.replace(gear=DRIVE.gear.replace(stiffness=sw.stiffness.ThreeSegment(t1=1.0, t2=20.0))),
+        DRIVE.replace(gear=DRIVE.gear.replace(stiffness=made(sw.stiffness.ThreeSegment, t1=1.0, t2=20.0))),
         "gear.stiffness.t1",
         1.0,
         100.0,

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.gear_set import Entry, GearSet, Quantity, load, save
 
-from tests.strategies import drives, gears, models
+from tests.strategies import drives, gears, made, models
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENT = (ROOT / "docs" / "gear-files.md").read_text(encoding="utf-8")
@@ -424,7 +424,7 @@ PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 def filled(model: Any) -> Any:
     """A model in which no sequence is empty: one without numbers might do nothing, and need no table."""
-    return model(**{field["name"]: [1.0] for field in model.fields if field["kind"] == "sequence"})
+    return made(model, **{field["name"]: [1.0] for field in model.fields if field["kind"] == "sequence"})
 
 
 def with_law(**parts: Any) -> sw.drives.PositionDrive:

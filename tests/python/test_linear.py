@@ -17,7 +17,7 @@ from strainwave.steady import N_MOTION, PLACE, numbers_of, with_numbers
 
 from tests.geared import MOTOR, RATIO, K, geared, outputs
 from tests.reference_drive import DRIVE
-from tests.strategies import built
+from tests.strategies import built, made, suited
 
 DISC = sw.loads.Inertia(inertia=0.5)
 NO_TORQUE = sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=5e-4)
@@ -144,7 +144,7 @@ def test_laws_with_memory_answer_with_their_initial_stiffness() -> None:
 
 @pytest.mark.parametrize("load_torque", [0.0, 3.0, -3.0])
 def test_a_bristle_is_a_spring(load_torque: float) -> None:
-    bristle = sw.friction.LuGre(coulomb=0.3, breakaway=0.3, bristle_stiffness=50.0, bristle_damping=0.0, viscous=0.0)
+    bristle = made(sw.friction.LuGre, coulomb=0.3, breakaway=0.3, bristle_stiffness=50.0, bristle_damping=0.0)
     drive = geared(sw.loads.Inertia(inertia=1e-12), motor=NO_TORQUE, damping=0.0, friction_input=bristle)
     linear = sw.linearise(drive, load_torque=load_torque)
     assert np.abs(linear.eigenfrequencies - sqrt(50.0 / 5e-4)).min() <= 1e-6 * sqrt(50.0 / 5e-4)
@@ -193,7 +193,7 @@ def replaced(drive: sw.drives.PositionDrive, place: str, model: object) -> sw.dr
 def test_derivatives_are_those_of_differences(place: str, model: object, data: st.DataObject) -> None:
     """Of every model in every place, by every number of the motion and every input; where a difference is trustworthy."""
     turning = DRIVE.replace(gear=DRIVE.gear.replace(input_inertia=1e-5))
-    drive = replaced(turning, place, data.draw(built(model)))
+    drive = replaced(turning, place, suited(data.draw(built(model)), turning.gear.kinematics))
     speed, error, sense = data.draw(st.tuples(st.floats(0.5, 5.0), st.floats(1e-5, 1e-4), st.sampled_from([1.0, -1.0])))
     at = drive.rest()
     motion = at.motion.replace(
@@ -286,7 +286,7 @@ def test_rows_and_columns_have_names_and_units() -> None:
 
 
 def test_a_modulated_law_names_the_states_of_the_law_it_holds() -> None:
-    law = sw.friction.Thermal(law=sw.friction.Cyclic(law=sw.friction.LuGre()), dry_fall=0.01)
+    law = sw.friction.Thermal(law=sw.friction.Cyclic(law=made(sw.friction.LuGre, viscous=5e-5)), dry_fall=0.01)
     linear = sw.linearise(geared(control=sw.control.PID(), friction_output=law))
     assert "friction_output.deflection" in linear.states
 

@@ -11,6 +11,7 @@ from strainwave import _core
 from strainwave.simulation import ROOM_TEMPERATURE, differentiate
 
 from tests.side_by_side import side_by_side
+from tests.strategies import made
 
 COLUMNS = [name for name, _, _ in _core.outputs]
 
@@ -65,7 +66,7 @@ def test_a_mesh_that_loses_more_than_comes_back_locks_itself(load_torque: float)
 
 def test_what_the_motor_gives_goes_to_the_load_and_to_the_friction_of_each_place() -> None:
     laws = {
-        "friction_input": sw.friction.LuGre(coulomb=0.03, breakaway=0.03, bristle_damping=0.01, viscous=1e-4),
+        "friction_input": made(sw.friction.LuGre, coulomb=0.03, breakaway=0.03, bristle_damping=0.01, viscous=1e-4),
         "friction_mesh": sw.friction.LoadDependent(**RATIOS),
         "friction_output": sw.friction.Stribeck(coulomb=1.0, breakaway=1.5, stribeck_speed=0.1, viscous=0.2),
     }

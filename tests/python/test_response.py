@@ -11,6 +11,7 @@ import strainwave as sw
 
 from tests.geared import RATIO, K, geared
 from tests.reference_drive import DRIVE
+from tests.strategies import made
 
 STUCK = sw.friction.Coulomb(coulomb=500.0)
 DISC = sw.loads.Inertia(inertia=0.5)
@@ -36,9 +37,9 @@ def test_a_vanishing_sine_is_answered_as_the_linear_view_says(signal: str) -> No
     [
         (sw.hysteresis.MaxwellSlip(stiffness=[3e3, 2e3], breakaway=[0.5, 100.0]), (0.0, 8.0), 1e-5, 1e-6),
         (sw.hysteresis.FadingMemory(stiffness=4e3, forgetting=1e3), (0.0, 8.0), 0.03, 2e-3),
-        (sw.hysteresis.BoucWen(), (0.0,), 1e-5, 1e-6),
-        (sw.hysteresis.Preisach(density=sw.hysteresis.PowerDensity()), (0.0, 8.0), 1e-5, 1e-3),
-        (sw.hysteresis.Regimes(), (8.0,), 1e-5, 1e-6),
+        (made(sw.hysteresis.BoucWen), (0.0,), 1e-5, 1e-6),
+        (sw.hysteresis.Preisach(density=made(sw.hysteresis.PowerDensity)), (0.0, 8.0), 1e-5, 1e-3),
+        (made(sw.hysteresis.Regimes), (8.0,), 1e-5, 1e-6),
     ],
     ids=["maxwell_slip", "fading_memory", "bouc_wen", "preisach", "regimes"],
 )

@@ -24,6 +24,7 @@ from strainwave.simulation import ROOM_TEMPERATURE, Course, Excitation, differen
 
 from tests.little_memory import little_memory
 from tests.reference_drive import DRIVE, command
+from tests.strategies import made
 
 DT = 2.0**-12  # s: its multiples are exact, so that the steps of a run and of a part of it are the same
 HELD = sw.scenario.constant(0.02, 0.25)
@@ -152,7 +153,7 @@ def test_a_step_by_hand_is_given_numbers_that_mean_something(inputs: dict[str, f
 
 
 def test_a_step_by_hand_is_refused_where_a_run_is() -> None:
-    narrow = sw.friction.PositionDependent(domain_start=-10.0, domain_end=9.3)
+    narrow = sw.friction.PositionDependent(constant=0.072, domain_start=-10.0, domain_end=9.3)
     bounded = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=narrow))
     rest = bounded.rest()
     turned = rest.replace(motion=rest.motion.replace(input_speed=1e3), turns=2.0)
@@ -368,7 +369,7 @@ EMF = 0.05 * 0.04 / 0.5 / 1e-4  # 1/s
         ({"damping": 250.0}, {"back_emf": 0.0}, 250.0 * (1.0 / 0.02 + 1.0 / (1e-4 * 100.0**2))),
         ({"friction_input": sw.friction.Coulomb(coulomb=0.01, breakaway=0.02, viscous=2.0)}, {}, EMF + 2.0 / 1e-4),
         ({"friction_output": sw.friction.Viscous(viscous=300.0)}, {}, 300.0 / 0.02),
-        ({"friction_input": sw.friction.LuGre(bristle_damping=1.0, viscous=0.5)}, {"back_emf": 0.0}, 1.5 / 1e-4),
+        ({"friction_input": made(sw.friction.LuGre, bristle_damping=1.0, viscous=0.5)}, {"back_emf": 0.0}, 1.5 / 1e-4),
     ],
     ids=["back-EMF", "with inductance", "gear", "input", "output", "bristles"],
 )
@@ -424,6 +425,21 @@ def test_a_run_that_diverges_says_when_and_returns_nothing(drive: sw.drives.Posi
     for run in diverging(drive):
         with pytest.raises(FloatingPointError, match=DIVERGED):
             run()
+
+
+def test_a_run_that_has_diverged_goes_no_further() -> None:
+    """What it records from there on is where it stopped, its command too."""
+    drive = DRIVE.replace(control=DRIVE.control.replace(limit=1e300, integral=1e6))
+    excitation = Excitation(sw.scenario.sine(0.02, 3.0, 1.0))
+    course = excitation.course(5e-4, None)
+    outputs = np.empty((len(COLUMNS), len(course.times)))
+    course_of = (course.instants, excitation.over(course), course.samples[1:])
+    _core.simulate(drive, drive.rest(), *course_of, _core.Method.exponential, outputs, 1)
+    sound = (np.abs(outputs[:, 1:]) <= simulation.LARGEST).all(axis=0)
+    lost = int(np.argmin(sound))
+    assert not sound[lost:].any()
+    assert len(set(outputs[COLUMNS.index("command"), lost + 65 :])) == 1
+    assert len(sound) > lost + 1000
 
 
 # Long runs

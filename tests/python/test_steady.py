@@ -13,7 +13,7 @@ from strainwave import _core
 
 from tests.geared import MOTOR, RATIO, K, geared, outputs
 from tests.reference_drive import DRIVE
-from tests.strategies import drives
+from tests.strategies import drives, made
 
 
 def stays(drive: sw.drives.PositionDrive, state: _core.State, command: float, load_torque: float = 0.0) -> None:
@@ -97,7 +97,7 @@ def test_an_output_that_friction_holds_stays_while_the_input_winds_the_spring() 
 def test_hysteresis_and_bristles_remember_the_way() -> None:
     """Along a path that never turns back, each Maxwell element holds min(k_i delta, F_i), the bristle what it takes to slip."""
     memory = sw.hysteresis.MaxwellSlip(stiffness=[3e3, 2e3], breakaway=[0.5, 100.0])
-    bristle = sw.friction.LuGre(coulomb=0.3, breakaway=0.3, bristle_stiffness=50.0)
+    bristle = made(sw.friction.LuGre, coulomb=0.3, breakaway=0.3, bristle_stiffness=50.0)
     drive = geared(hysteresis=memory, friction_input=bristle)
     state = sw.equilibrium(drive, load_torque=5.0)
     found = outputs(drive, state, 0.0, 5.0)
@@ -162,7 +162,7 @@ def test_a_motor_runs_at_the_speed_that_load_and_viscous_friction_leave_it() -> 
 def test_a_drive_with_bristles_and_losses_under_load_runs_on_as_it_is() -> None:
     drive = geared(
         sw.loads.Inertia(inertia=0.05),
-        friction_input=sw.friction.LuGre(coulomb=0.03, breakaway=0.05, bristle_damping=0.01, viscous=1e-4),
+        friction_input=made(sw.friction.LuGre, coulomb=0.03, breakaway=0.05, bristle_damping=0.01, viscous=1e-4),
         friction_mesh=sw.friction.LoadDependent(
             driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.25
         ),

@@ -18,7 +18,7 @@ struct Coulomb {
 
         with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, b = viscous. At rest F balances whatever
         drives the side, up to F_s; there is no smoothed sign and no dead band of speed, both of which leave an error that no
-        step size removes. A breakaway below coulomb counts as coulomb.
+        step size removes. A breakaway that is not given equals coulomb; one below coulomb counts as coulomb.
 
         >>> from strainwave.friction import Coulomb
         >>> Coulomb(coulomb=0.07, breakaway=0.075, viscous=5e-4).steady(-20.0)
@@ -27,7 +27,7 @@ struct Coulomb {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
-        visit(SW_FIELD(m, breakaway, "N.m", "Static friction torque F_s", 0));
+        visit(SW_FOLLOWS(m, breakaway, coulomb, "N.m", "Static friction torque F_s", 0));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
 

@@ -11,7 +11,7 @@ struct LuGre {
     S stribeck_speed{2.0};
     S bristle_stiffness{50.0};
     S bristle_damping{5e-5};
-    S viscous{5e-5};
+    S viscous{0.0};
     S damping_fading{0.0};
 
     static constexpr auto name = "lugre";
@@ -33,16 +33,18 @@ struct LuGre {
         also necessary. A set that violates this is accepted, and ``check()`` warns with both sides.
 
         >>> from strainwave.friction import LuGre
-        >>> LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, viscous=4e-4).steady(1.0)
+        >>> law = LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, bristle_stiffness=50.0, bristle_damping=5e-5,
+        ...             viscous=4e-4)
+        >>> law.steady(1.0)
         0.0504)";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
-        visit(SW_FIELD(m, breakaway, "N.m", "Static friction torque F_s", 0));
-        visit(SW_FIELD(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
-        visit(SW_FIELD(m, bristle_stiffness, "N.m/rad", "Torque per bristle deflection", smallest));
-        visit(SW_FIELD(m, bristle_damping, "N.m.s/rad", "Torque per bristle rate, at rest", 0));
+        visit(SW_REQUIRED(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
+        visit(SW_REQUIRED(m, breakaway, "N.m", "Static friction torque F_s", 0));
+        visit(SW_REQUIRED(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
+        visit(SW_REQUIRED(m, bristle_stiffness, "N.m/rad", "Torque per bristle deflection", smallest));
+        visit(SW_REQUIRED(m, bristle_damping, "N.m.s/rad", "Torque per bristle rate, at rest", 0));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
         visit(SW_FIELD(m, damping_fading, "s/rad", "Reciprocal of the speed at which bristle_damping has fallen to 1/e", 0));
     }

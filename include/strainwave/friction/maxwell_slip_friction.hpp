@@ -14,7 +14,7 @@ struct MaxwellSlipFriction {
     S breakaway{0.03};
     S stribeck_speed{2.0};
     S attraction{0.3};
-    S viscous{5e-5};
+    S viscous{0.0};
 
     static constexpr auto name = "maxwell_slip_friction";
     static constexpr auto source =
@@ -30,7 +30,7 @@ struct MaxwellSlipFriction {
         with v the speed of the place it acts on, k_i = stiffness, alpha_i = share over the sum of all shares, F_c = coulomb,
         F_s = breakaway, v_s = stribeck_speed, C = attraction, sigma_2 = viscous; up to 8 elements, none at all is no dry
         friction. An element sticks until it carries alpha_i s(v), and slips until the motion stops or turns round. A slipping
-        element follows s(v) with the time constant s/C. A breakaway below coulomb counts as coulomb. Where dry friction is
+        element follows s(v) with the time constant s/C. A breakaway that is not given equals coulomb; one below counts as coulomb. Where dry friction is
         scaled (Cyclic, Thermal), s and C scale, stiffness and time constant do not.
 
         With breakaway = coulomb no element lags, it is Maxwell's slip with the levels alpha_i F_c, and dissipates for every
@@ -39,18 +39,19 @@ struct MaxwellSlipFriction {
         Leaves out load, position and temperature.
 
         >>> from strainwave.friction import MaxwellSlipFriction
-        >>> law = MaxwellSlipFriction(stiffness=[60, 30, 10], share=[0.2, 0.3, 0.5], coulomb=0.05, breakaway=0.05)
+        >>> law = MaxwellSlipFriction(stiffness=[60, 30, 10], share=[0.2, 0.3, 0.5], coulomb=0.05, stribeck_speed=2.0,
+        ...                           attraction=0.3)
         >>> law.trace([0.0, 1.0, 2.0], [1e-3, 1e-3, 1e-3]).round(6)
         array([0.   , 0.035, 0.045]))";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, stiffness, "N.m/rad", "Stiffness k_i of each element while it sticks", smallest));
-        visit(SW_FIELD(m, share, "1", "Share alpha_i of each element in the friction torque, relative to the sum of all", 0));
-        visit(SW_FIELD(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
-        visit(SW_FIELD(m, breakaway, "N.m", "Static friction torque F_s", 0));
-        visit(SW_FIELD(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
-        visit(SW_FIELD(m, attraction, "N.m/s", "Rate C at which slipping elements are drawn to the Stribeck curve", smallest));
+        visit(SW_REQUIRED(m, stiffness, "N.m/rad", "Stiffness k_i of each element while it sticks", smallest));
+        visit(SW_REQUIRED(m, share, "1", "Share alpha_i of each element in the friction torque, relative to the sum of all", 0));
+        visit(SW_REQUIRED(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
+        visit(SW_FOLLOWS(m, breakaway, coulomb, "N.m", "Static friction torque F_s", 0));
+        visit(SW_REQUIRED(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
+        visit(SW_REQUIRED(m, attraction, "N.m/s", "Rate C at which slipping elements are drawn to the Stribeck curve", smallest));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
 

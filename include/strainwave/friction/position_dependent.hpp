@@ -12,17 +12,17 @@ template <class S>
 struct PositionDependent {
     static constexpr int capacity = 10;
 
-    S quadratic{1.5738e-6};
-    S linear{-3.7901e-4};
+    S quadratic{0.0};
+    S linear{0.0};
     S constant{0.0720};
     Sequence<S, capacity> cosine{};
     Sequence<S, capacity> sine{};
-    S static_ratio{1.0388};
-    S speed_factor{0.0004};
-    S reference_speed{0.8};
+    S static_ratio{1.0};
+    S speed_factor{0.0};
+    S reference_speed{0.0};
     S viscous{0.0};
     S domain_start{0.0};
-    S domain_end{3.7901e-4 / 1.5738e-6};
+    S domain_end{2.0 * pi};
     Outside outside{Outside::refuse};
 
     static constexpr auto name = "position_dependent";
@@ -39,10 +39,11 @@ struct PositionDependent {
 
         with q the angle and v the speed of the place it acts on, s_1 = quadratic, s_2 = linear, s_3 = constant, a_k = cosine and
         b_k = sine, by their place k = 1, 2 ..., kappa = static_ratio, epsilon = speed_factor, v_c = reference_speed (at which
-        f_aver was measured), b = viscous. A level below zero counts as zero. Document P prints no a_k and b_k.
+        f_aver was measured), b = viscous. A level below zero counts as zero. Document P has s_1 = 1.5738e-6, s_2 = -3.7901e-4,
+        s_3 = 0.0720, kappa = 1.0388, epsilon = 0.0004 and v_c = 0.8, all SI, and prints no a_k and b_k.
 
         Valid for q from domain_start to domain_end. A parabola grows without bound: the one of document P has its minimum,
-        0.0491812523669 N.m, at 120.412377685 rad, and the default domain ends where it is back at its start (E-P8). Beyond it,
+        0.0491812523669 N.m, at 120.412377685 rad, and is back at its start at twice that angle (E-P8). Beyond the domain,
         outside says what f_aver does: ``"clamp"`` keeps the value of the nearer end, ``"periodic"`` repeats the domain,
         ``"refuse"`` is an error. f_peri repeats with every turn anyway.
 
@@ -51,7 +52,7 @@ struct PositionDependent {
         and is left out (E-P9).
 
         >>> from strainwave.friction import PositionDependent
-        >>> law = PositionDependent(quadratic=0.0, linear=0.0, constant=0.5, cosine=[0.25], speed_factor=0.0, viscous=0.125)
+        >>> law = PositionDependent(constant=0.5, cosine=[0.25], viscous=0.125, domain_start=0.0, domain_end=6.3)
         >>> law.steady([2.0, -2.0])
         array([ 1., -1.]))";
 
@@ -59,15 +60,15 @@ struct PositionDependent {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, quadratic, "N.m/rad2", "Coefficient s_1 of the average friction"));
         visit(SW_FIELD(m, linear, "N.m/rad", "Coefficient s_2 of the average friction"));
-        visit(SW_FIELD(m, constant, "N.m", "Average friction s_3 at angle 0"));
+        visit(SW_REQUIRED(m, constant, "N.m", "Average friction s_3 at angle 0"));
         visit(SW_FIELD(m, cosine, "N.m", "Amplitudes a_k of cos k q, k = 1, 2 ..."));
         visit(SW_FIELD(m, sine, "N.m", "Amplitudes b_k of sin k q, k = 1, 2 ..."));
         visit(SW_FIELD(m, static_ratio, "1", "Static over kinetic friction kappa", 1));
         visit(SW_FIELD(m, speed_factor, "s/rad", "Relative rise of the average friction with speed", 0));
         visit(SW_FIELD(m, reference_speed, "rad/s", "Speed v_c at which the average friction was measured", 0));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed, besides", 0));
-        visit(SW_FIELD(m, domain_start, "rad", "Least angle at which the average friction was measured"));
-        visit(SW_FIELD(m, domain_end, "rad", "Greatest angle at which the average friction was measured"));
+        visit(SW_REQUIRED(m, domain_start, "rad", "Least angle at which the average friction was measured"));
+        visit(SW_REQUIRED(m, domain_end, "rad", "Greatest angle at which the average friction was measured"));
         visit(SW_FIELD(m, outside, "1", "What the average friction does beyond its domain"));
     }
 

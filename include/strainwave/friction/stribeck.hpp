@@ -15,7 +15,7 @@ struct Stribeck {
     S coulomb{0.03};
     S breakaway{0.045};
     S stribeck_speed{2.0};
-    S viscous{5e-5};
+    S viscous{0.0};
 
     static constexpr auto name = "stribeck";
     static constexpr auto source = "Stribeck1902; ArmstrongHelouvry1994, eq. (3) with exponent 2";
@@ -34,9 +34,9 @@ struct Stribeck {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
-        visit(SW_FIELD(m, breakaway, "N.m", "Static friction torque F_s", 0));
-        visit(SW_FIELD(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
+        visit(SW_REQUIRED(m, coulomb, "N.m", "Kinetic friction torque F_c", 0));
+        visit(SW_REQUIRED(m, breakaway, "N.m", "Static friction torque F_s", 0));
+        visit(SW_REQUIRED(m, stribeck_speed, "rad/s", "Speed at which the excess F_s - F_c has fallen to 1/e", smallest));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
 

@@ -8,7 +8,7 @@ struct TorqueEfficiency {
     S average_loss{0.2};
     S difference_loss{0.0};
     S presliding{0.01};
-    S viscous{5e-5};
+    S viscous{0.0};
 
     static constexpr auto name = "torque_efficiency";
     static constexpr auto source =
@@ -31,14 +31,14 @@ struct TorqueEfficiency {
         m / (1 - m) here.
 
         >>> from strainwave.friction import TorqueEfficiency
-        >>> TorqueEfficiency(average_loss=0.25, difference_loss=0.05, viscous=0.0).steady([10.0, -10.0], load=4.0)
+        >>> TorqueEfficiency(average_loss=0.25, difference_loss=0.05, presliding=0.001).steady([10.0, -10.0], load=4.0)
         array([ 1.2, -0.8]))";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, average_loss, "1", "Loss per torque transmitted, mean of driving and back-driving", 0));
+        visit(SW_REQUIRED(m, average_loss, "1", "Loss per torque transmitted, mean of driving and back-driving", 0));
         visit(SW_FIELD(m, difference_loss, "1", "Half of what driving loses more than back-driving, per torque transmitted"));
-        visit(SW_FIELD(m, presliding, "rad", "Angle h over which the loss turns round after a reversal", smallest));
+        visit(SW_REQUIRED(m, presliding, "rad", "Angle h over which the loss turns round after a reversal", smallest));
         visit(SW_FIELD(m, viscous, "N.m.s/rad", "Torque per speed", 0));
     }
 

@@ -227,8 +227,8 @@ struct BoucWen {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, stiffness, "N.m/rad", "Stiffness A at zero torque", smallest));
-        visit(SW_FIELD(m, saturation, "N.m", "Torque T_s approached by a long motion", smallest));
+        visit(SW_REQUIRED(m, stiffness, "N.m/rad", "Stiffness A at zero torque", smallest));
+        visit(SW_REQUIRED(m, saturation, "N.m", "Torque T_s approached by a long motion", smallest));
         visit(SW_FIELD(m, sharpness, "1", "Exponent n: how sharply the torque bends towards its saturation", 1));
         visit(SW_FIELD(m, shape, "1", "Share sigma = beta / (beta + gamma): 1/2 unloads straight, 1 most curved", 0.5, 1));
     }

@@ -29,14 +29,16 @@ struct Regimes {
         cycle creeps. Virgin is s = 0.
 
         The table's stiffnesses read as secants from 0 to +-0.36 N.m do not close (E-T4); they do as slopes between the stops, of
-        a loop 50.5 degrees wide. They hold at the shaft they were measured at: behind a gear of ratio N, torques grow by N,
-        twists shrink by N.
+        a loop 50.5 degrees wide. They hold at the input, where they were measured, and are
+        those of the example. In a gear the law acts on the output: behind a ratio N, torques grow by N, twists shrink by N.
 
         It is a whole spring: in a gear, the ``stiffness`` acts in parallel, and is what is stiff beside it (Linear with a
         negligible stiffness if nothing is).
 
         >>> from strainwave.hysteresis import Regimes
-        >>> Regimes().trace([0.0, 0.6, 0.5, -0.6, 0.6]).round(6)
+        >>> law = Regimes(positive_unloading=4.51, negative_loading=0.31, negative_unloading=4.85, positive_loading=0.30,
+        ...               onset=0.03, lost_motion=0.8813912722571364)
+        >>> law.trace([0.0, 0.6, 0.5, -0.6, 0.6]).round(6)
         array([ 0.      ,  0.718463,  0.267463, -0.772626,  0.718463]))";
 
     static constexpr bool odd = false;
@@ -46,12 +48,14 @@ struct Regimes {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, positive_unloading, "N.m/rad", "Stiffness while a positive torque falls, and beyond the stop", smallest));
-        visit(SW_FIELD(m, negative_loading, "N.m/rad", "Stiffness while a negative torque builds up", 0));
-        visit(SW_FIELD(m, negative_unloading, "N.m/rad", "Stiffness while a negative torque falls, and beyond the stop", smallest));
-        visit(SW_FIELD(m, positive_loading, "N.m/rad", "Stiffness while a positive torque builds up", 0));
-        visit(SW_FIELD(m, onset, "N.m", "Torque T_0 at which the soft regimes set in", 0));
-        visit(SW_FIELD(m, lost_motion, "rad", "Plastic twist w between the stops: width of the loop at zero torque", 0));
+        visit(SW_REQUIRED(m, positive_unloading, "N.m/rad", "Stiffness while a positive torque falls, and beyond the stop",
+                          smallest));
+        visit(SW_REQUIRED(m, negative_loading, "N.m/rad", "Stiffness while a negative torque builds up", 0));
+        visit(SW_REQUIRED(m, negative_unloading, "N.m/rad", "Stiffness while a negative torque falls, and beyond the stop",
+                          smallest));
+        visit(SW_REQUIRED(m, positive_loading, "N.m/rad", "Stiffness while a positive torque builds up", 0));
+        visit(SW_REQUIRED(m, onset, "N.m", "Torque T_0 at which the soft regimes set in", 0));
+        visit(SW_REQUIRED(m, lost_motion, "rad", "Plastic twist w between the stops: width of the loop at zero torque", 0));
     }
 
     constexpr const char* problem() const {

@@ -100,14 +100,16 @@ struct Misalignment {
         against it (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
 
         >>> from strainwave.kinematic_error import Misalignment
-        >>> round(Misalignment(housing_eccentricity=20e-6, combine="single").error(0.0), 10)
+        >>> law = Misalignment(major_radius=25.25e-3, minor_radius=24.75e-3, pitch_radius=25e-3, housing_eccentricity=20e-6,
+        ...                    combine="single")
+        >>> round(law.error(0.0), 10)
         -0.0002911762)";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, major_radius, "m", "Major half axis a of the wave generator", smallest));
-        visit(SW_FIELD(m, minor_radius, "m", "Minor half axis b of the wave generator", smallest));
-        visit(SW_FIELD(m, pitch_radius, "m", "Pitch radius r_g", smallest));
+        visit(SW_REQUIRED(m, major_radius, "m", "Major half axis a of the wave generator", smallest));
+        visit(SW_REQUIRED(m, minor_radius, "m", "Minor half axis b of the wave generator", smallest));
+        visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest));
         visit(SW_FIELD(m, pressure_angle, "rad", "Pressure angle alpha_t of the teeth", smallest, 1.5));
         visit(SW_FIELD(m, offset, "m", "Axial distance h of the section from the centre of tilt"));
         visit(SW_FIELD(m, housing_eccentricity, "m", "Distance e_1 of the input shaft from the axis of the circular spline", 0));

@@ -26,7 +26,7 @@ struct Cubic {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, a1, "N.m/rad", "Stiffness at zero twist", smallest));
+        visit(SW_REQUIRED(m, a1, "N.m/rad", "Stiffness at zero twist", smallest));
         visit(SW_FIELD(m, a3, "N.m/rad3", "Hardening", 0));
     }
 

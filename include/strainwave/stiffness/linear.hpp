@@ -23,7 +23,7 @@ struct Linear {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, k, "N.m/rad", "Stiffness", smallest));
+        visit(SW_REQUIRED(m, k, "N.m/rad", "Stiffness", smallest));
     }
 
     constexpr S torque(const S& twist) const { return k * twist; }

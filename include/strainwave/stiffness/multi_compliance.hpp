@@ -205,7 +205,7 @@ struct MultiCompliance {
 
         In a compiled model torque rises up to max(1e6 / C_f, 40 N / C_w), at most 1e18 N.m, and stays there, from within
         1e-6 of the bound on. Elastic only: the friction torque that document R puts inside belongs to a law of friction or
-        hysteresis, where it is passive (E-R14). The defaults are assumed.
+        hysteresis, where it is passive (E-R14). A gear refuses a reduction that is not its own ratio.
 
         >>> from strainwave.stiffness import MultiCompliance
         >>> spring = MultiCompliance(flexspline_stiffness=8000.0, flexspline_hardening=0.02, wave_generator_stiffness=2.0,
@@ -215,12 +215,13 @@ struct MultiCompliance {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, flexspline_stiffness, "N.m/rad", "Stiffness K_f0 of the flexspline at zero torque", smallest));
-        visit(SW_FIELD(m, flexspline_hardening, "1/(N.m)", "Hardening C_f of the flexspline per torque at the output", 0));
-        visit(SW_FIELD(m, wave_generator_stiffness, "N.m/rad", "Stiffness K_w0 of the wave generator at zero torque, at the input",
-                       smallest));
-        visit(SW_FIELD(m, wave_generator_hardening, "1/(N.m)", "Hardening C_w of the wave generator per torque at the input", 0));
-        visit(SW_FIELD(m, reduction, "1", "Ratio N of the gear, without its sign", 1));
+        visit(SW_REQUIRED(m, flexspline_stiffness, "N.m/rad", "Stiffness K_f0 of the flexspline at zero torque", smallest));
+        visit(SW_REQUIRED(m, flexspline_hardening, "1/(N.m)", "Hardening C_f of the flexspline per torque at the output", 0));
+        visit(SW_REQUIRED(m, wave_generator_stiffness, "N.m/rad",
+                          "Stiffness K_w0 of the wave generator at zero torque, at the input", smallest));
+        visit(
+            SW_REQUIRED(m, wave_generator_hardening, "1/(N.m)", "Hardening C_w of the wave generator per torque at the input", 0));
+        visit(SW_REQUIRED(m, reduction, "1", "Ratio N of the gear, without its sign", 1));
     }
 
     constexpr S torque(const S& twist) const { return along(twist, springs().torque(abs(twist))); }

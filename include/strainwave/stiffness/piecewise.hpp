@@ -28,9 +28,9 @@ struct Piecewise {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, k1, "N.m/rad", "Stiffness up to the knee", smallest));
-        visit(SW_FIELD(m, k2, "N.m/rad", "What the stiffness above the knee exceeds k1 by", 0));
-        visit(SW_FIELD(m, knee, "rad", "Twist of the knee", 0));
+        visit(SW_REQUIRED(m, k1, "N.m/rad", "Stiffness up to the knee", smallest));
+        visit(SW_REQUIRED(m, k2, "N.m/rad", "What the stiffness above the knee exceeds k1 by", 0));
+        visit(SW_REQUIRED(m, knee, "rad", "Twist of the knee", 0));
     }
 
     constexpr S torque(const S& twist) const {

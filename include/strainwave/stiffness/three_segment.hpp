@@ -31,11 +31,11 @@ struct ThreeSegment {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, k1, "N.m/rad", "Stiffness below t1", smallest));
-        visit(SW_FIELD(m, k2, "N.m/rad", "Stiffness between t1 and t2", smallest));
-        visit(SW_FIELD(m, k3, "N.m/rad", "Stiffness above t2", smallest));
-        visit(SW_FIELD(m, t1, "N.m", "Torque of the first knee", smallest));
-        visit(SW_FIELD(m, t2, "N.m", "Torque of the second knee", smallest));
+        visit(SW_REQUIRED(m, k1, "N.m/rad", "Stiffness below t1", smallest));
+        visit(SW_REQUIRED(m, k2, "N.m/rad", "Stiffness between t1 and t2", smallest));
+        visit(SW_REQUIRED(m, k3, "N.m/rad", "Stiffness above t2", smallest));
+        visit(SW_REQUIRED(m, t1, "N.m", "Torque of the first knee", smallest));
+        visit(SW_REQUIRED(m, t2, "N.m", "Torque of the second knee", smallest));
     }
 
     constexpr const char* problem() const { return all(t2 >= t1) ? nullptr : "t2 must not lie below t1"; }

@@ -10,12 +10,17 @@ import strainwave as sw
 from strainwave.identify.experiment import FrictionTable
 from strainwave.identify.friction import fit_friction
 
+from tests.strategies import made
+
 # Document P, Table 2, measured column; its least-squares line as physics computes it independently.
 TABLE_2 = FrictionTable(np.array([0.1, 0.5, 1.0, 2.0, 5.0]), np.array([0.012, 0.028, 0.045, 0.078, 0.165]))
 LINE = (0.012554434963, 0.030840444789)
 
 
-@pytest.mark.parametrize("law", [sw.friction.Viscous(), sw.friction.Coulomb(), sw.friction.Stribeck(), sw.friction.LuGre()])
+LUGRE = made(sw.friction.LuGre, viscous=5e-5)
+
+
+@pytest.mark.parametrize("law", [sw.friction.Viscous(), sw.friction.Coulomb(), made(sw.friction.Stribeck), LUGRE])
 def test_the_published_table_gives_its_line_whatever_the_law(law: object) -> None:
     found = fit_friction(TABLE_2, sw.Gear(friction_input=law))[0].fit.gear.friction_input
     assert (found.coulomb, found.viscous) == pytest.approx(LINE, rel=1e-9)
@@ -33,7 +38,9 @@ def test_a_fall_at_low_speed_is_found_where_there_is_one(law: type[sw.friction.L
     truth = sw.friction.Stribeck(coulomb=0.03, breakaway=0.05, stribeck_speed=3.0, viscous=2e-4)
     speed = np.geomspace(0.1, 300.0, 60)
     noise = 3e-4 * np.random.default_rng(1).normal(size=len(speed))
-    best, other = fit_friction(FrictionTable(speed, truth.steady(speed) + noise), sw.Gear(friction_input=law()))
+    best, other = fit_friction(
+        FrictionTable(speed, truth.steady(speed) + noise), sw.Gear(friction_input=made(law, viscous=5e-5))
+    )
     assert best.name == "with a fall at low speed"
     assert best.error < 0.2 * other.error
     for estimate, value in zip(best.fit.estimates, (0.03, 0.05, 3.0, 2e-4), strict=True):
@@ -47,13 +54,13 @@ def test_no_fall_is_made_up_from_noise() -> None:
     for seed in range(10):
         noise = 1e-3 * np.random.default_rng(seed).normal(size=len(speed))
         table = FrictionTable(speed, truth.steady(speed) + noise)
-        names.append(fit_friction(table, sw.Gear(friction_input=sw.friction.LuGre()))[0].name)
+        names.append(fit_friction(table, sw.Gear(friction_input=LUGRE))[0].name)
     assert names.count("Coulomb and viscous") >= 8
 
 
 def test_nothing_is_said_of_the_passivity_of_laws_tried_on_the_way() -> None:
     """The law of the gear and the one found are passive; a fast fall of the same bristle would not be."""
-    law = sw.friction.LuGre(coulomb=0.09, breakaway=0.095, stribeck_speed=2.0, bristle_damping=8e-3, viscous=7e-4)
+    law = LUGRE.replace(coulomb=0.09, breakaway=0.095, bristle_damping=8e-3, viscous=7e-4)
     with pytest.warns(sw.PassivityWarning):
         law.replace(coulomb=0.02)
     with warnings.catch_warnings():
@@ -64,7 +71,7 @@ def test_nothing_is_said_of_the_passivity_of_laws_tried_on_the_way() -> None:
 
 @pytest.mark.parametrize(
     "law",
-    [sw.friction.MaxwellSlipFriction(), sw.friction.LoadDependent(), sw.friction.Thermal(), sw.friction.Cyclic()],
+    [made(sw.friction.MaxwellSlipFriction), sw.friction.LoadDependent(), sw.friction.Thermal(), sw.friction.Cyclic()],
     ids=lambda law: law.name,
 )
 def test_a_law_that_a_table_cannot_tell_is_refused(law: sw.friction.Thermal) -> None:

@@ -19,6 +19,8 @@ from strainwave.report.experiment import Experiment, Figure
 from strainwave.report.page import write
 from strainwave.report.twin import Provenance, twin_report
 
+from tests.strategies import made
+
 HOSTILE = '<script>alert("x")</script> & <b>table</b>.csv'
 SPEED = np.concatenate((-np.geomspace(0.5, 150.0, 15)[::-1], np.geomspace(0.5, 150.0, 15)))
 LAW = sw.friction.LuGre(
@@ -112,7 +114,7 @@ def complete(start: GearSet) -> sw.Twin:
         kinematic_noise=sw.kinematic_error.Stochastic(amplitude=1e-5, seed=7),
         hysteresis=sw.hysteresis.Preisach(density=sw.hysteresis.GridDensity(limit=1e-3, weight=[1.0, 2.0, 1.0])),
         friction_mesh=sw.friction.Thermal(law=sw.friction.Cyclic(law=losses, order=[2.0], amplitude=[0.1], phase=[0.0])),
-        friction_output=sw.friction.PositionDependent(cosine=[1e-3, 2e-3]),
+        friction_output=made(sw.friction.PositionDependent, cosine=[1e-3, 2e-3]),
     )
     return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
 
