@@ -363,7 +363,8 @@ def save(model: GearSet | Gear | PositionDrive | Fitted, path: str | Path, **nam
     """
     gear_set = model if isinstance(model, GearSet) else GearSet.of(model, **naming)
     if gear_set is model and naming:
-        raise TypeError(f"{min(naming)} = {naming[min(naming)]!r}: a set has its own; change it by replace before it is saved")
+        name, given = min(naming.items())
+        raise TypeError(f"{name} = {shortened(given)}: a set has its own; change it by replace before it is saved")
     gear_set.save(path)
 
 
@@ -453,7 +454,7 @@ def _named(gear_set: GearSet, sources: Mapping[str, Entry]) -> dict[str, Entry]:
         if not inside:
             near = ", ".join(difflib.get_close_matches(place, gear_set.sources, n=3, cutoff=0.0))
             raise ValueError(
-                f"{gear_set.name}: sources name {place}, which is no number or part of the model; near it are {near}"
+                f"{gear_set.name}: sources name {unquoted(place)}, which is no number or part of the model; near it are {near}"
             )
         named |= dict.fromkeys(inside, entry)
     return named

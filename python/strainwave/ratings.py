@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.drives import PositionDrive
 from strainwave.gear_set import GearSet, Quantity
+from strainwave.messages import shortened
 from strainwave.recording import Recording
 from strainwave.units import convert
 
@@ -91,10 +92,10 @@ def check_ratings(gear_set: GearSet, *recordings: Recording) -> list[RatingCheck
 peak torque, CSG-20-100)
     """
     if not isinstance(gear_set, GearSet):
-        raise TypeError(f"gear_set must be a GearSet, as sw.GearSet.read(...) gives it, not {gear_set!r}")
+        raise TypeError(f"gear_set must be a GearSet, as sw.GearSet.read(...) gives it, not {shortened(gear_set)}")
     for recording in recordings:
         if not isinstance(recording, Recording):
-            raise TypeError(f"recordings must hold a Recording each, not {recording!r}")
+            raise TypeError(f"recordings must hold a Recording each, not {shortened(recording)}")
     found = (_check(name, limit, each) for each in recordings for name, limit in gear_set.ratings.items())
     return [check for check in found if check is not None]
 

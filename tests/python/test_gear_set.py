@@ -117,6 +117,12 @@ def test_a_source_may_be_named_for_a_number_a_sequence_or_a_part_and_the_longer_
             "gear.friction_input.viscous, gear.friction_mesh.viscous, gear.friction_output.viscous",
         ),
         ({"gear.stiff": Entry("x")}, ValueError, None),
+        (
+            {"\x1b[2J": Entry("x")},
+            ValueError,
+            "x: sources name \\x1b[2J, which is no number or part of the model; near it are "
+            "gear.stiffness.k, gear.kinematics.flexspline_teeth, gear.kinematics.circular_spline_teeth",
+        ),
         ({"gear": "x"}, TypeError, "gear must have a strainwave.gear_set.Entry, not 'x'"),
         (3, TypeError, 'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not 3'),
     ],
