@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import strainwave as sw
 from numpy.random import Generator
@@ -45,9 +46,10 @@ def _texts() -> tuple[str, ...]:
 
 
 def _written(gear_set: sw.GearSet) -> str:
-    from strainwave.gear_file import _text
-
-    return _text(gear_set)
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "gear.toml")
+        gear_set.save(path)
+        return path.read_text(encoding="utf-8")
 
 
 def toml_case(random: Generator, folder: Path) -> Case:

@@ -30,7 +30,7 @@ _FOREIGN = re.compile(
     r"|must be real number|argument must be a string or|can only concatenate|could not convert|cannot convert float"
     r"|ufunc '|setting an array element|zero-size array|could not be broadcast|inhomogeneous|truth value of an array"
     r"|incompatible function arguments|nanobind|std::|Unable to allocate|not enough values to unpack|too many values to unpack"
-    r"|Maximum allowed|index out of range|out of bounds|array must not contain|SVD did not converge|Singular matrix"
+    r"|Maximum allowed size|index out of range|out of bounds|array must not contain|SVD did not converge|Singular matrix"
     r"|encountered in |did not converge|invalid literal"
 )
 

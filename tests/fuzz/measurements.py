@@ -17,7 +17,7 @@ from tests.fuzz.mutation import picked
 from tests.strategies import made as usual_of
 
 Array = NDArray[np.float64]
-SCALES = (1e-300, 1e-150, 1e-30, 1e-9, 1e-3, 1.0, 1.0, 1.0, 1e3, 1e9, 1e30, 1e150, 1e300)
+SCALES = (1e-300, 1e-150, 1e-30, 1e-9, 1e-3, *12 * (1.0,), 1e3, 1e9, 1e30, 1e150, 1e300)
 SETS = ("hfuc-25-100", "csg-14-50", "shg-58-160")
 
 

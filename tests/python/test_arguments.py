@@ -199,9 +199,7 @@ def test_every_function_that_runs_a_drive_wants_a_scenario_as_command(command: A
 
 def test_steps_that_no_clock_could_tell_apart_are_refused() -> None:
     for call in (*functions(dt=1e-300), *functions(sample=1e-300)):
-        with pytest.raises(
-            ValueError, match=r"^[\d.]+ s are more than 1e\+09 steps of 1e-300 s; take longer steps or slower inputs$"
-        ):
+        with pytest.raises(ValueError, match=r"^[\d.]+ s are more than 1e\+09 steps of 1e-300 s; take .*longer (steps|dt)"):
             call()
 
 

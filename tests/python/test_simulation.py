@@ -318,8 +318,9 @@ def test_a_run_too_long_for_the_memory_says_how_large_it_is_and_what_to_do(run: 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
 def test_outputs_too_many_for_the_memory_say_how_large_they_are() -> None:
-    with little_memory(48 << 20), pytest.raises(MemoryError, match=r"^5e\+05 samples take 0\.064 GB, .*; sample less often$"):
-        sw.simulate(DRIVE, sw.scenario.constant(0.1, 100.0))
+    held = Excitation(sw.scenario.constant(0.1, 1.0))
+    with little_memory(64 << 20), pytest.raises(MemoryError, match=r"^1e\+08 samples take 12\.8 GB, .*; sample less often$"):
+        simulation.beginning(DRIVE, DRIVE.rest(), held, 10**8)
 
 
 def test_a_run_that_leaves_all_bounds_is_no_result_though_its_numbers_are_finite() -> None:
