@@ -13,6 +13,7 @@ SAMPLES = 2_000  # of a quasi-static path; more tell a fit nothing but the noise
 SURE = 6.0  # standard deviations of the noise that a reversal must exceed
 PRESLIDING = 0.02  # of the span: bristles bend by milliradians at the input before they slip (assumed)
 SMALLEST = 0.02  # of the span: reversals below it are none of the test's
+LARGEST = 0.25  # of the span: reversals above it are, even of so few samples that the path itself looks like noise
 
 
 def noise(values: Array) -> float:
@@ -28,7 +29,8 @@ def turning_points(path: Array) -> list[int]:
     >>> turning_points(np.array([0.0, 1.0, 0.999, 2.0, 1.0, 0.0]))
     [3]
     """
-    least = max(SURE * noise(path), SMALLEST * float(np.ptp(path)))
+    span = float(np.ptp(path))
+    least = min(max(SURE * noise(path), SMALLEST * span), LARGEST * span)
     turns: list[int] = []
     low = high = 0
     sense = 0

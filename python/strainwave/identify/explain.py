@@ -149,7 +149,7 @@ def _ratio(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
     fixed = "circular_spline" if drive.gear.kinematics.ratio < 0.0 else "flexspline"
     kinematics = StrainWave(flexspline_teeth=teeth, circular_spline_teeth=teeth + 2, fixed=fixed)
     yield Cause(
-        f"the ratio of the gear is {abs(slope):.4g}, not {known:g}", f"start from a gear of ratio {round(abs(slope))}",
+        f"the ratio of the gear is about {abs(slope):.3g}, not {known:g}", f"start from a gear of ratio {round(abs(slope))}",
         recording, drive.replace(gear=drive.gear.replace(kinematics=kinematics)),
     )  # fmt: skip
 

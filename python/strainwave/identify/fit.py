@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
 TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps end far below it where residuals are small
 ROUGH = 1e-3  # the same of the pass that finds how the channels weigh
+TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 DEGENERATE = 1e-10  # singular values below this share of the largest carry no information
 
 
@@ -321,6 +322,7 @@ class _Problem:
             xtol=tolerance,
             ftol=tolerance,
             gtol=tolerance,
+            max_nfev=TRIALS,
         )
         return np.asarray(solution.x)
 

@@ -16,6 +16,7 @@ from strainwave.parameters import Parameter, every
 Array = NDArray[np.float64]
 
 SUSPECT = 0.3  # of the residuals' power: a kept parameter that accounts for more of it is wrong
+NEARLY = 0.8  # of the largest share: which parameter accounts for a little more is chance
 EXACT = ("control.", "gear.kinematics.", "kinematics.")  # nobody measures what was designed
 DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
 
@@ -38,15 +39,24 @@ class Influence(ComparedByFields):
     pulls: Array
     gains: Array
 
+    @classmethod
+    def none(cls, estimates: int) -> Influence:
+        """Of a fit that explains nothing, of which it is idle to ask."""
+        return cls((), np.zeros((estimates, 0)), *np.zeros((3, 0)))
+
     def suspect(self, known: Mapping[str, Entry], prefix: str = "") -> int | None:
         """The kept parameter that the measurement speaks against most, by its place; None where it speaks against none.
 
         It does so where a change would remove much of the residuals, and is larger than what is known of the parameter allows.
         """
-        doubts = [uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept]
-        gains = np.where(np.abs(self.pulls) > doubts, self.gains, 0.0)
-        worst = int(np.argmax(gains)) if len(gains) else 0
-        return worst if len(gains) and gains[worst] > SUSPECT else None
+        doubts = np.array([uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept])
+        least = max(SUSPECT, NEARLY * float(np.max(self.gains, initial=0.0)))
+        worst = np.flatnonzero((np.abs(self.pulls) > doubts) & (self.gains > least))
+        if not len(worst):
+            return None
+        # of several that would do as well, the one that is the least certain
+        strain = np.abs(self.pulls[worst]) / np.maximum(doubts[worst], 1e-300)
+        return int(worst[np.argmin(strain)])
 
     def doubt(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
         """What the uncertainty of each kept parameter adds to that of an estimate, in its unit; largest first.

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
 ROUNDS = 4  # of fits after which breakaway has followed Coulomb's torque upwards
 HALVINGS = 12  # of a friction that no command overcomes
+STEEPEST = 0.1  # slope of each harmonic over that of the rigid motion: no gear's is as large (assumed)
 ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
 
 
@@ -144,6 +145,7 @@ def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
     waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
     columns = np.column_stack((np.ones_like(angle), angle, *waves))
     weights = np.linalg.lstsq(columns, error, rcond=None)[0][2:].reshape(-1, 2)
-    return kinematic_error.Fourier(
-        order=ORDERS, amplitude=np.hypot(*weights.T).tolist(), phase=np.arctan2(weights[:, 1], weights[:, 0]).tolist()
-    )
+    amplitude, phase = np.hypot(*weights.T), np.arctan2(weights[:, 1], weights[:, 0])
+    largest = STEEPEST / (abs(ratio) * np.array(ORDERS))
+    amplitude = np.where(amplitude < largest, amplitude, 1e-3 * largest)  # no error of a gear: something else is wrong
+    return kinematic_error.Fourier(order=ORDERS, amplitude=amplitude.tolist(), phase=phase.tolist())

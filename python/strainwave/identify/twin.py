@@ -153,7 +153,7 @@ def twin(
         tuple(evidence),
         tuple(found),
         tuple(_contradictions(start, evidence)),
-        tuple(check for each in evidence for check in check_ratings(start, _load(each))),
+        tuple(check for each in evidence if not each.unexplained for check in check_ratings(start, _load(each))),
     )
 
 
@@ -291,7 +291,8 @@ def _from_log(
     if not both:
         remarks.append("one encoder only: kinematic error and stiffness are not seen")
     name = ", ".join(path.removeprefix("gear.") for path in free) or "nothing free"
-    doubts, of_kept = [*_not_explained(found.fit)], influence(found.fit)
+    doubts = [*_not_explained(found.fit)]
+    of_kept = Influence.none(len(found.fit.estimates)) if doubts else influence(found.fit)
     if doubts:
         doubts = [_with_cause(doubts[0][0], found.fit, recording, drive, free)]
     elif (worst := of_kept.suspect(sources)) is not None:

@@ -17,6 +17,7 @@ from strainwave.identify.fit import Estimate
 
 UNTOLD = 0.5  # relative standard deviation above which a parameter counts as not identified
 LEANING = 0.25  # of the value: by more than this it must not move with what is not known of a kept parameter
+SWAYED = 0.05  # of the value: by more it must not move with a kept parameter that the measurement speaks against
 TOLD = 0.02  # of the value: smaller influence of a kept parameter is not worth a word
 MOST_TOLD = 3  # kept parameters named with an estimate
 ENTANGLED = 0.98  # correlation above which two parameters are told in combination only
@@ -148,7 +149,7 @@ def _suspect(evidence: Evidence, index: int, estimate: Estimate, sources: Mappin
     """The kept parameter that the measurement speaks against, if the estimate would move far were it right."""
     influence, size = evidence.influence, 1.0 if ".phase[" in estimate.path else abs(estimate.value)
     worst = influence.suspect(sources, evidence.prefix)
-    if worst is None or abs(influence.slopes[index, worst] * influence.pulls[worst]) < LEANING * size:
+    if worst is None or abs(influence.slopes[index, worst] * influence.pulls[worst]) < SWAYED * size:
         return ""
     moved = 100.0 * influence.slopes[index, worst] * influence.pulls[worst] / size
     return f"it would move by {moved:+.2g} % were {influence.kept[worst].path} what {evidence.source} pulls it to"
