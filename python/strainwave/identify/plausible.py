@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,9 @@ MOVING = 0.5  # of what a table leaves unexplained: if acceleration explains mor
 FEWEST = 30  # rows of a log; tables of steady friction are shorter, or in no order that acceleration could follow
 ELASTIC = 0.2  # of the torque at the ends of a loop: a gear carries more of it by its spring
 
-UNITS_OF_TORQUE = {"mN.m, not N.m": 1e3, "N.m, not mN.m": 1e-3, "N.cm, not N.m": 1e2}
-UNITS_OF_ANGLE = {"deg, not rad": np.pi / 180.0, "arcmin, not rad": np.pi / 10_800.0, "arcmin, not deg": 1.0 / 60.0}
+# Units that a header may name wrongly: the one it names, the one that it may be, and by how much a result is then too large.
+UNITS_OF_TORQUE = (("N.m", "mN.m", 1e3), ("mN.m", "N.m", 1e-3), ("N.m", "N.cm", 1e2))
+UNITS_OF_ANGLE = (("rad", "deg", np.pi / 180.0), ("rad", "arcmin", np.pi / 10_800.0), ("deg", "arcmin", 1.0 / 60.0))
 
 
 def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
@@ -39,22 +40,22 @@ def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[t
     if known <= 0.0 or 1.0 / APART < measured / known < APART:
         return
     factor, ratio = measured / known, abs(start.kinematics.ratio)
-    mistakes = {f"the torque is in {unit}": size for unit, size in UNITS_OF_TORQUE.items()}
+    at_joint = measured / ratio / start.friction_input.steady(speed * ratio)
+    mistake, rest = _nearest(factor, _wrong_units("torque", recording.unit("torque"), UNITS_OF_TORQUE))
     what = (
         f"it gives {measured:.3g} N·m at {speed:.3g} rad/s of the input, {_times(factor)} what the gear it starts from has "
         f"({known:.3g} N·m)"
     )
-    at_joint = measured / ratio / start.friction_input.steady(speed * ratio)
-    if factor > APART and 1.0 / APART < at_joint < APART:
+    if factor > APART and 1.0 / APART < at_joint < APART and abs(np.log(at_joint)) < rest:
         yield (
             f"{what}; taken as measured at the output, it gives {_times(at_joint)} that gear's",
             "if it was measured at the output, say so: --side output; if at the input, --side input",
         )
     else:
-        yield what, f"{_named(factor, mistakes)}see whether the units of both columns are right; if they are, --accept"
+        yield what, f"{mistake}see whether the units of both columns are right; if they are, --accept"
 
 
-def doubts_of_loop(found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
+def doubts_of_loop(recording: Recording, found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
     """What speaks against a torsion loop, each with what to do about it."""
     loop = found.experiment
     assert isinstance(loop, TorsionLoop)
@@ -76,11 +77,12 @@ def doubts_of_loop(found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
             "twist and torque were measured at the input (name them input_angle and input_torque)": 1.0 / squared,
             "input_angle and input_torque were measured at the output (name them twist and torque)": squared,
         }
-        mistakes |= {f"the torque is in {unit}": size for unit, size in UNITS_OF_TORQUE.items()}
-        mistakes |= {f"the angle is in {unit}": size for unit, size in UNITS_OF_ANGLE.items()}
+        torque, angle = ("torque", "twist") if loop.input_ratio is None else ("input_torque", "input_angle")
+        mistakes |= _wrong_units("torque", recording.unit(torque), UNITS_OF_TORQUE)
+        mistakes |= _wrong_units("angle", recording.unit(angle), UNITS_OF_ANGLE)
         yield (
             f"it gives {measured:.3g} N·m/rad, {_times(factor)} what the gear it starts from has ({known:.3g} N·m/rad)",
-            f"{_named(factor, mistakes)}see whether sides and units are right; if they are, --accept",
+            f"{_nearest(factor, mistakes)[0]}see whether sides and units are right; if they are, --accept",
         )
 
 
@@ -96,10 +98,16 @@ def _is_accelerating(recording: Recording, found: Fit) -> bool:
     return bool(np.var(rest) < (1.0 - MOVING) * np.var(residual)) and bool(np.any(np.diff(np.sign(change))))
 
 
-def _named(factor: float, mistakes: dict[str, float]) -> str:
-    """The mistake that explains a factor best, if one does."""
-    name, size = min(mistakes.items(), key=lambda item: abs(np.log(factor / item[1])))
-    return f"perhaps {name}; " if abs(np.log(factor / size)) < np.log(NEAR) else ""
+def _wrong_units(quantity: str, unit: str, known: Sequence[tuple[str, str, float]]) -> dict[str, float]:
+    """Mistakes in the unit of a quantity, and by how much they make a result too large."""
+    return {f"the {quantity} is in {other}, not in {named}": size for named, other, size in known if named == unit}
+
+
+def _nearest(factor: float, mistakes: dict[str, float]) -> tuple[str, float]:
+    """The mistake that explains a factor best, if one does, and what it leaves unexplained, as a logarithm."""
+    distances = {name: abs(float(np.log(factor / size))) for name, size in mistakes.items()}
+    name, least = min(distances.items(), key=lambda item: item[1], default=("", np.inf))
+    return f"perhaps {name}; " if least < np.log(NEAR) else "", least
 
 
 def _times(factor: float) -> str:

@@ -232,7 +232,7 @@ def _from_torsion(gear: Gear, recording: Recording, source: str, friction_measur
             "one branch only: it tells neither hysteresis nor zeros, so the hysteresis is kept, and the gear is taken to have "
             "been unloaded at the zeros of both axes"
         )
-    doubts = [*doubts_of_loop(best.fit, start)] or [*_not_explained(best.fit)]
+    doubts = [*doubts_of_loop(recording, best.fit, start)] or [*_not_explained(best.fit)]
     return Evidence(
         "torsion", source, recording, best.fit, best.fit.residuals[:, ~best.fit.training], best.fit.rms(held_out=True),
         tuple((c.name, c.error) for c in (best, *others)), influence(best.fit), _shares(best.fit),
