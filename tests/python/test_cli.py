@@ -22,7 +22,6 @@ from strainwave import _core, cli, gear_set
 from strainwave.cli import main
 
 GOOD_TABLE = "speed [rad/s],torque [N.m]\n1,0.021\n5,0.024\n10,0.026\n20,0.031\n50,0.046\n100,0.07\n"
-ONE_BRANCH = "twist [rad],torque [N.m]\n" + "".join(f"{1e-5 * i},{0.4 * i}\n" for i in range(40))
 GOOD_LOOP = "twist [mrad],torque [N.m]\n" + "".join(
     f"{np.cos(a):.6f},{20 * np.cos(a) - 2 * np.sin(a):.6f}\n" for a in np.linspace(0.0, 2.0 * np.pi, 80)
 )
@@ -137,11 +136,6 @@ def test_what_a_file_holds_reaches_no_terminal_as_it_is(tmp_path: Path, hostile:
         assert result.stderr.removesuffix("\n").isprintable()
         assert len(result.stderr) < 700
     refused(tmp_path, ["models", hostile], "there is no model")
-
-
-def test_a_loop_with_one_branch_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "loop.csv").write_text(ONE_BRANCH)
-    refused(tmp_path, ["twin", "--gear", "hfuc-25-100", "--torsion", "loop.csv"], "loop.csv", "one branch only", "unload")
 
 
 def test_a_truncated_parquet_file_is_refused(tmp_path: Path) -> None:
@@ -389,3 +383,33 @@ def test_a_model_is_described_in_full(tmp_path: Path) -> None:
 
 def test_a_model_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Path) -> None:
     refused(tmp_path, ["models", "lugree"], "there is no model lugree", "lugre", "three_segment")
+
+
+def test_a_doubted_measurement_is_told_first_and_no_gear_is_written_until_it_is_accepted(tmp_path: Path) -> None:
+    speeds = np.geomspace(1.0, 300.0, 12) / 80.0
+    rows = "".join(f"{speed},{80.0 * 0.05 + 6400.0 * 3e-4 * speed}\n" for speed in speeds)
+    (tmp_path / "joint.csv").write_text(f"Speed [rad/s],Torque [N.m]\n{rows}")
+    words = ["twin", "--gear", "hfuc-20-80", "--friction", "joint.csv", "--out", "mine"]
+    doubted = strainwave(*words, folder=tmp_path)
+    assert doubted.returncode == 3
+    assert doubted.stdout.startswith("DOUBT: joint.csv: ")
+    assert "--side output" in doubted.stdout
+    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["report.html"]
+    assert "Doubts: settle these" in (tmp_path / "mine" / "report.html").read_text()
+    accepted = strainwave(*words, "--accept", folder=tmp_path)
+    assert accepted.returncode == 0
+    assert sw.load(tmp_path / "mine" / "gear.toml").friction_input.coulomb == pytest.approx(4.0, rel=0.02)
+    told = strainwave(*words, "--side", "output", folder=tmp_path)
+    assert (told.returncode, "DOUBT" in told.stdout) == (0, False)
+    assert "gear.friction_input.coulomb" in told.stdout, "what was fitted is printed"
+    assert sw.load(tmp_path / "mine" / "gear.toml").friction_input.coulomb == pytest.approx(0.05, rel=0.02)
+
+
+def test_a_single_branch_gives_the_spring(tmp_path: Path) -> None:
+    twist = np.linspace(0.0, 1e-3, 50)
+    (tmp_path / "branch.csv").write_text(
+        "twist [rad],torque [N.m],room [degC]\n" + "".join(f"{t},{2e4 * t},22\n" for t in twist)
+    )
+    result = strainwave("twin", "--gear", "hfuc-20-80", "--torsion", "branch.csv", folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "branch.csv: columns not used: room" in result.stdout

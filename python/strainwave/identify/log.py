@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import _core, friction, kinematic_error
+from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import DriveLog
@@ -17,7 +18,8 @@ from strainwave.identify.fit import Fit, fit
 Array = NDArray[np.float64]
 
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
-ROUNDS = 4  # of fits after which breakaway has followed Coulomb's torque upwards
+ROUNDS = 4  # of fits after which breakaway has followed Coulomb's torque
+FOLLOWED = 1e-3  # of it, as near as it need come
 HALVINGS = 12  # of a friction that no command overcomes
 STEEPEST = 0.1  # slope of each harmonic over that of the rigid motion: no gear's is as large (assumed)
 ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
@@ -53,10 +55,10 @@ def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
     training = log.time <= TRAINING_SHARE * log.time[-1]
     found = fit(drive, log, free, training=training)
     for _ in range(ROUNDS):
-        law = innermost(found.gear.friction_input)
-        if not hasattr(law, "breakaway") or law.breakaway >= law.coulomb:
+        law, wanted = innermost(found.gear.friction_input), _breakaway(found.gear, drive.gear)
+        if wanted is None or abs(law.breakaway - wanted) <= FOLLOWED * wanted:
             break
-        gear = found.gear.replace(friction_input=_with_breakaway(found.gear.friction_input, law.coulomb))
+        gear = found.gear.replace(friction_input=_with_breakaway(found.gear.friction_input, wanted))
         found = fit(found.model.replace(gear=gear), log, free, training=training)
     found = _within_a_turn(found)
     return LogFit(found, found.rms(held_out=True))
@@ -77,6 +79,16 @@ def _within_a_turn(found: Fit) -> Fit:
 def innermost(law: Any) -> Any:
     """The law of friction that others modulate, or the law itself."""
     return innermost(law.law) if hasattr(law, "law") else law
+
+
+def _breakaway(gear: Gear, start: Gear) -> float | None:
+    """What breakaway follows from Coulomb's torque: its ratio of before in Coulomb's law, no less in others; None without."""
+    law, before = innermost(gear.friction_input), innermost(start.friction_input)
+    if not hasattr(law, "breakaway"):
+        return None
+    if isinstance(law, friction.Coulomb) and before.coulomb > 0.0:
+        return float(law.coulomb * max(before.breakaway / before.coulomb, 1.0))
+    return float(max(law.breakaway, law.coulomb))
 
 
 def _with_breakaway(law: Any, breakaway: float) -> Any:

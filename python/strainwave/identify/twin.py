@@ -321,7 +321,7 @@ def _unused(recording: Recording, used: Collection[str]) -> Iterator[str]:
 
 def _thinned(samples: int, taken: int) -> Iterator[str]:
     if samples > taken:
-        yield f"of its {samples} samples the fit saw {taken}: means of neighbours, or every so many of a log"
+        yield f"of its {samples} samples {taken} were compared"
 
 
 def _doubts(source: str, found: Sequence[tuple[str, str]]) -> tuple[Doubt, ...]:

@@ -65,11 +65,11 @@ def verdicts(start: GearSet, gear: Gear, evidence: Sequence[Evidence]) -> list[V
             found.append(Verdict(path, unit, earlier, value, spread(e, index, sources, estimates), state, why))
         else:
             entry = start.sources.get(path)
-            why = "no measurement given speaks of it" + (f"; {entry.source}" if entry is not None else "")
+            why = "no measurement given tells it" + (f"; {entry.source}" if entry is not None else "")
             if path not in before:
                 why = "set by the method of the fit beside it"
             elif value != earlier:
-                why = "follows from the parameters fitted beside it; no measurement given speaks of it"
+                why = "follows from the parameters fitted beside it; no measurement given tells it"
             found.append(Verdict(path, unit, earlier, value, np.nan, "kept", why))
     return found
 
@@ -112,15 +112,19 @@ def spread(
 def judged(evidence: Evidence, index: int, sources: Mapping[str, Entry]) -> tuple[State, str]:
     """Whether the data tell a parameter, and why not, or from what."""
     estimate = evidence.fit.estimates[index]
-    if why := _untold(evidence, index, estimate, sources):
+    if why := _untold(evidence, index, estimate):
         return "not identified", why
-    if why := evidence.shared.get(evidence.path(estimate), "") or _combination(evidence, index):
+    if why := evidence.shared.get(evidence.path(estimate), ""):
+        return "identified in combination", why
+    if why := _suspect(evidence, index, estimate, sources) or _leaning(evidence, index, estimate, sources, LEANING):
+        return "not identified", why
+    if why := _combination(evidence, index):
         return "identified in combination", why
     leaning = _leaning(evidence, index, estimate, sources, TOLD)
     return "identified", f"{evidence.source}; {leaning}" if leaning else evidence.source
 
 
-def _untold(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry]) -> str:
+def _untold(evidence: Evidence, index: int, estimate: Estimate) -> str:
     """Why the data do not tell a parameter; empty where they do."""
     if evidence.unexplained:
         return f"the model does not explain {evidence.source}"
@@ -134,7 +138,7 @@ def _untold(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping
     elif estimate.sigma > UNTOLD * abs(estimate.value):
         together = _combination(evidence, index)
         return "standard deviation exceeds half the value" + (f"; {together}" if together else "")
-    return _suspect(evidence, index, estimate, sources) or _leaning(evidence, index, estimate, sources, LEANING)
+    return ""
 
 
 def _leaning(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry], least: float) -> str:

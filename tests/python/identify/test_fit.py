@@ -241,3 +241,66 @@ def test_a_model_that_is_not_valid_from_the_start_is_refused() -> None:
     stiffer = scaled(1.2, 1.2, 1.2, 1.2)
     with pytest.raises(ValueError, match=r"gear.stiffness: twist = 0\.0.* rad lies outside of"):
         fit(stiffer, near_the_bound(), ["stiffness.flexspline_stiffness"])
+
+
+def few(seed: int) -> sw.Recording:
+    speed = np.array([1.0, 5.0, 10.0, 20.0, 40.0])
+    noise = 1e-3 * np.random.default_rng(seed).normal(size=5)
+    return sw.Recording({"speed": speed, "torque": LAW.steady(speed) + noise}, {"speed": "rad/s", "torque": "N.m"})
+
+
+def test_the_intervals_of_few_samples_hold_the_truth_as_often_as_they_say() -> None:
+    """Five samples, three degrees of freedom: three normal standard deviations would hold it in 94 %, not in 99.7 %."""
+    held = {0.6826894921370859: 0, 0.95: 0, 0.9973: 0}
+    for seed in range(400):
+        for estimate, truth in zip(fit(gear(), few(seed), FREE).estimates, (LAW.coulomb, LAW.viscous), strict=True):
+            for confidence in held:
+                low, high = estimate.interval(confidence)
+                held[confidence] += low <= truth <= high
+    for confidence, count in held.items():
+        assert count / 800 > confidence - 3.0 * np.sqrt(confidence * (1.0 - confidence) / 800)
+    estimate = fit(gear(), few(0), FREE).estimates[0]
+    assert estimate.freedom == pytest.approx(3.0)
+    assert estimate.interval(0.6826894921370859) == pytest.approx(
+        (estimate.value - estimate.sigma, estimate.value + estimate.sigma)
+    )
+
+
+def test_noise_that_grows_with_the_torque_widens_what_it_spoils() -> None:
+    """A pump's noise at high speed: the viscous coefficient is as unsure as it scatters."""
+    speed = np.geomspace(1.0, 300.0, 40)
+    found = []
+    for seed in range(150):
+        noise = 1e-5 * speed * np.random.default_rng(seed).normal(size=len(speed))
+        table = sw.Recording({"speed": speed, "torque": LAW.steady(speed) + noise}, {"speed": "rad/s", "torque": "N.m"})
+        found.append(fit(gear(), table, FREE).estimates[1])
+    scatter = np.std([estimate.value for estimate in found])
+    assert np.median([estimate.sigma for estimate in found]) == pytest.approx(scatter, rel=0.25)
+
+
+def test_a_model_that_never_moves_is_refused_and_not_given_back() -> None:
+    stuck = drive(coulomb=5.0)
+    stuck = stuck.replace(gear=stuck.gear.replace(friction_input=sw.friction.Coulomb(coulomb=5.0, breakaway=5.0)))
+    with pytest.raises(ValueError, match=r"^the model does not move under this command, though the drive did"):
+        sw.fit(stuck, drive_log(), ["gear.friction_input.coulomb"])
+
+
+def test_a_log_that_does_not_start_at_rest_is_refused_here_too() -> None:
+    with pytest.raises(ValueError, match=r"must start at rest: input_angle starts at .* cut it to begin where"):
+        sw.fit(drive(), drive_log().between(0.1, 0.9), ["gear.friction_input.coulomb"])
+
+
+@pytest.mark.parametrize("scale", [1e12, 1e-12, 1e300])
+def test_what_no_instrument_reads_is_refused_with_its_unit(scale: float) -> None:
+    table = friction_table()
+    table = table.with_column("torque", scale * table["torque"], "N.m")
+    with pytest.raises(ValueError, match=r'^column "torque" goes up to .* N.m; what is measured .* taken to be N.m$'):
+        sw.fit(gear(), table, FREE)
+
+
+def test_what_a_fit_found_equals_its_copy() -> None:
+    from copy import deepcopy
+
+    found = fit(gear(), friction_table(1e-3), FREE)
+    assert found == deepcopy(found)
+    assert found != fit(gear(), friction_table(2e-3), FREE)
