@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import re
+import textwrap
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import _core
+from strainwave.identify.branches import turning_points
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
 from strainwave.recording import envelope
 from strainwave.report import typeset
@@ -53,6 +55,9 @@ DARK = {
     "earlier": "#e0c15c",
 }
 RUNS = (("model", "-", 2.0), ("measured", "--", 1.5), ("held-out", ":", 1.3))  # colours and lines of runs, in turn
+WIDTH = 4.4  # inches: its letters are as large as those of the page, on a telephone as well as on a desk
+LINE = 48  # letters that fit beside each other in this width
+HANDLE = 5  # letters that the line before a label takes
 STRETCHES = 300  # of a long record, each drawn by its extremes: about two to a pixel
 MARKED = 150  # samples up to which each is drawn as a point
 WIDE = 100.0  # ratio of speeds beyond which their axis is logarithmic
@@ -95,10 +100,10 @@ def friction_table(evidence: Evidence) -> str:
         _friction_law(torque, evidence, evidence.fit.gear.friction_input, "model", color=LIGHT["model"])
         _residual(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["held-out"])
         _label(torque, "friction torque", "N.m")
-        _label(residual, "measured − predicted from the other speeds", "N.m", "input speed", "rad/s")
-        _legend(torque)
+        _label(residual, "measured − predicted from the others", "N.m", "input speed", "rad/s")
+        _legend(figure, torque)
 
-    return _inline(draw, (6.2, 3.9), "friction", f"Friction torque over input speed, {evidence.source}")
+    return _inline(draw, (WIDTH, 3.7), "friction", f"Friction torque over input speed, {evidence.source}")
 
 
 def torsion_loop(evidence: Evidence) -> str:
@@ -106,15 +111,17 @@ def torsion_loop(evidence: Evidence) -> str:
 
     def draw(figure: Figure) -> None:
         loop, residual = figure.subplots(2, 1, height_ratios=(2.8, 1.0))
-        sample, held_out = np.arange(1.0, len(evidence.fit.training) + 1.0), ~evidence.fit.training
+        point, held_out = np.arange(1.0, len(evidence.fit.training) + 1.0), ~evidence.fit.training
         _loop(loop, evidence)
-        _residual(residual, sample, evidence.fit.residuals[0], color=LIGHT["ink"])
-        _shade(residual, sample, held_out)
-        _label(loop, "torque at the output", "N.m", "twist at the output", "rad")
-        _label(residual, "measured − modelled", "N.m", "sample", "1")
-        _legend(loop)
+        _residual(residual, point, evidence.fit.residuals[0], color=LIGHT["ink"])
+        _shade(residual, point, held_out)
+        for gap in gaps(_torsion(evidence)):
+            residual.axvline(float(gap) + 0.5, color=LIGHT["muted"], linestyle=":", linewidth=0.8)
+        _label_loop(loop, evidence)
+        _label(residual, "measured − modelled", "N.m", "point compared, in the order measured", "1")
+        _legend(figure, loop)
 
-    return _inline(draw, (6.2, 5.4), "torsion", f"Torque over twist, {evidence.source}")
+    return _inline(draw, (WIDTH, 4.8), "torsion", f"Torque over twist, {evidence.source}")
 
 
 def drive_log(evidence: Evidence, channel: int) -> str:
@@ -133,9 +140,9 @@ def drive_log(evidence: Evidence, channel: int) -> str:
             _shade(axes, log.time, ~fit.training)
         _label(values, name, unit)
         _label(residual, "measured − modelled", unit, "time", "s")
-        _legend(values)
+        _legend(figure, values)
 
-    return _inline(draw, (6.2, 3.6), f"log-{channel}", f"{name} over time, {evidence.source}")
+    return _inline(draw, (WIDTH, 3.6), f"log-{channel}", f"{name} over time, {evidence.source}")
 
 
 def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
@@ -149,10 +156,10 @@ def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
         _friction_points(axes, evidence)
         axes.set_ylim(*_with_zero(axes.get_ylim()))
         _label(axes, "friction torque", "N.m", "input speed", "rad/s")
-        _legend(axes)
+        _legend(figure, axes)
 
     title = f"Two data sets: the friction law of the starting set, and {evidence.source}"
-    return _inline(draw, (6.2, 2.9), "two-laws", title)
+    return _inline(draw, (WIDTH, 3.0), "two-laws", title)
 
 
 def experiment(simulated: Experiment, name: str) -> str:
@@ -174,9 +181,9 @@ def experiment(simulated: Experiment, name: str) -> str:
                 _curve(below, run.time, answer - run.values(simulated.command, command_unit), **style)
         _label(response, output_name(simulated.response), response_unit)
         _label(below, "response − command" if comparable else "command", command_unit, "time", "s")
-        figure.legend(*response.get_legend_handles_labels(), loc="outside upper left", ncols=2, borderpad=0.0)
+        _legend(figure, response)
 
-    return _inline(draw, (6.2, 3.6), name, f"{simulated.name}: command and response over time")
+    return _inline(draw, (WIDTH, 3.9), name, f"{simulated.name}: command and response over time")
 
 
 def overview(torsion: Evidence, friction: Evidence) -> str:
@@ -185,15 +192,21 @@ def overview(torsion: Evidence, friction: Evidence) -> str:
     def draw(figure: Figure) -> None:
         left, right = figure.subplots(1, 2)
         _loop(left, torsion)
-        _label(left, "torque", "N.m", "twist at the output", "rad")
+        _label_loop(left, torsion)
         _friction_points(right, friction)
         _friction_law(right, friction, friction.fit.gear.friction_input, "model", color=LIGHT["model"])
         _label(right, "friction torque", "N.m", "input speed", "rad/s")
-        for axes in (left, right):
-            _legend(axes)
+        _legend(figure, left)
 
     title = "Torsion loop and friction of two strain wave gears, measured and modelled"
     return _standalone(draw, (8.4, 3.2), "overview", title)
+
+
+def gaps(loop: TorsionLoop) -> list[int]:
+    """The points before which samples were left out: of a loop measured at the input, those just behind each reversal."""
+    if loop.input_ratio is None or loop.samples <= len(loop.twist):
+        return []
+    return [turn + int(np.argmax(loop.twist[turn:] != loop.twist[turn])) for turn in turning_points(loop.twist)]
 
 
 def output_name(column: str) -> str:
@@ -236,18 +249,41 @@ def _friction_law(axes: Axes, evidence: Evidence, law: Any, label: str, **style:
             label = ""
 
 
-def _loop(axes: Axes, evidence: Evidence) -> None:
-    loop, fit = evidence.fit.experiment, evidence.fit
+def _torsion(evidence: Evidence) -> TorsionLoop:
+    loop = evidence.fit.experiment
     assert isinstance(loop, TorsionLoop)
-    style: dict[str, Any] = {"linewidth": 1.8, "alpha": 0.6}
+    return loop
+
+
+def _loop(axes: Axes, evidence: Evidence) -> None:
+    loop, training = _torsion(evidence), evidence.fit.training
+    everywhere = np.ones_like(training)
+    style: dict[str, Any] = {"linewidth": 3.6, "alpha": 0.55}
     if len(loop.twist) <= MARKED:
         style = {"linewidth": 0.9, "marker": "o", "markersize": 3.0}
-    _curve(axes, loop.twist, fit.predicted[0], color=LIGHT["model"], linewidth=1.0, label="model", zorder=2.5)
-    _curve(axes, loop.twist, loop.torque, color=LIGHT["measured"], label="measured", **style)
-    style |= {"color": LIGHT["held-out"], "label": "held out"}
-    for block in _blocks(~fit.training):
-        _curve(axes, loop.twist[block], loop.torque[block], **style)
-        style["label"] = ""
+    model = "model" if loop.input_ratio is None else "model with friction"
+    drawn = (
+        (loop.torque, everywhere, {**style, "color": LIGHT["measured"], "label": "measured"}),
+        (loop.torque, ~training, {**style, "color": LIGHT["held-out"], "label": "held out"}),
+        (evidence.fit.predicted[0], everywhere, {"color": LIGHT["model"], "label": model, "linewidth": 1.0}),
+    )
+    for torque, chosen, look in drawn:
+        for stretch in _unbroken(loop, chosen):
+            _curve(axes, loop.twist[stretch], torque[stretch], **look)
+            look["label"] = ""
+
+
+def _label_loop(axes: Axes, evidence: Evidence) -> None:
+    place = "at the output" if _torsion(evidence).input_ratio is None else "referred to the output"
+    _label(axes, f"torque {place}", "N.m", f"twist {place}", "rad")
+
+
+def _unbroken(loop: TorsionLoop, chosen: Mask) -> Iterator[slice]:
+    """The stretches of chosen neighbours, none of them across a gap."""
+    starts = gaps(loop)
+    branch = np.searchsorted(starts, np.arange(len(chosen)), side="right")
+    for number in range(len(starts) + 1):
+        yield from _blocks(chosen & (branch == number))
 
 
 def _curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
@@ -286,7 +322,7 @@ def _with_zero(ends: tuple[float, float]) -> tuple[float, float]:
 
 def _label(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> None:
     """Names the quantities, in the prefix that suits their size; the upright one stands above its axis."""
-    axes.set_title(f"{y}{_scaled(axes.yaxis, y_unit)}")
+    axes.set_title(textwrap.fill(f"{y}{_scaled(axes.yaxis, y_unit)}", LINE))
     if x:
         axes.set_xlabel(f"{x}{_scaled(axes.xaxis, x_unit)}")
 
@@ -305,12 +341,13 @@ def _scaled(axis: Axis, unit: str) -> str:
     return f" [{text}]" if text else ""
 
 
-def _legend(axes: Axes) -> None:
-    """In a row above the axes, at the right."""
-    axes.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, borderaxespad=0.0, borderpad=0.3, columnspacing=1.2,
-        handletextpad=0.5,
-    )  # fmt: skip
+def _legend(figure: Figure, axes: Axes) -> None:
+    """In rows above the drawing, as many labels beside each other as fit."""
+    handles, labels = axes.get_legend_handles_labels()
+    lines = [textwrap.fill(label, LINE) for label in labels]
+    widest = max(len(line) for label in lines for line in label.splitlines())
+    columns = max(1, LINE // (widest + HANDLE))
+    figure.legend(handles, lines, loc="outside upper left", ncols=columns, borderpad=0.0, columnspacing=1.2)
 
 
 # ---- From a drawing to SVG -------------------------------------------------------------------------------------------

@@ -30,6 +30,7 @@ def render(template: str, content: Mapping[str, Any]) -> str:
         lstrip_blocks=True,
     )
     environment.filters |= {verb.__name__: verb for verb in (typeset.number, typeset.unit, typeset.symbols, typeset.breakable)}
+    environment.globals["zip"] = zip
     return environment.get_template(template).render(content)
 
 

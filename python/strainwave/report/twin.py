@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 from importlib import metadata
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
 from strainwave.gear_set import Entry, GearSet
+from strainwave.identify.branches import SAMPLES
 from strainwave.identify.evidence import Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
 from strainwave.identify.twin import Contradiction, Twin
-from strainwave.identify.verdict import Verdict
+from strainwave.identify.verdict import State, Verdict
 from strainwave.report import figures
 from strainwave.report.experiment import Experiment
 from strainwave.report.page import render
@@ -104,7 +105,7 @@ def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: 
             "parts": parts,
             "unknown": list(_brief(twin, parts)),
             "gaps": list(_gaps(twin, parts)),
-            "known": sum(parameter.state.startswith("identified") for part in parts for parameter in part.parameters),
+            "fitted": _fitted(parts),
             "contradictions": [_contradiction(twin, contradiction) for contradiction in twin.contradictions],
             "two_laws": _two_laws(twin),
             "experiments": list(_experiments(experiments)),
@@ -134,7 +135,7 @@ def _measurement(twin: Twin, evidence: Evidence) -> dict[str, Any]:
         else:
             rows.append(Parameter("", estimate.path.replace("_", " "), of, value, "", "of the measurement", ""))
     return {
-        "title": {"friction": "Friction table", "torsion": "Torsion loop", "log": "Drive log"}[evidence.kind],
+        "title": _title(evidence),
         "evidence": evidence,
         "span": _span(evidence),
         "held_out": _held_out(evidence),
@@ -150,18 +151,28 @@ def _measurement(twin: Twin, evidence: Evidence) -> dict[str, Any]:
     }
 
 
+def _title(evidence: Evidence) -> str:
+    if isinstance(evidence.fit.experiment, TorsionLoop):
+        return "Torsion branch" if evidence.fit.experiment.single_branch else "Torsion loop"
+    return {"friction": "Friction table", "log": "Drive log"}[evidence.kind]
+
+
 def _span(evidence: Evidence) -> str:
     """What was measured, in a few words."""
     experiment = evidence.fit.experiment
-    samples = f"{experiment.measured.shape[1]} samples"
+    assert isinstance(experiment, FrictionTable | TorsionLoop | DriveLog)
+    compared = experiment.measured.shape[1]
+    samples = f"{max(experiment.samples, compared)} samples"
+    if experiment.samples > compared:
+        samples += f", compared in {compared} points"
     if isinstance(experiment, FrictionTable):
         low, high = np.abs(experiment.speed).min(), np.abs(experiment.speed).max()
-        return f"{samples} from {number(low, 3)} to {number(high, 3)} rad/s at the input"
+        return f"{samples}, from {number(low, 3)} to {number(high, 3)} rad/s at the input"
     if isinstance(experiment, TorsionLoop):
         torque = quantity(float(np.abs(experiment.torque).max()), "N.m")
-        return f"{samples}, up to {torque}, over {quantity(float(np.ptp(experiment.twist)), 'rad')} at the output"
-    assert isinstance(experiment, DriveLog)
-    return f"{samples} over {quantity(float(np.ptp(experiment.time)), 's')}"
+        place = "at the output" if experiment.input_ratio is None else "referred to the output"
+        return f"{samples}, up to {torque}, over {quantity(float(np.ptp(experiment.twist)), 'rad')} {place}"
+    return f"{samples}, over {quantity(float(np.ptp(experiment.time)), 's')}"
 
 
 def _held_out(evidence: Evidence) -> str:
@@ -169,7 +180,7 @@ def _held_out(evidence: Evidence) -> str:
     training = evidence.fit.training
     if evidence.kind == "friction":
         return "each measurement predicted from the others"
-    return f"{int(np.sum(~training))} of {len(training)} samples held out from the fit"
+    return f"{int(np.sum(~training))} of {len(training)} points held out from the fit"
 
 
 def _share(error: float, measured: figures.Array) -> str:
@@ -189,15 +200,30 @@ def _plates(evidence: Evidence) -> Iterator[tuple[Markup, str]]:
             "Below: each measurement less what a fit to the others predicts at its speed.",
         )
     elif isinstance(experiment, TorsionLoop):
-        yield (
-            Markup(figures.torsion_loop(evidence)),
-            "Above: the measured loop, the parts of it that were held out, and the model fitted to the rest. "
-            "Below: measured less modelled along the loop; shaded, what was held out.",
-        )
+        yield Markup(figures.torsion_loop(evidence)), " ".join(_torsion_caption(experiment))
     else:
         for channel, name in enumerate(experiment.channels):
             words = "measured and modelled, and their difference; shaded, what was held out."
             yield Markup(figures.drive_log(evidence, channel)), f"{figures.output_name(name)}, {words}"
+
+
+def _torsion_caption(loop: TorsionLoop) -> Iterator[str]:
+    """What the figure of a loop shows, sentence by sentence."""
+    path = "branch" if loop.single_branch else "loop"
+    yield f"Above: the measured {path}, the parts of it that were held out, and the model fitted to the rest."
+    yield f"Below: measured less modelled along the {path}; shaded, what was held out."
+    if loop.input_ratio is not None:
+        yield (
+            "Measured at the input with the output locked, and referred to the output: angles divided by the ratio, torques "
+            f"multiplied by it. Friction of the wave generator is inside the measured {path}, and inside the model's curve too."
+        )
+    if figures.gaps(loop):
+        yield (
+            "The samples just behind each reversal are left out (gaps above, dotted lines below): there friction changes its "
+            f"sense over a distance that no {path} tells."
+        )
+    if loop.samples > SAMPLES:
+        yield "Each point is the mean of neighbouring samples."
 
 
 # ---- Parameters ------------------------------------------------------------------------------------------------------
@@ -314,12 +340,19 @@ def _words(part: str) -> str:
 
 MANY = 3  # parameters of a part that are not listed where all of them share a fate
 UNKNOWN = {
-    "identified in combination": "Told together with another parameter only",
-    "not identified": "Fitted, but not told by the data",
+    "identified in combination": "Fitted, but determined only together with another parameter",
+    "not identified": "Fitted, but not determined by the data",
     "kept": "Not measured, kept from the starting set",
     "follows": "Not measured, set by a rule from what was fitted",
     "absent": "Not measured, and not in the model",
 }
+
+
+def _fitted(parts: list[Part]) -> str:
+    """How many of the fitted parameters are known, and how: "9 identified, 4 not identified"."""
+    states = [parameter.state for part in parts for parameter in part.parameters]
+    counts = {state: states.count(state) for state in get_args(State) if state != "kept"}
+    return ", ".join(f"{count} {state}" for state, count in counts.items() if count) or "none"
 
 
 class Gap(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -14,6 +15,8 @@ import pytest
 import strainwave as sw
 from strainwave.demo import position_drive, torsion_rig
 from strainwave.gear_set import Entry, GearSet
+from strainwave.identify.evidence import Doubt
+from strainwave.identify.experiment import TorsionLoop
 from strainwave.report import figures
 from strainwave.report.experiment import Experiment, Figure
 from strainwave.report.page import write
@@ -43,6 +46,14 @@ def torsion_loop() -> sw.Recording:
     torque = elements.trace(np.concatenate((path, path)))[-len(path) :] + 3e4 * path
     torque += 0.01 * np.random.default_rng(2).normal(size=len(path))
     return sw.Recording({"twist": path, "torque": torque}, {"twist": "rad", "torque": "N.m"})
+
+
+def input_loop(start: GearSet) -> sw.Recording:
+    """The same gear, measured at the input with the output locked."""
+    loop, ratio = torsion_loop(), start.gear.kinematics.ratio
+    angle = ratio * loop["twist"]
+    torque = loop["torque"] / ratio + 0.05 * np.sign(np.gradient(angle))
+    return sw.Recording({"input_angle": angle, "input_torque": torque}, {"input_angle": "rad", "input_torque": "N.m"})
 
 
 def with_drive(start: GearSet) -> GearSet:
@@ -93,6 +104,11 @@ def from_torsion(start: GearSet) -> sw.Twin:
 
 
 @pytest.fixture(scope="module")
+def from_input(start: GearSet) -> sw.Twin:
+    return sw.twin(start, torsion=input_loop(start))
+
+
+@pytest.fixture(scope="module")
 def from_log(start: GearSet) -> sw.Twin:
     full = with_drive(start)
     return sw.twin(full, log=drive_log(full))
@@ -119,7 +135,7 @@ def complete(start: GearSet) -> sw.Twin:
     return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
 
 
-EACH = ["from_friction", "from_torsion", "from_log", "contradicted", "complete"]
+EACH = ["from_friction", "from_torsion", "from_input", "from_log", "contradicted", "complete"]
 
 
 @pytest.fixture(scope="module", params=EACH)
@@ -333,6 +349,75 @@ def test_a_spring_of_another_kind_is_contradicted_by_its_first_stiffness(start: 
     assert "torsion rig of 2019" in page
 
 
+def test_the_parameters_fitted_are_counted_by_what_is_known_of_them(each: sw.Twin, html: str) -> None:
+    shown = re.search(r"Fitted parameters: ([^.]*)\.", Page(html).root.find("header")[0].text)
+    assert shown
+    counts = {state: int(count) for count, state in (part.split(" ", 1) for part in shown[1].split(", "))}
+    fitted = [verdict.state for verdict in each.verdicts if verdict.state != "kept"]
+    assert counts == {state: fitted.count(state) for state in set(fitted)}
+
+
+def test_one_told_in_combination_is_not_counted_as_identified(from_input: sw.Twin) -> None:
+    assert any(verdict.state == "identified in combination" for verdict in from_input.verdicts)
+    assert "1 identified in combination" in Page(twin_report(from_input)).root.find("header")[0].text
+
+
+def test_a_doubt_comes_before_all_else_and_marks_its_measurement(from_friction: sw.Twin) -> None:
+    (evidence,) = from_friction.evidence
+    doubt = Doubt(evidence.source, "it gives 70 times the torque", "turn it round")
+    html = twin_report(replace(from_friction, evidence=(replace(evidence, doubts=(doubt,)),)))
+    header = [node for node in Page(html).root.find("header")[0].children if isinstance(node, Node)]
+    assert [node.tag for node in header[:3]] == ["div", "h1", "div"]
+    assert header[2].attributes["role"] == "alert"
+    for words in (HOSTILE, doubt.what, doubt.remedy):
+        assert words in header[2].text
+    for name in ("summary", "friction"):
+        assert "This measurement is doubted" in section(html, name).text
+    assert "doubted" not in Page(twin_report(from_friction)).root.text
+
+
+def test_a_loop_from_the_input_is_said_to_be_referred_to_the_output(from_input: sw.Twin, from_torsion: sw.Twin) -> None:
+    page = section(twin_report(from_input), "torsion")
+    labels = [text.text for text in page.find("text")]
+    assert {"torque referred to the output [N·m]", "twist referred to the output [mrad]", "model with friction"} <= set(labels)
+    for words in ("angles divided by the ratio", "inside the model's curve", "just behind each reversal are left out"):
+        assert words in page.find("figcaption")[0].text
+    other = section(twin_report(from_torsion), "torsion").text
+    assert "ratio" not in other
+    assert "left out" not in other
+
+
+def test_samples_that_were_not_compared_are_told(from_input: sw.Twin, from_torsion: sw.Twin) -> None:
+    loop = from_input.evidence[0].fit.experiment
+    assert isinstance(loop, TorsionLoop)
+    assert len(loop.twist) < loop.samples
+    told = f"{loop.samples} samples, compared in {len(loop.twist)} points"
+    for name in ("summary", "torsion"):
+        assert told in section(twin_report(from_input), name).text
+        assert "compared in" not in section(twin_report(from_torsion), name).text
+
+
+def test_points_that_are_means_are_told(from_torsion: sw.Twin) -> None:
+    (evidence,) = from_torsion.evidence
+    loop = evidence.fit.experiment
+    assert isinstance(loop, TorsionLoop)
+    thinned = replace(evidence, fit=replace(evidence.fit, experiment=replace(loop, samples=9_000)))
+    told = "Each point is the mean of neighbouring samples"
+    assert told in section(twin_report(replace(from_torsion, evidence=(thinned,))), "torsion").text
+    assert told not in section(twin_report(from_torsion), "torsion").text
+
+
+def test_a_single_branch_is_called_one(start: GearSet) -> None:
+    loop = torsion_loop()
+    up = np.argsort(loop["twist"][59:178])
+    branch = {name: loop[name][59:178][up] - loop[name][59:178].min() for name in ("twist", "torque")}
+    page = Page(twin_report(sw.twin(start, torsion=sw.Recording(branch, {"twist": "rad", "torque": "N.m"})))).root
+    torsion = page.find("section", id="torsion")[0]
+    assert torsion.find("h2")[0].text == "Torsion branch"
+    assert "the measured branch" in torsion.find("figcaption")[0].text
+    assert not any("loop" in figcaption.text for figcaption in torsion.find("figcaption"))
+
+
 # ---- Experiments -----------------------------------------------------------------------------------------------------
 
 
@@ -369,6 +454,29 @@ def test_an_experiment_refuses_what_it_cannot_show() -> None:
         Experiment("e", (("a", swing(9)),), response="torque")
     with pytest.raises(ValueError, match=r'^experiment "e": rms has 2 values for 1 runs$'):
         Experiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))
+
+
+# ---- Narrow pages ----------------------------------------------------------------------------------------------------
+
+
+def test_a_cell_of_a_table_says_its_column_where_the_table_is_taken_apart(html: str) -> None:
+    tables = [table for table in Page(html).root.find("table") if "rows" in table.attributes.get("class", "").split()]
+    assert tables
+    for table in tables:
+        columns = [column.text for column in table.find("thead")[0].find("th")]
+        for row in table.find("tbody")[0].find("tr"):
+            cells = [cell for cell in row.children if isinstance(cell, Node)]
+            for column, cell in zip(columns, cells, strict=False):
+                assert cell.attributes.get("data-label", column) == column
+
+
+def test_a_figure_is_as_wide_as_its_box(html: str) -> None:
+    style = Page(html).root.find("style")[0]
+    rules = re.findall(r"([^{}]*)\{([^{}]*)\}", "".join(child for child in style.children if isinstance(child, str)))
+    of_figures = [rule for selector, rule in rules if selector.strip().endswith("svg")]
+    assert of_figures
+    assert all("width: 100%" in rule and "min-width" not in rule for rule in of_figures)
+    assert not any({"width", "height"} & svg.attributes.keys() for svg in Page(html).root.find("svg"))
 
 
 # ---- The page as a file ----------------------------------------------------------------------------------------------
@@ -456,6 +564,73 @@ def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path: Path) -> Non
 def points(path: Node) -> np.ndarray:
     numbers = [float(number) for number in re.findall(r"-?[\d.]+", path.attributes["d"])]
     return np.reshape(numbers, (-1, 2))
+
+
+LONG = "what a run may be called when somebody wants to tell how it differs from the one before it"
+Box = tuple[float, float, float, float]
+
+
+def boxes(svg: Node) -> dict[str, Box]:
+    """Left, top, right and bottom of every text of a drawing, in letters as wide as DejaVu Sans."""
+    from matplotlib.textpath import TextPath
+
+    found = {}
+    for text in svg.find("text"):
+        style = dict(re.findall(r"([\w-]+): ([^;]+)", text.attributes["style"]))
+        size = float(style["font-size"].removesuffix("px"))
+        width = TextPath((0.0, 0.0), text.text.replace("$", " "), size=size).get_extents().width
+        x, y = (float(number) for number in re.findall(r"-?[\d.]+", text.attributes["transform"])[-2:])
+        left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[style.get("text-anchor", "start")] * width
+        found[f"{text.text} at {x:g}, {y:g}"] = (left, y - 0.7 * size, left + width, y)
+    return found
+
+
+def apart(one: Box, other: Box) -> bool:
+    return one[2] < other[0] or other[2] < one[0] or one[3] < other[1] or other[3] < one[1]
+
+
+def drawings(found: sw.Twin) -> list[Node]:
+    long_names = Experiment("long names", ((LONG, swing(50)), (HOSTILE, swing(60))), response="output_angle")
+    return Page(twin_report(found, [long_names])).root.find("svg")
+
+
+def test_every_text_of_a_figure_is_inside_it_and_on_no_other(each: sw.Twin) -> None:
+    for svg in drawings(each):
+        _, _, width, height = (float(number) for number in svg.attributes["viewbox"].split())
+        texts = boxes(svg)
+        assert len(texts) > 10
+        for name, (left, top, right, bottom) in texts.items():
+            assert 0.0 <= left < right <= width, name
+            assert 0.0 <= top < bottom <= height, name
+        for (name, one), (other_name, other) in itertools.combinations(texts.items(), 2):
+            assert apart(one, other), f"{name}; {other_name}"
+
+
+def test_every_curve_has_its_name_in_the_legend(each: sw.Twin) -> None:
+    wanted = {"friction": {"measured", "model"}, "torsion": {"measured", "held out"}, "log": {"measured", "model"}}
+    for evidence in each.evidence:
+        for svg in section(twin_report(each), evidence.kind).find("svg"):
+            assert wanted[evidence.kind] <= {text.text for text in svg.find("text")}
+
+
+def test_nothing_is_drawn_across_what_was_left_out(from_input: sw.Twin) -> None:
+    evidence = from_input.evidence[0]
+    loop = evidence.fit.experiment
+    assert isinstance(loop, TorsionLoop)
+    starts = figures.gaps(loop)
+    assert starts
+    assert all(abs(loop.twist[i] - loop.twist[i - 1]) > 0.015 * np.ptp(loop.twist) for i in starts)
+    drawn = Page(figures.torsion_loop(evidence)).root
+    curves = [path for path in drawn.find("path") if re.search(r"stroke: var\(--model", path.attributes.get("style", ""))]
+    assert len([curve for curve in curves if len(points(curve)) > 10]) == len(starts) + 1
+
+
+def test_a_loop_of_which_nothing_was_left_out_has_no_gap(from_input: sw.Twin, from_torsion: sw.Twin) -> None:
+    loop, at_output = (found.evidence[0].fit.experiment for found in (from_input, from_torsion))
+    assert isinstance(loop, TorsionLoop)
+    assert isinstance(at_output, TorsionLoop)
+    assert figures.gaps(replace(loop, samples=len(loop.twist))) == []
+    assert figures.gaps(replace(at_output, samples=9_000)) == []
 
 
 def test_points_are_drawn_where_they_were_measured() -> None:
