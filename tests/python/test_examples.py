@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import doctest
 import importlib
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +16,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
-FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ strainwave ))(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -23,7 +26,7 @@ class Example(NamedTuple):
 
 
 def examples(page: Path) -> list[Example]:
-    """The fenced blocks of Python on a page, and the line before each."""
+    """The fenced blocks of Python, and of the command strainwave, on a page, and the line before each."""
     text = page.read_text()
     return [Example(block[1], text.count("\n", 0, block.start(1))) for block in FENCE.finditer(text)]
 
@@ -52,13 +55,32 @@ def run_program(example: Example, names: dict[str, object], page: Path) -> None:
     exec(compile("\n" * example.line + example.code, page, "exec"), names)
 
 
+def run_commands(example: Example, page: Path) -> None:
+    """Runs the commands of a console in the shell, and compares what they print."""
+    environment = os.environ | {"PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))}
+    for each in re.split(r"^\$ ", example.code, flags=re.MULTILINE)[1:]:
+        command, shown = re.split(r"(?<!\\)\n", each, maxsplit=1)
+        said = subprocess.run(command, shell=True, env=environment, capture_output=True, text=True, timeout=120, check=False)
+        alike = doctest.OutputChecker().check_output(shown, said.stdout + said.stderr, doctest.NORMALIZE_WHITESPACE)
+        assert alike, f"{page.name}, line {example.line + 1}: {command}\n{said.stdout}{said.stderr}"
+
+
+def run(example: Example, names: dict[str, object], page: Path) -> None:
+    if example.code.startswith(">>>"):
+        run_session(example, names, page)
+    elif example.code.startswith("$ "):
+        run_commands(example, page)
+    else:
+        run_program(example, names, page)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_examples_of_a_page_run_one_after_the_other(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     write_files(page, tmp_path)
     names: dict[str, object] = {"__name__": "__main__"}
     for example in examples(page):
-        (run_session if example.code.startswith(">>>") else run_program)(example, names, page)
+        run(example, names, page)
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
@@ -75,3 +97,12 @@ def test_an_example_that_shows_something_else_fails(tmp_path: Path) -> None:
     run_program(program, names, page)
     with pytest.raises(AssertionError, match="line 8"):
         run_session(session, names, page)
+
+
+def test_a_command_that_prints_something_else_fails(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("```console\n$ python3 dev.py\n```\n\n```console\n$ strainwave gears 14-30 \\\n  | cat\nhfuc-14-30\n```\n")
+    (commands,) = examples(page)
+    run_commands(commands, page)
+    with pytest.raises(AssertionError, match=r"page\.md, line 6: strainwave gears"):
+        run_commands(commands._replace(code=commands.code.replace("hfuc", "csg")), page)
