@@ -27,6 +27,8 @@ STILL = 1e-3  # of the range measured: what moves less stands still
 TABLE = 1_000  # speeds of either sign in a table, at most
 SENSIBLE = (1e-9, 1e9)  # the largest of a quantity that was measured on a gear, in SI units, lies between
 COMPARED = 20_000  # samples of a log, at most: of a longer one every so many, the command in full
+STEP = 2e-4  # s, of the simulation; what was recorded more often is taken every so many rows
+STEPS = 100_000  # of a log, at most: of a longer one the beginning is taken
 
 
 @dataclass(frozen=True)
@@ -287,7 +289,8 @@ class DriveLog(ComparedByFields):
     ) -> DriveLog:
         """From columns time, command and outputs; all that a simulation has too, unless `channels` names some.
 
-        Steps of 0.2 ms, or the sample interval if that is shorter.
+        Steps of 0.2 ms, or the sample interval if that is a little shorter. Of a long log the first 100 000 steps are taken,
+        20 s; of one that was recorded more often than the model steps, every so many rows.
         """
         for name in ("time", "command"):
             if name not in recording:
@@ -307,14 +310,18 @@ class DriveLog(ComparedByFields):
         time = recording.time - recording.time[0]
         measured = np.stack([_sensible(recording, name, known[name]) for name in chosen])
         _check_rest(time, dict(zip(chosen, measured, strict=True)))
+        step = STEP if dt is None else arguments.seconds("dt", dt)
+        interval = float(np.min(np.diff(time)))
+        rows = slice(None, int(np.searchsorted(time, STEPS * step, "right")), max(1, int(STEP / interval)))
+        time, command, measured = time[rows], command[rows], measured[:, rows]
         every = -(-len(time) // COMPARED)
         return cls(
             scenario.table(time, command),
             time[::every],
             chosen,
             measured[:, ::every],
-            min(2e-4, float(np.min(np.diff(time)))) if dt is None else arguments.seconds("dt", dt),
-            len(time),
+            min(step, interval) if dt is None and interval > STEP / 2.0 else step,
+            len(recording),
         )
 
     @property
@@ -329,6 +336,13 @@ class DriveLog(ComparedByFields):
             for row, name in enumerate(self.channels)
             if name in ENCODERS
         )
+
+    def beginning(self, duration: float) -> DriveLog:
+        """The log up to a time [s]."""
+        taken = self.time <= duration
+        steps = np.arange(0.0, float(self.time[taken][-1]) + self.dt, self.dt)
+        command = scenario.table(steps, self.command.value(np.minimum(steps, self.command.duration)))
+        return replace(self, command=command, time=self.time[taken], measured=self.measured[:, taken])
 
     @property
     def interval(self) -> float:

@@ -18,6 +18,7 @@ from strainwave.identify.fit import Fit, fit
 Array = NDArray[np.float64]
 
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
+QUICK = 40_000  # steps; of a longer log the beginning is fitted first, which leaves little to do for the whole
 ROUNDS = 4  # of fits after which breakaway has followed Coulomb's torque
 FOLLOWED = 1e-3  # of it, as near as it need come
 HALVINGS = 12  # of a friction that no command overcomes
@@ -53,7 +54,9 @@ def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
         ValueError: the log is too short for the parameters
     """
     training = log.time <= TRAINING_SHARE * log.time[-1]
-    found = fit(drive, log, free, training=training)
+    is_long = log.time[-1] > QUICK * log.dt
+    near = fit(drive, log.beginning(QUICK / 2 * log.dt), free).model if is_long else drive
+    found = fit(near, log, free, training=training)
     for _ in range(ROUNDS):
         law, wanted = innermost(found.gear.friction_input), _breakaway(found.gear, drive.gear)
         if wanted is None or abs(law.breakaway - wanted) <= FOLLOWED * wanted:

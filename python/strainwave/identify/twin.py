@@ -287,6 +287,8 @@ def _from_log(
     found = fit_log(log, drive, free)
     both = {"input_angle", "output_angle"} <= set(log.channels)
     remarks = ["validated on the last 30 % of the record", *_thinned(log.samples, len(log.time))]
+    if log.time[-1] < 0.99 * np.ptp(recording.time):
+        remarks.append(f"of its {np.ptp(recording.time):.4g} s the first {log.time[-1]:.4g} s are taken, to fit in little time")
     remarks += _unused(recording, ("time", "command", *log.channels))
     if not both:
         remarks.append("one encoder only: kinematic error and stiffness are not seen")

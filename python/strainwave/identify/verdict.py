@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -95,6 +95,10 @@ def known(start: GearSet, evidence: Sequence[Evidence]) -> dict[str, Entry]:
         for path, (e, _, estimate) in estimated(evidence).items()
         if np.isfinite(estimate.sigma)
     }
+    for path, (e, _, estimate) in estimated(evidence).items():
+        law, _, name = path.rpartition(".")
+        if name == "coulomb" and f"{law}.breakaway" not in told and np.isfinite(estimate.sigma):  # which follows it
+            told[f"{law}.breakaway"] = Entry(source=e.source, uncertainty=estimate.sigma)
     return {**start.sources, **told}
 
 
@@ -105,8 +109,13 @@ def spread(
     estimate = evidence.fit.estimates[index]
     shared = evidence.path(estimate) in evidence.shared
     doubts = evidence.influence.doubt(index, sources, evidence.prefix)
-    others = [doubt for path, doubt in doubts.items() if shared or evidence.prefix + path in told]
+    others = [doubt for path, doubt in doubts.items() if shared or _is_told(evidence.prefix + path, told)]
     return float(np.linalg.norm([estimate.sigma, *others]))
+
+
+def _is_told(path: str, told: Collection[str]) -> bool:
+    """Whether a measurement of the twin tells a number; of breakaway also one that tells Coulomb's torque, which it follows."""
+    return path in told or (path.endswith(".breakaway") and path.replace(".breakaway", ".coulomb") in told)
 
 
 def judged(evidence: Evidence, index: int, sources: Mapping[str, Entry]) -> tuple[State, str]:

@@ -108,6 +108,7 @@ def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: 
             "fitted": _fitted(parts),
             "contradictions": [_contradiction(twin, contradiction) for contradiction in twin.contradictions],
             "two_laws": _two_laws(twin),
+            "exceeded": [check for check in twin.ratings if check.exceeded],
             "experiments": list(_experiments(experiments)),
             "sources": _sources(twin.gear_set),
             "provenance": provenance or Provenance(),

@@ -690,3 +690,16 @@ def test_the_overview_stands_by_itself() -> None:
     style = root[0].text or ""
     for colours in (figures.LIGHT, figures.DARK):
         assert all(f"--{name}: {colour};" in style for name, colour in colours.items())
+
+
+def test_limits_of_the_maker_that_were_exceeded_stand_in_the_summary() -> None:
+    twist = np.linspace(0.0, 6e-3, 100)
+    branch = sw.Recording({"twist": twist, "torque": 3e4 * twist}, {"twist": "rad", "torque": "N.m"})
+    found = sw.twin("csg-20-100", torsion=branch)
+    summary = section(twin_report(found), "summary").text
+    (check,) = (check for check in found.ratings if check.name == "peak_torque")
+    assert "Limits of the maker exceeded" in summary
+    assert "peak torque: 180 N.m exceeds the limit of 107 N.m" in summary
+    assert check.reached == pytest.approx(180.0)
+    light = sw.Recording({"twist": twist / 3.0, "torque": 1e4 * twist}, {"twist": "rad", "torque": "N.m"})
+    assert "exceeded" not in section(twin_report(sw.twin("csg-20-100", torsion=light)), "summary").text
