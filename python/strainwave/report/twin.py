@@ -289,7 +289,7 @@ def _parameter(gear_set: GearSet, path: str, verdict: Verdict | None) -> Paramet
 
 def _absent(gear_set: GearSet, part: str) -> Parameter:
     """What stands for the numbers of a part that the gear does without."""
-    why = "not in the model; no measurement given speaks of it"
+    why = "not in the model; no measurement given tells it"
     return Parameter(part, _name(gear_set, part), "", "none", "", "absent", why)
 
 
