@@ -194,11 +194,11 @@ def test_a_set_is_named_after_its_file_and_notes_missing_ratings(name: str) -> N
 
 
 @every_set
-def test_every_number_has_its_unit_and_a_source_and_only_slopes_a_spread(name: str) -> None:
+def test_every_number_has_its_unit_and_a_source_and_only_the_spring_a_spread(name: str) -> None:
     for table, key, entry in numbers(name):
         unit = UNITS[table][key]
         expected = {"unit": unit} if unit else {}
-        spread = {"spread": 0.3} if key in {"k1", "k2", "k3"} else {}
+        spread = {"spread": 0.3} if key in {"k1", "k2", "k3", "t1", "t2"} else {}
         assert {k: entry[k] for k in entry.keys() - {"value", "source"}} == expected | spread, (table, key)
         assert len(entry["source"]) > 20
         assert np.all(np.isfinite(entry["value"]))
