@@ -46,7 +46,8 @@ def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[t
         f"it gives {measured:.3g} N·m at {speed:.3g} rad/s of the input, {_times(factor)} what the gear it starts from has "
         f"({known:.3g} N·m)"
     )
-    if factor > APART and 1.0 / APART < at_joint < APART and abs(np.log(at_joint)) < rest:
+    off = abs(float(np.log(at_joint)))  # what the other side would leave unexplained
+    if factor > APART and off < np.log(APART) and off < max(rest, np.log(NEAR)):
         yield (
             f"{what}; taken as measured at the output, it gives {_times(at_joint)} that gear's",
             "if it was measured at the output, say so: --side output; if at the input, --side input",
