@@ -46,7 +46,10 @@ def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[t
         f"it gives {measured:.3g} N·m at {speed:.3g} rad/s of the input, {_times(factor)} what the gear it starts from has "
         f"({known:.3g} N·m)"
     )
-    off = abs(float(np.log(at_joint)))  # what the other side would leave unexplained
+    ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])
+    law, known_law = found.gear.friction_input, start.friction_input
+    shapes = np.abs(np.log(law.steady(ends) / ratio / known_law.steady(ends * ratio)))
+    off = float(shapes.max())  # what the other side would leave unexplained, as a logarithm
     if factor > APART and off < np.log(APART) and off < max(rest, np.log(NEAR)):
         yield (
             f"{what}; taken as measured at the output, it gives {_times(at_joint)} that gear's",
