@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,12 @@ settings.load_profile("strainwave")
 
 
 def pytest_configure() -> None:
-    """What is compiled to be checked must be what is imported, or the check is of nothing."""
+    """What is compiled to be checked must be what is imported, or the check is of nothing. Interrupts are heeded.
+
+    A shell that runs the tests in the background lets them, and all that they start, ignore interrupts.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     wanted, found = os.environ.get("STRAINWAVE_IS_IN"), Path(strainwave.__file__)
     if wanted and not found.is_relative_to(wanted):
         raise pytest.UsageError(f"the tests are to be of the package in {wanted}, not of {found}")

@@ -30,6 +30,7 @@ LOG = "viscous friction becomes Coulomb's where a log is to tell it"
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 USUAL = "one of the models whose drives run in code of their own, for speed"
+AT_REST = "friction whose breakaway a torsion loop from the input can tell"
 ELSEWHERE = {
     "Fourier": {
         "narrow.hpp": USUAL,
@@ -44,14 +45,17 @@ ELSEWHERE = {
         "friction/thermal.hpp": "what it modulates by default",
         "identify/log.py": LOG,
         "identify/friction.py": STEADY_TABLE,
+        "identify/torsion.py": AT_REST,
     },
     "Stribeck": {
         "narrow.hpp": USUAL,
         "friction/cyclic.hpp": "what it modulates by default",
         "identify/friction.py": STEADY_TABLE,
+        "identify/torsion.py": AT_REST,
     },
+    "StrainWave": {"identify/explain.py": "the ratio that two encoders show, as one of teeth"},
     "Stochastic": {"steady.py": STEADY_RUNNING},
-    "LuGre": {"narrow.hpp": USUAL, "identify/friction.py": STEADY_TABLE},
+    "LuGre": {"narrow.hpp": USUAL, "identify/friction.py": STEADY_TABLE, "identify/torsion.py": AT_REST},
     "Cyclic": {"any.hpp": BOUND_TO_ANY},
     "Thermal": {"any.hpp": BOUND_TO_ANY},
     "Preisach": {"any.hpp": BOUND_TO_ANY},

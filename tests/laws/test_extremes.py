@@ -162,7 +162,7 @@ def test_work_of_any_twist(law: Any, path: list[float]) -> None:
     """Refused where it is too large for a number, or a term of its sum is."""
 
     def towards(share: float) -> float:
-        work = answer(law.work, "takes more work", share * np.array(path))
+        work = answer(law.work, "leads to more work", share * np.array(path))
         return math.inf if work is None else float(np.abs(work).max())
 
     if math.isinf(16.0 * (max(path) - min(path))):

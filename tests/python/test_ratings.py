@@ -163,7 +163,9 @@ def test_a_run_of_a_set_warns_of_every_limit_exceeded_and_is_that_of_its_drive(s
 
 def test_adaptive_steps_that_stiff_bristles_ask_for_warn_once() -> None:
     gear_set = size_20()
-    law = sw.friction.LuGre(coulomb=0.05, breakaway=0.05, bristle_stiffness=1e5, bristle_damping=1e-3, viscous=1e-3)
+    law = sw.friction.LuGre(
+        coulomb=0.05, breakaway=0.05, bristle_stiffness=1e5, bristle_damping=1e-3, viscous=1e-3, stribeck_speed=2.0
+    )
     stiff = GearSet.of(gear_set.drive.replace(gear=gear_set.gear.replace(friction_input=law)), name="stiff", source="x")
     stiff = stiff.replace(ratings={"peak_torque": gear_set.ratings["peak_torque"]})
     with pytest.warns(sw.RatingWarning) as warned:

@@ -15,6 +15,7 @@ from strainwave import _core
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, SMOOTH, STICKING, command
+from tests.strategies import suited
 from tests.tolerance import COLUMNS, Excited, difference, until, verdict
 
 
@@ -72,7 +73,7 @@ def check_tolerance(drive: sw.drives.PositionDrive) -> None:
 @settings(max_examples=3, derandomize=True, suppress_health_check=[HealthCheck.filter_too_much])
 @given(data=st.data())
 def test_the_tolerance_is_kept_with_any_law_at_any_place(part: str, model: Any, data: st.DataObject) -> None:
-    law = data.draw(laws(part, model))
+    law = suited(data.draw(laws(part, model)), EVERYTHING.gear.kinematics)
     # Friction that changes within 0.01 rad/s or a microradian by more than drives the shaft makes every run a matter of chance.
     assume(getattr(innermost(law), "stribeck_speed", 1.0) >= 1.0)
     assume(getattr(innermost(law), "presliding", 1.0) > 1e-4)
