@@ -1,0 +1,76 @@
+"""Twins of each kind of measurement, and their reports."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+import strainwave as sw
+from strainwave.gear_set import Entry, GearSet
+from strainwave.report.experiment import Experiment
+from strainwave.report.twin import twin_report
+
+from tests.python.report.twins import HOSTILE, drive_log, friction_table, input_loop, swing, torsion_loop, with_drive
+from tests.strategies import made
+
+
+@pytest.fixture(scope="module")
+def start() -> GearSet:
+    return GearSet.read("hfuc-25-100")
+
+
+@pytest.fixture(scope="module")
+def from_friction(start: GearSet) -> sw.Twin:
+    return sw.twin(start, friction=friction_table(), sources={"friction": HOSTILE})
+
+
+@pytest.fixture(scope="module")
+def from_torsion(start: GearSet) -> sw.Twin:
+    return sw.twin(start, torsion=torsion_loop())
+
+
+@pytest.fixture(scope="module")
+def from_input(start: GearSet) -> sw.Twin:
+    return sw.twin(start, torsion=input_loop(start))
+
+
+@pytest.fixture(scope="module")
+def from_log(start: GearSet) -> sw.Twin:
+    full = with_drive(start)
+    return sw.twin(full, log=drive_log(full))
+
+
+@pytest.fixture(scope="module")
+def contradicted(start: GearSet) -> sw.Twin:
+    """A set whose friction was measured before, and now is another."""
+    earlier = Entry("test report 7 <of 2019>", uncertainty=1e-3)
+    sources = {**start.sources, "gear.friction_input.coulomb": earlier, "gear.friction_input.viscous": earlier}
+    return sw.twin(replace(start, sources=sources), friction=friction_table(), sources={"friction": "table of today"})
+
+
+@pytest.fixture(scope="module")
+def complete(start: GearSet) -> sw.Twin:
+    """A gear with every kind of part, models inside models too."""
+    losses = sw.friction.LoadDependent(driving_forward=0.1, driving_reverse=0.1)
+    gear = start.gear.replace(
+        kinematic_noise=sw.kinematic_error.Stochastic(amplitude=1e-5, seed=7),
+        hysteresis=sw.hysteresis.Preisach(density=sw.hysteresis.GridDensity(limit=1e-3, weight=[1.0, 2.0, 1.0])),
+        friction_mesh=sw.friction.Thermal(law=sw.friction.Cyclic(law=losses, order=[2.0], amplitude=[0.1], phase=[0.0])),
+        friction_output=made(sw.friction.PositionDependent, cosine=[1e-3, 2e-3]),
+    )
+    return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
+
+
+EACH = ["from_friction", "from_torsion", "from_input", "from_log", "contradicted", "complete"]
+
+
+@pytest.fixture(scope="module", params=EACH)
+def each(request: pytest.FixtureRequest) -> sw.Twin:
+    found: sw.Twin = request.getfixturevalue(request.param)
+    return found
+
+
+@pytest.fixture(scope="module")
+def html(each: sw.Twin) -> str:
+    """The report of each twin, with two experiments of one name."""
+    return twin_report(each, [Experiment("sine", (("twin", swing(50)),))] * 2)

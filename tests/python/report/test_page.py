@@ -1,0 +1,115 @@
+"""The page of a report as a file: self-contained, repeatable, readable on a narrow screen."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.report import figures
+from strainwave.report.experiment import Experiment
+from strainwave.report.page import write
+from strainwave.report.twin import Provenance, twin_report
+
+from tests.python.report.reading import Node, Page, points, section
+from tests.python.report.twins import HOSTILE, swing
+
+
+def test_the_page_is_well_formed_and_no_name_stands_twice(html: str) -> None:
+    names = [node.attributes["id"] for node in Page(html).root.walk() if "id" in node.attributes]
+    assert len(names) == len(set(names))
+    references = re.findall(r"(?:href=\"|url\()#([^\")]+)", html)
+    assert references
+    assert set(references) <= set(names)
+
+
+def test_the_page_refers_to_nothing_outside_itself(html: str) -> None:
+    assert not re.search(r"https?:|//\w|@import|<link|<img|<iframe|<script", html)
+    for reference in re.findall(r"(?:href|src)=\"([^\"]*)|url\(([^)]*)", html):
+        assert "".join(reference).startswith(("#", "data:"))
+
+
+def test_markup_in_names_is_shown_and_not_obeyed(from_friction: sw.Twin) -> None:
+    html = twin_report(from_friction, provenance=Provenance(command=HOSTILE, files={HOSTILE: "0" * 64}))
+    assert "<script" not in html
+    assert "<b>table" not in html
+    page = Page(html).root
+    assert HOSTILE in page.find("header")[0].text
+    assert page.find("footer")[0].find("code")[0].text == HOSTILE
+    assert any(HOSTILE in svg.attributes["aria-label"] for svg in page.find("svg"))
+    assert "a < b" in section(html, "friction").text, "the title of the recording"
+
+
+def test_the_same_twin_gives_the_same_bytes_and_the_date_is_the_one_given(from_friction: sw.Twin) -> None:
+    provenance = Provenance("2026-01-01", "strainwave twin", {})
+    assert twin_report(from_friction, (), provenance) == twin_report(from_friction, (), provenance)
+    assert "2026-01-01" in twin_report(from_friction, (), provenance)
+    assert not re.search(r"20\d\d-\d\d-\d\d", twin_report(from_friction))
+
+
+def test_the_preferences_of_a_machine_do_not_change_the_report(from_friction: sw.Twin) -> None:
+    import matplotlib as mpl
+
+    expected = twin_report(from_friction)
+    with mpl.rc_context({"font.size": 20.0, "axes.grid": False, "text.usetex": False, "lines.linewidth": 9.0}):
+        assert twin_report(from_friction) == expected
+        assert mpl.rcParams["font.size"] == 20.0
+
+
+def test_drawing_leaves_no_figure_open(from_friction: sw.Twin) -> None:
+    twin_report(from_friction)
+    assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
+
+
+def test_a_long_record_stays_small_and_keeps_its_peak() -> None:
+    run = swing(400_000)
+    noisy = run["output_angle"] + 1e-3 * np.random.default_rng(1).normal(size=len(run))
+    noisy[123_456] = 0.4
+    svg = figures.experiment(Experiment("long", (("twin", run.with_column("output_angle", noisy, "rad")),)), "long")
+    assert len(svg) < 80_000
+    lines = [points(path) for path in Page(svg).root.find("path") if "--model" in path.attributes.get("style", "")]
+    response = next(line for line in lines if len(line) > 100)
+    assert response[:, 1].min() < np.quantile(response[:, 1], 0.01) - 20.0, "the peak towers, upright is negative"
+    assert np.argmin(response[:, 1]) / len(response) == pytest.approx(123_456 / 400_000, abs=0.02)
+
+
+def test_provenance_holds_the_digest_of_each_file(tmp_path: Path) -> None:
+    file = tmp_path / "loop.csv"
+    file.write_bytes(b"abc")
+    provenance = Provenance.of([file], command="strainwave twin", date="2026-01-01")
+    # FIPS 180-2, appendix B.1
+    assert provenance.files == {"loop.csv": "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"}
+
+
+def test_a_page_that_cannot_be_written_leaves_the_old_one(tmp_path: Path) -> None:
+    write("old", tmp_path / "report.html")
+    with pytest.raises(UnicodeEncodeError):
+        write("\ud800", tmp_path / "report.html")
+    assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
+    assert (tmp_path / "report.html").read_text() == "old"
+
+
+# Narrow pages
+
+
+def test_a_cell_of_a_table_says_its_column_where_the_table_is_taken_apart(html: str) -> None:
+    tables = [table for table in Page(html).root.find("table") if "rows" in table.attributes.get("class", "").split()]
+    assert tables
+    for table in tables:
+        columns = [column.text for column in table.find("thead")[0].find("th")]
+        for row in table.find("tbody")[0].find("tr"):
+            cells = [cell for cell in row.children if isinstance(cell, Node)]
+            for column, cell in zip(columns, cells, strict=False):
+                assert cell.attributes.get("data-label", column) == column
+
+
+def test_a_figure_is_as_wide_as_its_box(html: str) -> None:
+    style = Page(html).root.find("style")[0]
+    rules = re.findall(r"([^{}]*)\{([^{}]*)\}", "".join(child for child in style.children if isinstance(child, str)))
+    of_figures = [rule for selector, rule in rules if selector.strip().endswith("svg")]
+    assert of_figures
+    assert all("width: 100%" in rule and "min-width" not in rule for rule in of_figures)
+    assert not any({"width", "height"} & svg.attributes.keys() for svg in Page(html).root.find("svg"))
