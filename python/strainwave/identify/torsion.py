@@ -8,10 +8,10 @@ exact derivatives then refine stiffness, breakaway and the spring together.
 from __future__ import annotations
 
 import warnings
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,39 +215,39 @@ Spring = stiffness.Linear | stiffness.Cubic | stiffness.ThreeSegment
 # ---- What a loop is asked for beside the spring -----------------------------------------------------------------------
 
 
-class Beside(Protocol):
+class Beside(ABC):
     """A part of the gear that is fitted beside the spring, or none."""
 
+    @abstractmethod
     def words(self, gear: Gear) -> str:
         """For the name of the candidate."""
-        ...
 
+    @abstractmethod
     def known(self, loop: TorsionLoop, gear: Gear) -> Array:
         """Torque of the loop that is neither the spring's nor asked for [N.m], shape (n,)."""
-        ...
 
+    @abstractmethod
     def columns(self, loop: TorsionLoop, gear: Gear) -> Array:
         """What each positive parameter asked for contributes, shape (n, m)."""
-        ...
 
+    @abstractmethod
     def start(self, loop: TorsionLoop, gear: Gear, weights: Array) -> Gear:
         """The gear with these parameters."""
-        ...
 
+    @abstractmethod
     def free(self, gear: Gear, stiff: Collection[int]) -> list[str]:
         """Paths of the parameters asked for; of `stiff` Maxwell elements the breakaway alone."""
-        ...
 
     def elements(self, gear: Gear) -> list[tuple[float, float]]:
         """Stiffness and breakaway of each Maxwell element asked for."""
-        ...
+        return []
 
     def finished(self, found: Fit, start: Gear) -> Fit:
         """The fit with what follows from the parameters asked for."""
-        ...
+        return found
 
 
-class Elements:
+class Elements(Beside):
     """Maxwell elements in place of the gear's hysteresis."""
 
     def words(self, gear: Gear) -> str:
@@ -271,11 +271,8 @@ class Elements:
     def elements(self, gear: Gear) -> list[tuple[float, float]]:
         return _pairs(gear)
 
-    def finished(self, found: Fit, start: Gear) -> Fit:
-        return found
 
-
-class Nothing:
+class Nothing(Beside):
     """The spring alone; hysteresis and friction are as in the gear."""
 
     def words(self, gear: Gear) -> str:
@@ -293,14 +290,8 @@ class Nothing:
     def free(self, gear: Gear, stiff: Collection[int]) -> list[str]:
         return []
 
-    def elements(self, gear: Gear) -> list[tuple[float, float]]:
-        return []
 
-    def finished(self, found: Fit, start: Gear) -> Fit:
-        return found
-
-
-class Friction:
+class Friction(Beside):
     """Breakaway of the friction at the input, with the hysteresis of the gear; Coulomb's torque keeps its ratio to it."""
 
     def words(self, gear: Gear) -> str:
@@ -321,9 +312,6 @@ class Friction:
 
     def free(self, gear: Gear, stiff: Collection[int]) -> list[str]:
         return ["friction_input.breakaway"]
-
-    def elements(self, gear: Gear) -> list[tuple[float, float]]:
-        return []
 
     def finished(self, found: Fit, start: Gear) -> Fit:
         known, breakaway = _dry(start), _dry(found.gear).breakaway
