@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core
 from strainwave.drives import PositionDrive
-from strainwave.messages import shortened
+from strainwave.messages import listed, quoted, shortened
 
 
 def number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
@@ -71,6 +71,26 @@ def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
         return array.astype(np.float64, copy=False)
 
 
+def text(name: str, value: object) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a text, not {shortened(value)}")
+    return value
+
+
+def one_of(name: str, value: object, choices: Iterable[str]) -> str:
+    """One of a few words.
+
+    >>> one_of("side", "left", ("input", "output"))
+    Traceback (most recent call last):
+    ValueError: side = "left" must be one of input, output
+    """
+    word, known = text(name, value), list(choices)
+    if word not in known:
+        raise ValueError(f"{name} = {quoted(word)} must be one of {listed(known)}")
+    return word
+
+
 def names(name: str, values: object) -> list[str]:
     """Names, by whatever goes through them; one alone is no list of them."""
     listed = list(values) if isinstance(values, Iterable) and not isinstance(values, str) else None
@@ -89,6 +109,13 @@ def drive(value: object) -> PositionDrive:
     """A drive to run or to look at."""
     if not isinstance(value, PositionDrive):
         raise TypeError(f"drive = {shortened(value)} must be a drive, as sw.drives.PositionDrive(...) makes one")
+    return value
+
+
+def gear(value: object) -> _core.Gear:
+    """A gear."""
+    if not isinstance(value, _core.Gear):
+        raise TypeError(f"gear = {shortened(value)} must be a gear, as sw.Gear(...) makes one")
     return value
 
 

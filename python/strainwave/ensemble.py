@@ -17,6 +17,7 @@ from strainwave.drives import PositionDrive
 from strainwave.ensemble_folder import EnsembleFolder, fingerprint
 from strainwave.equality import ComparedByFields
 from strainwave.files import claiming, making
+from strainwave.messages import listed, one_line, quoted, shortened
 from strainwave.parameters import every, unknown
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
@@ -65,8 +66,8 @@ class Ensemble(ComparedByFields):
 
     def __getitem__(self, name: str) -> Array:
         """An output of all members, shape (members, samples)."""
-        if name not in self.columns:
-            raise ValueError(f'no column "{name}" was recorded; there are {", ".join(self.columns)}')
+        if arguments.text("the name of a column", name) not in self.columns:
+            raise ValueError(f"no column {quoted(name)} was recorded; there are {listed(self.columns)}")
         return self.columns[name]
 
     def __len__(self) -> int:
@@ -114,7 +115,9 @@ def _read(files: EnsembleFolder) -> Ensemble:
     """All members, those of parts that are not there among the failures."""
     there = [part for part in files.parts() if files.has(part)]
     if not there:
-        raise ValueError(f"{files.path} holds none of {files.members} members; call simulate_to again as before to run them")
+        raise ValueError(
+            one_line(f"{files.path} holds none of {files.members} members; call simulate_to again as before to run them")
+        )
     failures = dict.fromkeys(range(files.members), "it was not run, or its file is missing")
     columns: dict[str, Array] = {}
     for part in there:
@@ -403,7 +406,7 @@ def _outputs(record: Sequence[str]) -> list[str]:
     """The outputs to record, in order."""
     names = arguments.names("record", record)
     if not names or not set(names) <= set(OUTPUTS):
-        raise ValueError(f"record = {names!r} must list outputs of a drive: {', '.join(OUTPUTS)}")
+        raise ValueError(f"record = {shortened(names)} must list outputs of a drive: {', '.join(OUTPUTS)}")
     return names
 
 

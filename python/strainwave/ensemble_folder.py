@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.files import remove_drafts, replacing
+from strainwave.messages import one_line
 from strainwave.tables import unreadable
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class EnsembleFolder(ComparedByFields):
             ValueError: there is none, or it is damaged
         """
         if not (path / PLAN).exists():
-            raise ValueError(f"{path} holds no ensemble: there is no {PLAN}")
+            raise ValueError(one_line(f"{path} holds no ensemble: there is no {PLAN}"))
         table = _read(path / PLAN)
         try:
             said = json.loads(table.schema.metadata[b"plan"])
@@ -77,7 +78,7 @@ class EnsembleFolder(ComparedByFields):
         except (KeyError, TypeError, ValueError):
             sound = False
         if not sound:
-            raise ValueError(f"{path / PLAN} is damaged; the parts beside it cannot be checked without it")
+            raise ValueError(one_line(f"{path / PLAN} is damaged; the parts beside it cannot be checked without it"))
         return found
 
     def begin(self) -> EnsembleFolder:
@@ -93,7 +94,7 @@ class EnsembleFolder(ComparedByFields):
             self._check_equal(found.asked)
             return found
         if any(self.path.iterdir()):
-            raise FileExistsError(f"{self.path} is not empty; take another folder, or move what is there")
+            raise FileExistsError(one_line(f"{self.path} is not empty; take another folder, or move what is there"))
         said = json.dumps({"asked": dict(self.asked), "units": dict(self.units), "size": self.size})
         _write(self.path / PLAN, dict(self.parameters), {}, {"plan": said, "identity": self.identity})
         return self
@@ -102,7 +103,7 @@ class EnsembleFolder(ComparedByFields):
         names = [name for name in {**self.asked, **found} if self.asked.get(name) != found.get(name)]
         if names:
             told = "; ".join(f"{name} is {found.get(name)} there, {self.asked.get(name)} here" for name in names)
-            raise FileExistsError(f"{self.path} holds another ensemble: {told}; take another folder")
+            raise FileExistsError(one_line(f"{self.path} holds another ensemble: {told}; take another folder"))
 
     @cached_property
     def identity(self) -> bytes:
@@ -151,9 +152,11 @@ class EnsembleFolder(ComparedByFields):
         path = self.path / kind / part.name
         table = _read(path)
         if table.schema.metadata.get(b"plan") != self.identity:
-            raise ValueError(f"{path} belongs to another ensemble than {self.path / PLAN}; {_REMEDY}")
+            raise ValueError(one_line(f"{path} belongs to another ensemble than {self.path / PLAN}; {_REMEDY}"))
         if not np.array_equal(np.unique(table["member"].to_numpy()), part.members):
-            raise ValueError(f"{path} holds other members than {part.first} to {part.last - 1}, so it was renamed; {_REMEDY}")
+            raise ValueError(
+                one_line(f"{path} holds other members than {part.first} to {part.last - 1}, so it was renamed; {_REMEDY}")
+            )
         return table
 
 
@@ -222,7 +225,7 @@ def _read(path: Path) -> pyarrow.Table:
     except (OSError, pyarrow.ArrowException, UnicodeDecodeError) as error:
         raise ValueError(f"{unreadable(path, error)}; {_REMEDY}") from None
     if not sound:
-        raise ValueError(f"{path} is damaged: its values are not those of its digest; {_REMEDY}")
+        raise ValueError(one_line(f"{path} is damaged: its values are not those of its digest; {_REMEDY}"))
     return table
 
 

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import BinaryIO
 from uuid import uuid4
 
+from strainwave.messages import one_line
+
 DRAFT = ".strainwave-"  # how the names of files begin that are still being written
 
 
@@ -66,9 +68,11 @@ def making(folder: Path) -> Iterator[None]:
     Raises:
         OSError: the folder cannot be made; says why
     """
-    new = [each for each in (folder, *folder.parents) if not os.path.lexists(each)]
+    new: list[Path] = []
     try:
         try:
+            _check_name(folder)
+            new += [each for each in (folder, *folder.parents) if not os.path.lexists(each)]
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise _said(f"{folder} cannot be made", error) from None
@@ -135,6 +139,7 @@ class _Through:
 
 @contextmanager
 def _draft(path: Path) -> Iterator[_Beside | _Through]:
+    _check_name(path)
     target = Path(os.path.realpath(path))
     try:
         found = os.stat(path)
@@ -155,6 +160,13 @@ def _draft(path: Path) -> Iterator[_Beside | _Through]:
             yield _Beside(file, target)
         finally:
             Path(file.name).unlink(missing_ok=True)
+
+
+def _check_name(path: Path) -> None:
+    try:
+        os.fsencode(path)
+    except UnicodeEncodeError:
+        raise OSError("no file can have this name") from None
 
 
 def _stream(path: Path, found: os.stat_result) -> BinaryIO | None:
@@ -218,6 +230,6 @@ def _named(path: str | Path) -> Iterator[None]:
 
 
 def _said(what: str, error: OSError) -> OSError:
-    said = type(error)(f"{what}: {error.strerror or error}")
+    said = type(error)(one_line(f"{what}: {error.strerror or error}"))
     said.errno = error.errno  # for whoever asks for it: the message stays as it is
     return said

@@ -247,6 +247,4 @@ def _input_units(drive: PositionDrive) -> dict[str, str]:
 
 
 def _place(name: str, names: tuple[str, ...], kind: str) -> int:
-    if name not in names:
-        raise ValueError(f"{kind} = {name!r} must be one of {', '.join(names)}")
-    return names.index(name)
+    return names.index(arguments.one_of(kind, name, names))

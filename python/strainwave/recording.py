@@ -59,9 +59,7 @@ class Recording:
 
     def __init__(self, columns: Mapping[str, ArrayLike], units: Mapping[str, str], title: str = "") -> None:
         _check_names(columns, units)
-        if not isinstance(title, str):
-            raise TypeError(f"title must be a text, not {shortened(title)}")
-        if title and not title.isprintable():
+        if arguments.text("title", title) and not title.isprintable():
             raise ValueError(f"title {shortened(title)} must be one line of text")
         frozen = {name: _frozen(name, values) for name, values in columns.items()}
         _check_lengths(frozen)
@@ -88,12 +86,12 @@ class Recording:
 
     def __getitem__(self, name: str) -> Array:
         """Values of a column in its own unit, shape (n,), read-only."""
-        if name not in self.columns:
+        if arguments.text("the name of a column", name) not in self.columns:
             raise ValueError(f"no column {quoted(name)}; there are {listed(self.names)}")
         return self.columns[name]
 
     def __contains__(self, name: object) -> bool:
-        return name in self.columns
+        return isinstance(name, str) and name in self.columns
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
@@ -145,6 +143,7 @@ class Recording:
 
     def with_column(self, name: str, values: ArrayLike, unit: str) -> Recording:
         """This recording with a column added, or replaced where one of that name is there."""
+        arguments.text("the name of a column", name)
         return Recording({**self.columns, name: values}, {**self.units, name: unit}, self.title)
 
     def to_csv(self, path: str | Path) -> None:
@@ -281,6 +280,12 @@ class Recording:
         return figure
 
 
+def check_recording(name: str, value: object) -> None:
+    """Refuses what is no recording."""
+    if not isinstance(value, Recording):
+        raise TypeError(f"{name} must be a Recording, as Recording.read(...) gives one, not {shortened(value)}")
+
+
 def _check_drawable(name: str, values: Array) -> None:
     largest = np.abs(values).max()
     if largest > _DRAWABLE:
@@ -301,9 +306,7 @@ def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> 
     if not columns:
         raise ValueError("a recording needs at least one column")
     for name in columns:
-        if not isinstance(name, str):
-            raise TypeError(f"a column is named by a text, not {shortened(name)}")
-        if not name or name != name.strip() or not name.isprintable():
+        if not arguments.text("the name of a column", name) or name != name.strip() or not name.isprintable():
             raise ValueError(f"column name {shortened(name)} must be printable text without spaces around it")
         if name not in units:
             hint = f'pass units={{{quoted(name)}: "N.m"}}, or "1" for a plain number'

@@ -14,6 +14,7 @@ from strainwave import _core, arguments
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.memory import check_instants
+from strainwave.messages import listed, quoted
 from strainwave.scenario import SHORTEST, Scenario, constant, sine
 from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, check_resolution, recording, warn_of_bristles
 from strainwave.steady import averaged, constant_inputs, equilibrium
@@ -52,8 +53,8 @@ class FrequencyResponse(ComparedByFields):
     periods: NDArray[np.intp]
 
     def __getitem__(self, output: str) -> Complex:
-        if output not in self.responses:
-            raise ValueError(f'no output "{output}"; there are {", ".join(self.responses)}')
+        if arguments.text("the name of an output", output) not in self.responses:
+            raise ValueError(f"no output {quoted(output)}; there are {listed(self.responses)}")
         return self.responses[output]
 
 
@@ -151,8 +152,7 @@ def _check(frequencies: Array, signal: str, dt: float) -> None:
     for frequency in frequencies.tolist():
         arguments.number("frequency", frequency, "Hz", "[]", _SLOWEST, 1.0 / SHORTEST)
         check_instants(1.0 / frequency, dt, "take a higher frequency, or a longer dt")
-    if signal not in _SINES:
-        raise ValueError(f"input = {signal!r} must be one of {', '.join(_SINES)}")
+    arguments.one_of("input", signal, _SINES)
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ class Scenario:
     __array_ufunc__ = None  # numpy scalars leave `factor * scenario` to __rmul__
 
     def __post_init__(self) -> None:
-        _duration("scenario.duration", self.duration)
+        object.__setattr__(self, "duration", _duration("scenario.duration", self.duration))
         for name in ("start", "level", "slope"):
             values = np.array(arguments.numbers(f"scenario.{name}", getattr(self, name)))
             values.setflags(write=False)
@@ -225,8 +225,8 @@ def constant(value: float, duration: float) -> Scenario:
     >>> constant(1.5, duration=2.0).value([0.0, 2.0])
     array([1.5, 1.5])
     """
-    arguments.number("constant.value", value)
-    _duration("constant.duration", duration)
+    value = arguments.number("constant.value", value)
+    duration = _duration("constant.duration", duration)
     return _from(0.0, duration, level=value, slope=0.0)
 
 
@@ -244,9 +244,9 @@ def step(amplitude: float, duration: float, start: float = 0.0) -> Scenario:
     >>> step(2.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 2., 2.])
     """
-    arguments.number("step.amplitude", amplitude)
-    _duration("step.duration", duration)
-    arguments.number("step.start", start, "s", "[)", 0.0, duration)
+    amplitude = arguments.number("step.amplitude", amplitude)
+    duration = _duration("step.duration", duration)
+    start = arguments.number("step.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=amplitude, slope=0.0)
 
 
@@ -264,9 +264,9 @@ def ramp(rate: float, duration: float, start: float = 0.0) -> Scenario:
     >>> ramp(4.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 0., 2.])
     """
-    arguments.number("ramp.rate", rate)
-    _duration("ramp.duration", duration)
-    arguments.number("ramp.start", start, "s", "[)", 0.0, duration)
+    rate = arguments.number("ramp.rate", rate)
+    duration = _duration("ramp.duration", duration)
+    start = arguments.number("ramp.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=0.0, slope=rate)
 
 
@@ -286,11 +286,11 @@ def sine(amplitude: float, frequency: float, duration: float, phase: float = 0.0
     >>> sine(2.0, frequency=0.25, duration=4.0, offset=1.0).value([0.0, 1.0, 3.0])
     array([ 1.,  3., -1.])
     """
-    arguments.number("sine.amplitude", amplitude)
-    arguments.number("sine.frequency", frequency, "Hz", "[)", 0.0)
-    _duration("sine.duration", duration)
-    arguments.number("sine.phase", phase, "rad")
-    arguments.number("sine.offset", offset)
+    amplitude = arguments.number("sine.amplitude", amplitude)
+    frequency = arguments.number("sine.frequency", frequency, "Hz", "[)", 0.0)
+    duration = _duration("sine.duration", duration)
+    phase = arguments.number("sine.phase", phase, "rad")
+    offset = arguments.number("sine.offset", offset)
     wave = Wave(amplitude, frequency, sweep=0.0, phase=phase)
     return replace(constant(offset, duration), waves=(wave,))
 
@@ -313,10 +313,10 @@ def chirp(amplitude: float, start_frequency: float, stop_frequency: float, durat
     >>> float(chirp(1.0, start_frequency=0.0, stop_frequency=1.0, duration=8.0).value(1.0).round(12))  # sin(pi / 8)
     0.382683432365
     """
-    arguments.number("chirp.amplitude", amplitude)
-    arguments.number("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
-    arguments.number("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
-    _duration("chirp.duration", duration)
+    amplitude = arguments.number("chirp.amplitude", amplitude)
+    start_frequency = arguments.number("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
+    stop_frequency = arguments.number("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
+    duration = _duration("chirp.duration", duration)
     wave = Wave(amplitude, start_frequency, sweep=(stop_frequency - start_frequency) / duration, phase=0.0)
     return replace(constant(0.0, duration), waves=(wave,))
 
@@ -337,11 +337,11 @@ def pulse_train(amplitude: float, period: float, width: float, duration: float, 
     >>> pulse_train(3.0, period=1.0, width=0.25, duration=2.0, start=0.5).breaks
     array([0.5 , 0.75, 1.5 , 1.75])
     """
-    arguments.number("pulse_train.amplitude", amplitude)
-    arguments.number("pulse_train.period", period, "s", low=0.0)
-    arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
-    _duration("pulse_train.duration", duration)
-    arguments.number("pulse_train.start", start, "s", "[)", 0.0, duration)
+    amplitude = arguments.number("pulse_train.amplitude", amplitude)
+    period = arguments.number("pulse_train.period", period, "s", low=0.0)
+    width = arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
+    duration = _duration("pulse_train.duration", duration)
+    start = arguments.number("pulse_train.start", start, "s", "[)", 0.0, duration)
     check_instants(duration - start, period, "take fewer pulses")
     pulses = np.ceil((duration - start) / period)
     with room_for("pulses", pulses, 200.0, "take fewer"):
@@ -380,8 +380,8 @@ def table(time: ArrayLike, value: ArrayLike) -> Scenario:
     return Scenario(float(points.time[-1]), points.time[:-1], points["value"][:-1], slope)
 
 
-def _duration(name: str, value: object) -> None:
-    arguments.number(name, value, "s", "[)", low=SHORTEST)
+def _duration(name: str, value: object) -> float:
+    return arguments.number(name, value, "s", "[)", low=SHORTEST)
 
 
 def _from(start: float, duration: float, level: float, slope: float) -> Scenario:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
+from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import parameters as chosen
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
@@ -37,12 +38,14 @@ class Derivatives(ComparedByFields):
 
     def __getitem__(self, which: tuple[str, str]) -> Array:
         """Derivative of an output by a parameter, shape (samples,), in the unit of the one per unit of the other."""
-        output, path = which
+        if not isinstance(which, tuple) or len(which) != 2:
+            raise TypeError(f"an output and a parameter are wanted, not {shortened(which)}")
+        output, path = arguments.names("an output and a parameter", which)
         outputs = [name for name in self.run.names if name != "time"]
         if output not in outputs:
-            raise ValueError(f'no output "{output}"; there are {", ".join(outputs)}')
+            raise ValueError(f"no output {quoted(output)}; there are {listed(outputs)}")
         if path not in self.parameters:
-            raise ValueError(f'no derivatives by "{path}"; there are those by {", ".join(self.parameters)}')
+            raise ValueError(f"no derivatives by {quoted(path)}; there are those by {listed(self.parameters)}")
         derivative: Array = self.values[list(self.parameters).index(path), outputs.index(output)]
         return derivative
 

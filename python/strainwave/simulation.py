@@ -18,6 +18,7 @@ from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.gear_set import GearSet
 from strainwave.memory import check_instants, room_for
+from strainwave.messages import shortened
 from strainwave.ratings import drive_of, warn_of_ratings
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
@@ -80,11 +81,11 @@ class Excitation:
 
     def __post_init__(self) -> None:
         if not isinstance(self.command, Scenario):
-            raise TypeError(f"command = {self.command!r} must be a Scenario, as sw.scenario.constant(...) makes one")
+            raise TypeError(f"command = {shortened(self.command)} must be a Scenario, as sw.scenario.constant(...) makes one")
         for name in ("load_torque", "temperature"):
             signal = getattr(self, name)
             if not isinstance(signal, Scenario | Real):
-                raise TypeError(f"{name} = {signal!r} must be a number or a Scenario")
+                raise TypeError(f"{name} = {shortened(signal)} must be a number or a Scenario")
             if isinstance(signal, Scenario) and signal.duration != self.command.duration:
                 raise ValueError(
                     f"{name} lasts {signal.duration} s, command {self.command.duration} s; both must last equally long"
@@ -241,8 +242,8 @@ def simulate(
     >>> run.method
     'exponential Runge-Kutta, steps of 0.0002 s'
     """
-    if method not in (None, *METHODS):
-        raise ValueError(f'method = "{method}" is not known; there are {", ".join(METHODS)}')
+    if method is not None:
+        arguments.one_of("method", method, METHODS)
     model, drive = drive, drive_of(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)

@@ -221,7 +221,7 @@ def open_csv(path: str | Path) -> CsvTable:
     file = one_line(str(path))
     try:
         data = Path(path).read_bytes()
-    except OSError as error:
+    except (OSError, UnicodeEncodeError) as error:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
     title = re.match(TITLE.encode() + rb"([^\n]*)", data)

@@ -46,7 +46,7 @@ def _extreme(random: Generator) -> tuple[sw.drives.PositionDrive, dict[str, floa
             numbers[place] = changed[path] = float(np.clip(picked(random, (_size(random), *limits)), low, high))
         try:
             return _made_anew(_core.with_numbers(drive, numbers)), changed
-        except ValueError:
+        except (TypeError, ValueError):  # a seed that is no whole number is of the wrong type
             continue
 
 

@@ -106,6 +106,15 @@ def test_names_are_taken_from_whatever_goes_through_them() -> None:
             arguments.names("record", wrong)
 
 
+def test_one_of_a_few_words_is_taken_and_others_are_refused() -> None:
+    assert arguments.one_of("side", "input", ("input", "output")) == "input"
+    with pytest.raises(ValueError, match=exactly('side = "left" must be one of input, output')):
+        arguments.one_of("side", "left", ("input", "output"))
+    for wrong in (3, None, [["input"]]):
+        with pytest.raises(TypeError, match=exactly(f"side must be a text, not {wrong!r}")):
+            arguments.one_of("side", wrong, ("input", "output"))
+
+
 def test_a_mapping_is_no_list() -> None:
     arguments.mapping("units", {}, '{"time": "s"}')
     for wrong in (["s"], "s", 3, None):

@@ -157,6 +157,8 @@ def test_a_name_that_is_too_long_is_refused(tmp_path: Path) -> None:
         ("lost", r"^lost cannot be written: there is no folder \S*/gone$"),
         ("loop", r"^loop cannot be written: Too many levels of symbolic links$"),
         ("plain/file", r"^plain/file cannot be written: Not a directory$"),
+        ("missing/a\nb", r"^missing/a\\nb cannot be written: there is no folder missing$"),
+        ("\ud800", r"^\\ud800 cannot be written: no file can have this name$"),
     ],
 )
 def test_what_cannot_be_written_is_named_with_the_reason(
@@ -320,6 +322,8 @@ def test_folders_made_for_what_fails_are_taken_away_again(tmp_path: Path) -> Non
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(FileExistsError, match=r"/file cannot be made: File exists$"), making(tmp_path / "file"):
+        pass
+    with pytest.raises(OSError, match=r"/\\ud800 cannot be made: no file can have this name$"), making(tmp_path / "\ud800"):
         pass
     with pytest.raises(NotADirectoryError, match=r"/file/a/b cannot be made: Not a directory$"), making(tmp_path / "file/a/b"):
         pass

@@ -311,9 +311,9 @@ def test_warmth_is_an_input() -> None:
 
 def test_what_is_not_there_is_refused() -> None:
     linear = sw.linearise(DRIVE)
-    with pytest.raises(ValueError, match="output = 'speed' must be one of command, input_angle"):
+    with pytest.raises(ValueError, match='output = "speed" must be one of command, input_angle'):
         linear.response(1.0, "speed")
-    with pytest.raises(ValueError, match="input = 'voltage' must be one of command, command_rate"):
+    with pytest.raises(ValueError, match='input = "voltage" must be one of command, command_rate'):
         linear.response(1.0, input="voltage")
     with pytest.raises(ValueError, match="without damping"):
         sw.linearise(geared(DISC, motor=NO_TORQUE)).response(0.0, input="load_torque")

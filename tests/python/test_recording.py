@@ -241,6 +241,8 @@ def test_what_is_not_there_is_refused(ask: Callable[[], object], message: str) -
         (lambda: Recording([1.0], {}), 'columns must be a mapping, as in {"time": [0.0, 0.1]}, not [1.0]'),  # type: ignore[arg-type]
         (lambda: Recording({"a": [1.0]}, "s"), """units must be a mapping, as in {"time": "s"}, not 's'"""),  # type: ignore[arg-type]
         (lambda: Recording({"a": [1.0]}, {"a": "1"}, 3), "title must be a text, not 3"),  # type: ignore[arg-type]
+        (lambda: RUN[[1]], "the name of a column must be a text, not [1]"),  # type: ignore[index]
+        (lambda: RUN.with_column([1], RUN["time"], "s"), "the name of a column must be a text, not [1]"),  # type: ignore[arg-type]
         (lambda: RUN.select("time"), "names must be a list of names, not 'time'"),
         (lambda: RUN.plot("time"), "names must be a list of names, not 'time'"),
         (lambda: RUN.between("0", "1"), "start must be a number, not '0'"),  # type: ignore[arg-type]
@@ -250,6 +252,11 @@ def test_what_is_not_there_is_refused(ask: Callable[[], object], message: str) -
 def test_what_is_of_the_wrong_kind_is_refused(ask: Callable[[], object], message: str) -> None:
     with pytest.raises(TypeError, match=exactly(message)):
         ask()
+
+
+def test_what_is_no_name_is_in_no_recording() -> None:
+    assert "time" in RUN
+    assert [1] not in RUN
 
 
 def test_a_stretch_of_time_may_be_without_end_but_not_without_number() -> None:

@@ -128,7 +128,7 @@ def test_what_makes_no_sense_is_refused() -> None:
             sw.frequency_response(DRIVE, [1.0, frequency], 0.1)
     with pytest.raises(ValueError, match=r"^1e\+20 s are more than 1e\+09 steps of 0\.0002 s; take a higher frequency"):
         sw.frequency_response(DRIVE, 1e-20, 0.1)
-    with pytest.raises(ValueError, match="input = 'temperature' must be one of command, load_torque"):
+    with pytest.raises(ValueError, match='input = "temperature" must be one of command, load_torque'):
         sw.frequency_response(DRIVE, 1.0, 0.1, input="temperature")
     with pytest.raises(ValueError, match=r"dt = 0.0 s must lie in"):
         sw.frequency_response(DRIVE, 1.0, 0.1, dt=0.0)

@@ -187,6 +187,12 @@ def test_a_chirp_is_scipys_chirp(start_frequency: float, stop_frequency: float) 
     np.testing.assert_allclose(value, reference, rtol=0, atol=1e-12)
 
 
+def test_numbers_of_numpy_are_numbers() -> None:
+    """Small whole numbers of numpy would overflow, and its short floats lose digits."""
+    assert chirp(np.float32(0.25), np.int64(300), np.uint8(255), 1.0) == chirp(0.25, 300.0, 255.0, 1.0)
+    assert pulse_train(1.0, np.float32(3e38), np.float32(0.5), 1.0) == pulse_train(1.0, 2.0, 0.5, 1.0)
+
+
 def test_the_frequency_of_a_chirp_moves_linearly() -> None:
     time = np.linspace(0.0, 10.0, 1234)
     scenario = chirp(0.3, 1.0, 6.0, 10.0)

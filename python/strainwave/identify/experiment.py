@@ -15,7 +15,8 @@ from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.identify.branches import monotone, slid, thinned, turning_points
-from strainwave.recording import Recording
+from strainwave.messages import listed, quoted
+from strainwave.recording import Recording, check_recording
 from strainwave.scenario import Scenario
 from strainwave.simulation import differentiate
 
@@ -93,6 +94,7 @@ class FrictionTable(ComparedByFields):
 
         Of a long table, means over neighbouring speeds are taken.
         """
+        check_recording("recording", recording)
         speed, torque = _sensible(recording, "speed", "rad/s"), _sensible(recording, "torque", "N.m")
         if np.any(speed == 0.0):
             row = int(np.argmin(np.abs(speed)))
@@ -110,7 +112,8 @@ class FrictionTable(ComparedByFields):
     @classmethod
     def of_output(cls, recording: Recording, gear: Gear) -> FrictionTable:
         """From columns speed and torque of the output, as a joint measures its friction, referred to the input by the ratio."""
-        ratio = abs(gear.kinematics.ratio)
+        check_recording("recording", recording)
+        ratio = abs(arguments.gear(gear).kinematics.ratio)
         speed, torque = ratio * recording.values("speed", "rad/s"), recording.values("torque", "N.m") / ratio
         return cls.of(Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}))
 
@@ -162,7 +165,8 @@ class TorsionLoop(ComparedByFields):
         recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a reversal
         is left out: there friction turns over while its bristles bend, over a distance that no loop tells.
         """
-        ratio = gear.kinematics.ratio if at_input(recording) else None
+        check_recording("recording", recording)
+        ratio = arguments.gear(gear).kinematics.ratio if at_input(recording) else None
         if ratio is not None:
             angle, input_torque = _sensible(recording, "input_angle", "rad"), _sensible(recording, "input_torque", "N.m")
             twist, torque = angle / ratio, ratio * input_torque
@@ -292,15 +296,17 @@ class DriveLog(ComparedByFields):
         Steps of 0.2 ms, or the sample interval if that is a little shorter. Of a long log the first 100 000 steps are taken,
         20 s; of one that was recorded more often than the model steps, every so many rows.
         """
+        check_recording("recording", recording)
+        arguments.drive(drive)
         for name in ("time", "command"):
             if name not in recording:
-                raise ValueError(f'a drive log needs a column "{name}"; this one has {", ".join(recording.names)}')
+                raise ValueError(f"a drive log needs a column {quoted(name)}; this one has {listed(recording.names)}")
         known = {name: unit for name, unit, _ in _core.outputs if name != "command"}
         wanted = [name for name in recording.names if name in known] if channels is None else channels
         chosen = tuple(arguments.names("channels", wanted))
         for name in chosen:
             if name not in known or name not in recording:
-                raise ValueError(f'a drive log cannot be compared by "{name}"; it can by {", ".join(known)}')
+                raise ValueError(f"a drive log cannot be compared by {quoted(name)}; it can by {', '.join(known)}")
         if not chosen:
             raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
         _check_hanging(recording, drive, chosen)

@@ -15,6 +15,7 @@ from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
+from strainwave.messages import shortened
 from strainwave.parameters import Parameter, parameters
 from strainwave.recording import Recording
 from strainwave.simulation import warn_of_bristles
@@ -192,11 +193,10 @@ def fit(
 
 def _check_kinds(model: object, recording: object, loss: object) -> None:
     if not isinstance(model, Gear | PositionDrive):
-        raise TypeError(f"model must be a Gear or a drive, not {model!r}")
+        raise TypeError(f"model must be a Gear or a drive, not {shortened(model)}")
     if not isinstance(recording, Recording) and not hasattr(recording, "predict"):
-        raise TypeError(f"recording must be a Recording, or an experiment made of one, not {recording!r}")
-    if loss not in ("linear", "soft_l1"):
-        raise ValueError(f"loss = {loss!r} must be linear or soft_l1")
+        raise TypeError(f"recording must be a Recording, or an experiment made of one, not {shortened(recording)}")
+    arguments.one_of("loss", loss, ("linear", "soft_l1"))
 
 
 def _check_branch(experiment: Experiment, places: Sequence[Parameter]) -> None:

@@ -24,15 +24,13 @@ quality is the filtering:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from strainwave import arguments
 from strainwave.equality import ComparedByFields
-
-if TYPE_CHECKING:
-    from strainwave.recording import Recording
+from strainwave.recording import Recording, check_recording
 
 PARAMETERS = ("inertia", "viscous", "coulomb", "offset")
 
@@ -44,6 +42,7 @@ _NOISE_SHARE = 1e-3  # of the power of the filtered acceleration
 _JITTER = 0.01  # of a sampling step
 _REST = 3.0  # standard deviations; positions that differ by less are equal
 _EDGE_ROWS = 5  # lost to the ends of the filters, each side
+_LARGEST = 1e12  # in SI units; of a step, at least the reciprocal
 _FEWEST_ROWS = 10  # in each direction of motion (assumed)
 
 
@@ -191,7 +190,9 @@ def rigid_drive_of(
     Raises:
         ValueError: as `rigid_drive`; no such column; a unit that does not convert
     """
-    q, tau = recording.values(position, units[0]), recording.values(torque, units[1])
+    check_recording("recording", recording)
+    of_position, of_torque = arguments.names("units", units)
+    q, tau = recording.values(position, of_position), recording.values(torque, of_torque)
     return rigid_drive(q, tau, recording.time, cutoff=cutoff)
 
 
@@ -286,7 +287,7 @@ def _cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float) ->
 
 
 def _allowed(cutoff: float, rate: float) -> float:
-    if not 0 < cutoff < rate / 2:
+    if not 0.0 < arguments.number("cutoff", cutoff) < rate / 2:
         raise ValueError(f"cutoff = {cutoff:g} Hz must lie in (0, {rate / 2:g}) Hz, half the sampling rate")
     return float(cutoff)
 
@@ -306,7 +307,7 @@ def _near_rest(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:
 
 def _checked(position: ArrayLike, torque: ArrayLike, time: ArrayLike) -> tuple[Array, Array, Array]:
     given = {"position": position, "torque": torque, "time": time}
-    arrays = {name: np.asarray(values, dtype=float) for name, values in given.items()}
+    arrays = {name: arguments.numbers(name, values) for name, values in given.items()}
     fewest = 2 * (_EDGE_ROWS + _FEWEST_ROWS)
     for name, values in arrays.items():
         if values.shape != (values.size,) or values.size != arrays["time"].size:
@@ -316,6 +317,8 @@ def _checked(position: ArrayLike, torque: ArrayLike, time: ArrayLike) -> tuple[A
         if not np.isfinite(values).all():
             place = int(np.flatnonzero(~np.isfinite(values))[0])
             raise ValueError(f"{name}[{place}] = {values[place]} must be finite")
+        if not np.abs(values).max() < _LARGEST:
+            raise ValueError(f"{name} goes up to {np.abs(values).max():g}; it must stay below {_LARGEST:g}")
     _require_uniform(arrays["time"])
     return arrays["position"], arrays["torque"], arrays["time"]
 
@@ -326,6 +329,8 @@ def _require_uniform(time: Array) -> None:
         place = int(falls[0])
         raise ValueError(f"time[{place + 1}] = {time[place + 1]:g} s must exceed time[{place}] = {time[place]:g} s")
     step = (time[-1] - time[0]) / (len(time) - 1)
+    if step < 1.0 / _LARGEST:
+        raise ValueError(f"time: its steps of {step:g} s must be longer than {1.0 / _LARGEST:g} s")
     jitter = np.abs(time - np.linspace(time[0], time[-1], len(time))) / step
     worst = int(np.argmax(jitter))
     if jitter[worst] > _JITTER:
