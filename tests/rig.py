@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 RIG = Path(os.environ.get("STRAINWAVE_RIG", Path(__file__).parents[2] / "shared" / "independent-rig"))
 START = "hfuc-20-80"
 WHEEL = 360.0 / 16384.0  # deg, a count of the motor's encoder
-LOCKED = 1e9  # kg.m2: what nothing moves
+LOCKED = 1e13  # kg.m2: what nothing moves
 COVERED, WIDE = 0.9, 0.03  # what must be reached
 
 
@@ -90,13 +90,15 @@ def _widths(name: str, found: Twin, truth: dict[str, float]) -> Iterator[tuple[s
 
 
 def from_input(gear: sw.Gear) -> tuple[Array, Array]:
-    """Twist and torque at the output of that rig simulated: the output locked, the input turned slowly to and fro."""
+    """Twist and torque at the output of that rig simulated: the output locked, a servo turns the input slowly to and fro."""
     ratio = gear.kinematics.ratio
     motor = sw.motor.DC(resistance=1.0, inductance=0.0, torque_constant=1.0, back_emf=0.0, inertia=1e-3)
-    drive = sw.drives.PositionDrive(gear=gear, motor=motor, load=sw.loads.Inertia(inertia=LOCKED))
-    run = sw.simulate(drive, sw.scenario.sine(amplitude=65.0 / abs(ratio), frequency=0.1, duration=20.0), sample=1e-2)
-    later = run.time > 10.0
-    return run["input_angle"][later] / ratio, ratio * run["command"][later]
+    # by angle, as the rig does: by torque, the friction that falls with speed makes the input stick and slip
+    servo = sw.control.PID(proportional=1e3, derivative=1.0, limit=1e3)
+    drive = sw.drives.PositionDrive(gear=gear, motor=motor, control=servo, load=sw.loads.Inertia(inertia=LOCKED))
+    run = sw.simulate(drive, sw.scenario.sine(amplitude=2.2e-3, frequency=0.02, duration=100.0), sample=1e-2)
+    later = run.time > 30.0
+    return run["input_angle"][later] / ratio, ratio * run["current"][later]
 
 
 def from_output(gear: sw.Gear) -> tuple[Array, Array]:

@@ -46,6 +46,11 @@ class Entry:
     spread: float | None = None
     uncertainty: float | None = None
 
+    @property
+    def assumed(self) -> bool:
+        """Whether the number was neither measured nor published."""
+        return self.source.startswith("assumed") or self.source == NOT_GIVEN
+
     def __post_init__(self) -> None:
         _check_line("source", self.source)
         for name in ("spread", "uncertainty"):
@@ -440,7 +445,7 @@ def _unless_default(gear_set: GearSet, path: str) -> Entry:
     if index:
         number = int(index.removesuffix("]"))
         value, default = value[number], default[number] if number < len(default) else None
-    if value != default or entry.source.startswith("assumed"):
+    if value != default or entry.assumed:
         return entry
     return Entry(f"assumed: the default, unless given by: {entry.source}")
 

@@ -19,6 +19,7 @@ SUSPECT = 0.3  # of the residuals' power: a kept parameter that accounts for mor
 NEARLY = 0.8  # of the largest share: which parameter accounts for a little more is chance
 EXACT = ("control.", "gear.kinematics.", "kinematics.")  # nobody measures what was designed
 DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
+GUESSED = 0.5  # of a kept value that is assumed
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,19 +45,19 @@ class Influence(ComparedByFields):
         """Of a fit that explains nothing, of which it is idle to ask."""
         return cls((), np.zeros((estimates, 0)), *np.zeros((3, 0)))
 
-    def suspect(self, known: Mapping[str, Entry], prefix: str = "") -> int | None:
-        """The kept parameter that the measurement speaks against most, by its place; None where it speaks against none.
+    def suspects(self, known: Mapping[str, Entry], prefix: str = "") -> list[int]:
+        """The kept parameters that the measurement speaks against, by their places, the least certain first.
 
-        It does so where a change would remove much of the residuals, and is larger than what is known of the parameter allows.
+        It does so where a change would remove much of the residuals, is larger than what is known of the parameter allows, and
+        leads to a value that the parameter may have. Of several that would do about as well, it cannot tell which is wrong.
         """
         doubts = np.array([uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept])
-        least = max(SUSPECT, NEARLY * float(np.max(self.gains, initial=0.0)))
-        worst = np.flatnonzero((np.abs(self.pulls) > doubts) & (self.gains > least))
-        if not len(worst):
-            return None
-        # of several that would do as well, the one that is the least certain
-        strain = np.abs(self.pulls[worst]) / np.maximum(doubts[worst], 1e-300)
-        return int(worst[np.argmin(strain)])
+        better = self.pulls + [each.value for each in self.kept]
+        possible = (better >= [each.low for each in self.kept]) & (better <= [each.high for each in self.kept])
+        wrong = possible & (np.abs(self.pulls) > doubts) & (self.gains > SUSPECT)
+        least = NEARLY * float(np.max(self.gains, initial=0.0, where=wrong))
+        strain = np.abs(self.pulls) / np.maximum(doubts, 1e-300)
+        return sorted(np.flatnonzero(wrong & (self.gains >= least)).tolist(), key=lambda place: strain[place])
 
     def doubt(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
         """What the uncertainty of each kept parameter adds to that of an estimate, in its unit; largest first.
@@ -74,13 +75,13 @@ class Influence(ComparedByFields):
 
 
 def uncertainty(value: float, entry: Entry | None) -> float:
-    """How well a kept value is known, as far as its source says; else a tenth of it.
+    """How well a kept value is known, as far as its source says; else a tenth of it, and half of it if it is assumed.
 
-    >>> uncertainty(20.0, Entry("catalogue", spread=0.3)), uncertainty(20.0, None)
-    (6.0, 2.0)
+    >>> uncertainty(20.0, Entry("catalogue", spread=0.3)), uncertainty(20.0, None), uncertainty(20.0, Entry("assumed"))
+    (6.0, 2.0, 10.0)
     """
     if entry is None or (entry.spread is None and entry.uncertainty is None):
-        return DOUBT * abs(value)
+        return (GUESSED if entry is not None and entry.assumed else DOUBT) * abs(value)
     return float(np.hypot((entry.spread or 0.0) * value, entry.uncertainty or 0.0))
 
 

@@ -10,10 +10,11 @@ from typing import Any, Literal
 
 import numpy as np
 
+from strainwave import arguments
 from strainwave._core import Gear
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
-from strainwave.gear_set import NOT_GIVEN, Entry, GearSet
+from strainwave.gear_set import Entry, GearSet
 from strainwave.identify.evidence import Doubt, Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop, at_input
 from strainwave.identify.explain import BETTER, allowed, causes, unexplained
@@ -24,7 +25,8 @@ from strainwave.identify.log import fit_log, free_parameters, prepared
 from strainwave.identify.measurement import Kind, read_measurement
 from strainwave.identify.plausible import doubts_of_loop, doubts_of_table
 from strainwave.identify.torsion import Candidate, Friction, Nothing, fit_loop, held_out_blocks
-from strainwave.identify.verdict import Verdict, estimated, judged, known, numbers, verdicts
+from strainwave.identify.verdict import MOST_TOLD, Verdict, estimated, judged, known, numbers, verdicts
+from strainwave.messages import shortened
 from strainwave.ratings import RatingCheck, check_ratings
 from strainwave.recording import Recording
 from strainwave.simulation import simulate
@@ -136,8 +138,8 @@ def twin(
     recordings = {kind: _recording(kind, measured) for kind, measured in given.items() if measured is not None}
     if not recordings:
         raise ValueError("a twin needs at least one measurement: a friction table, a torsion loop or a drive log")
-    if side not in (None, "input", "output"):
-        raise ValueError(f"side = {side!r} must be input or output")
+    if side is not None:
+        arguments.one_of("side", side, ("input", "output"))
     start = start if isinstance(start, GearSet) else GearSet.read(start)
     named = NAMES | {kind: Path(path).name for kind, path in given.items() if isinstance(path, str | Path)} | (sources or {})
     gear, evidence = start.gear, list[Evidence]()
@@ -161,7 +163,7 @@ def _recording(kind: Kind, given: Any) -> Recording:
     if isinstance(given, str | Path):
         return read_measurement(kind, given)
     if not isinstance(given, Recording):
-        raise TypeError(f"{kind} must be a Recording or the path of a file, not {given!r}")
+        raise TypeError(f"{kind} must be a Recording or the path of a file, not {shortened(given)}")
     return given
 
 
@@ -297,8 +299,8 @@ def _from_log(
     of_kept = Influence.none(len(found.fit.estimates)) if doubts else influence(found.fit)
     if doubts:
         doubts = [_with_cause(doubts[0][0], found.fit, recording, drive, free)]
-    elif (worst := of_kept.suspect(sources)) is not None:
-        remarks.append(_of_suspect(of_kept, worst))
+    elif wrong := of_kept.suspects(sources):
+        remarks.append(_of_suspects(of_kept, wrong))
     return Evidence(
         "log", source, recording, found.fit, found.fit.residuals[:, ~found.fit.training], found.error,
         ((name, float(found.error[0])),), of_kept, _shares(found.fit),
@@ -306,13 +308,14 @@ def _from_log(
     )  # fmt: skip
 
 
-def _of_suspect(of_kept: Influence, worst: int) -> str:
-    each = of_kept.kept[worst]
-    return (
-        f"the log speaks against {each.path} = {each.value:.4g} {each.unit}, which was kept: about "
-        f"{each.value + of_kept.pulls[worst]:.3g} {each.unit} would leave {100.0 * of_kept.gains[worst]:.0f} % less of the "
-        "residuals' power. Measure it, or free it"
-    )
+def _of_suspects(of_kept: Influence, wrong: Sequence[int]) -> str:
+    told = [
+        f"{each.path} = {each.value:.4g} {each.unit} (about {each.value + of_kept.pulls[place]:.3g} {each.unit} would leave "
+        f"{100.0 * of_kept.gains[place]:.0f} % less of the residuals' power)"
+        for place in wrong[:MOST_TOLD]
+        for each in [of_kept.kept[place]]
+    ]
+    return f"the log speaks against what was kept: {' or '.join(told)}. Measure them, or free one"
 
 
 def _unused(recording: Recording, used: Collection[str]) -> Iterator[str]:
@@ -415,7 +418,7 @@ def _compared(
 
     `kept` is what the parameters kept add to the uncertainty of the estimate.
     """
-    if entry.source.startswith("assumed") or entry.source == NOT_GIVEN:
+    if entry.assumed:
         return None
     few = student(SURE, estimate.freedom) / student(ONE_SIGMA, estimate.freedom) / CONTRADICTION
     doubt = np.linalg.norm([few * estimate.sigma, kept, (entry.spread or 0.0) * earlier, entry.uncertainty or 0.0])

@@ -161,11 +161,14 @@ def _leaning(evidence: Evidence, index: int, estimate: Estimate, sources: Mappin
 def _suspect(evidence: Evidence, index: int, estimate: Estimate, sources: Mapping[str, Entry]) -> str:
     """The kept parameter that the measurement speaks against, if the estimate would move far were it right."""
     influence, size = evidence.influence, 1.0 if ".phase[" in estimate.path else abs(estimate.value)
-    worst = influence.suspect(sources, evidence.prefix)
-    if worst is None or abs(influence.slopes[index, worst] * influence.pulls[worst]) < SWAYED * size:
+    moved = {
+        influence.kept[place].path: influence.slopes[index, place] * influence.pulls[place] / size
+        for place in influence.suspects(sources, evidence.prefix)
+    }
+    path = max(moved, key=lambda path: abs(moved[path]), default="")
+    if not path or abs(moved[path]) < SWAYED:
         return ""
-    moved = 100.0 * influence.slopes[index, worst] * influence.pulls[worst] / size
-    return f"it would move by {moved:+.2g} % were {influence.kept[worst].path} what {evidence.source} pulls it to"
+    return f"it would move by {100.0 * moved[path]:+.2g} % were {path} what {evidence.source} pulls it to"
 
 
 def _combination(evidence: Evidence, index: int) -> str:

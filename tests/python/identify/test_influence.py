@@ -9,6 +9,7 @@ from strainwave.gear_set import Entry
 from strainwave.identify.experiment import TorsionLoop
 from strainwave.identify.fit import fit
 from strainwave.identify.influence import Influence, influence, uncertainty
+from strainwave.parameters import Parameter
 
 ELEMENTS = sw.hysteresis.MaxwellSlip(stiffness=[8e3, 4e3], breakaway=[0.8, 1.2])
 GEAR = sw.Gear(stiffness=sw.stiffness.Cubic(a1=1.5e4, a3=6e9), hysteresis=ELEMENTS)
@@ -40,14 +41,25 @@ def test_a_wrong_kept_value_is_pulled_to_the_true_one() -> None:
     place = [each.path for each in found.kept].index("hysteresis.breakaway[1]")
     assert 1.6 + found.pulls[place] == pytest.approx(1.2, abs=0.1)
     assert found.gains[place] > 0.8
-    assert found.suspect({"hysteresis.breakaway[1]": Entry("guessed", uncertainty=0.1)}) is not None
-    assert found.suspect({each.path: Entry("guessed", spread=1.0) for each in found.kept}) is None
+    assert place in found.suspects({"hysteresis.breakaway[1]": Entry("guessed", uncertainty=0.1)})
+    assert found.suspects({each.path: Entry("guessed", spread=1.0) for each in found.kept}) == []
+
+
+def test_only_a_value_that_a_parameter_may_have_is_suspected_least_certain_first() -> None:
+    kept = tuple(
+        Parameter(n, name, "kg.m2", 1.0, 0.0, np.inf) for n, name in enumerate(("impossible", "sure", "unsure", "idle"))
+    )
+    found = Influence(kept, np.ones((1, 4)), np.ones(4), np.array([-1.5, -0.5, -0.6, -0.5]), np.array([0.9, 0.7, 0.6, 0.4]))
+    known = {
+        name: Entry("measured", uncertainty=sigma) for name, sigma in {"impossible": 0.1, "sure": 0.01, "unsure": 0.3}.items()
+    }
+    assert [kept[place].path for place in found.suspects(known)] == ["unsure", "sure"]
 
 
 def test_right_kept_values_are_suspected_of_nothing() -> None:
     found = influence(fit(kept(1.2), loop(), FREE))
-    assert found.suspect({}) is None
-    assert Influence.none(2).suspect({}) is None
+    assert found.suspects({}) == []
+    assert Influence.none(2).suspects({}) == []
     assert Influence.none(2).doubt(0, {}) == {}
 
 
@@ -60,6 +72,7 @@ def test_what_the_measurement_tells_of_a_kept_parameter_bounds_the_doubt() -> No
     assert exact == 0.0
 
 
-def test_of_a_kept_value_without_uncertainty_a_tenth_is_doubted() -> None:
+def test_of_a_kept_value_without_uncertainty_a_tenth_is_doubted_and_half_of_an_assumed_one() -> None:
     assert uncertainty(-5.0, None) == uncertainty(-5.0, Entry("somebody")) == 0.5
+    assert uncertainty(-5.0, Entry("assumed: a guess")) == 2.5
     assert uncertainty(5.0, Entry("catalogue", spread=0.3, uncertainty=2.0)) == pytest.approx(2.5)

@@ -45,7 +45,7 @@ def test_a_table_from_the_joint_is_asked_about_and_taken_as_said() -> None:
 
 
 def test_a_side_that_is_none_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^side = 'joint' must be input or output$"):
+    with pytest.raises(ValueError, match=r'^side = "joint" must be one of input, output$'):
         sw.twin(start(), friction=at_the_joint(), side="joint")  # type: ignore[arg-type]
 
 
