@@ -212,18 +212,6 @@ SHOWN: dict[str, dict[str, Any]] = {
         )
         for name in ("single", "max", "mean")
     },
-    "position_dependent": {
-        "": sw.friction.PositionDependent(
-            quadratic=1.5738e-6,
-            linear=-3.7901e-4,
-            constant=0.0720,
-            static_ratio=1.0388,
-            speed_factor=0.0004,
-            reference_speed=0.8,
-            domain_start=0.0,
-            domain_end=240.8,
-        )
-    },
     "load_dependent": {
         "": sw.friction.LoadDependent(
             driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.3

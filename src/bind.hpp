@@ -81,6 +81,15 @@ bool is_made(nb::handle value) {
     return nb::isinstance<T>(value) && nb::inst_ready(value);
 }
 
+/// Takes a value for a number: no truth value, no text, and no array of other values, of which a cast would make a number.
+inline bool to_number(nb::handle value, double& x) {
+    if (nb::isinstance<nb::bool_>(value) || nb::isinstance<nb::str>(value)) return false;
+    if (nb::hasattr(value, "mask")) return false;
+    if (nb::hasattr(value, "dtype") && !nb::cast<bool>(nb::str("fiu").attr("__contains__")(value.attr("dtype").attr("kind"))))
+        return false;
+    return nb::try_cast<double>(value, x);
+}
+
 /// Whether a number counts something.
 template <class T>
 constexpr bool is_whole(const Field& field) {
@@ -96,8 +105,7 @@ struct Reader {
     }
     double number(nb::handle value, const Field& field, const std::string& name) const {
         double x = 0.0;
-        if (nb::isinstance<nb::bool_>(value) || nb::isinstance<nb::str>(value) || !nb::try_cast<double>(value, x))
-            refuse_type(field, "a number", value);
+        if (!to_number(value, x)) refuse_type(field, "a number", value);
         if (!(x >= field.min && x <= field.max) || std::isinf(x))
             throw nb::value_error(
                 (owner + "." + name + " = " + with_unit(x, field.unit) + " must lie in " + limits(field)).c_str());
@@ -150,7 +158,7 @@ private:
     template <class T>
     T sequence(nb::handle value, const Field& field) const {
         T list{};
-        if (double alone = 0.0; is_sequence<T> && !nb::isinstance<nb::bool_>(value) && nb::try_cast<double>(value, alone)) {
+        if (double alone = 0.0; is_sequence<T> && to_number(value, alone)) {
             list[0] = number(value, field, field.name);
             if constexpr (is_sequence<T>) list.count = 1;
             return list;

@@ -1,5 +1,7 @@
 #include <nanobind/stl/function.h>
 
+#include <new>
+
 #include "instruction_set.hpp"
 #include "verbs.hpp"
 
@@ -339,6 +341,8 @@ void bind_drives(nb::module_& core) {
                                 .c_str());
         } catch (const StepsSpent& error) {
             PyErr_SetString(PyExc_FloatingPointError, text_of(error).c_str());
+        } catch (const std::bad_alloc&) {
+            PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this; take fewer samples at a time");
         }
     });
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");

@@ -68,8 +68,7 @@ public:
     double real(const char* name) const {
         const nb::object value = (*this)[name];
         double x = 0.0;
-        if (nb::isinstance<nb::bool_>(value) || nb::isinstance<nb::str>(value) || !nb::try_cast<double>(value, x))
-            refuse_type(name, "a number", value);
+        if (!to_number(value, x)) refuse_type(name, "a number", value);
         return x;
     }
     double number(const char* name) const {

@@ -321,8 +321,8 @@ class PositionDependent:
 
     with q the angle and v the speed of the place it acts on, s_1 = quadratic, s_2 = linear, s_3 = constant, a_k = cosine and
     b_k = sine, by their place k = 1, 2 ..., kappa = static_ratio, epsilon = speed_factor, v_c = reference_speed (at which
-    f_aver was measured), b = viscous. A level below zero counts as zero. Document P has s_1 = 1.5738e-6, s_2 = -3.7901e-4,
-    s_3 = 0.0720, kappa = 1.0388, epsilon = 0.0004 and v_c = 0.8, all SI, and prints no a_k and b_k.
+    f_aver was measured), b = viscous. A level below zero counts as zero. Document P prints no a_k and b_k; its other numbers
+    are those of the example, all SI.
 
     Valid for q from domain_start to domain_end. A parabola grows without bound: the one of document P has its minimum,
     0.0491812523669 N.m, at 120.412377685 rad, and is back at its start at twice that angle (E-P8). Beyond the domain,
@@ -334,9 +334,10 @@ class PositionDependent:
     and is left out (E-P9).
 
     >>> from strainwave.friction import PositionDependent
-    >>> law = PositionDependent(constant=0.5, cosine=[0.25], viscous=0.125, domain_start=0.0, domain_end=6.3)
-    >>> law.steady([2.0, -2.0])
-    array([ 1., -1.])
+    >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, static_ratio=1.0388,
+    ...                         speed_factor=0.0004, reference_speed=0.8, domain_start=0.0, domain_end=240.8)
+    >>> law.steady([0.8, -0.8])
+    array([ 0.072, -0.072])
 
     Parameters
     ----------
@@ -485,10 +486,12 @@ class LuGre:
     sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous, phi = damping_fading: the reciprocal of the
     speed v_d at which the bristle's damping has fallen to 1/e, 0 for a constant one.
 
-    Valid for one contact under constant load; leaves out load, position and temperature. G must be positive: a bristle
-    without reach at rest would lose all its torque in every reversal, in no time. Dissipates for every motion if
-    sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then
-    also necessary. A set that violates this is accepted, and ``check()`` warns with both sides.
+    Valid for one contact under constant load; leaves out load, position and temperature. At rest it holds elastically and
+    drifts: under a load that wavers below breakaway each wave moves the shaft a little further, without end. Where the
+    shaft must hold, use Coulomb or Stribeck. G must be positive: a bristle without reach at rest would lose all its
+    torque in every reversal, in no time. Dissipates for every motion if sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which
+    for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then also necessary. A set that violates this is
+    accepted, and ``check()`` warns with both sides.
 
     >>> from strainwave.friction import LuGre
     >>> law = LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, bristle_stiffness=50.0, bristle_damping=5e-5,

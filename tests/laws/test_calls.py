@@ -221,3 +221,21 @@ except MemoryError as error:
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert run.stderr == ""
     assert run.stdout == "there is no memory for 60000000 numbers, which take 480 MB; take fewer at a time\n"
+
+
+def test_too_little_memory_for_what_is_copied_is_told_too() -> None:
+    script = """
+import resource
+import numpy as np
+from strainwave import _core
+zeros = np.zeros(40_000_000)
+used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + 100_000_000,) * 2)
+try:
+    _core.Signal(zeros, zeros, zeros, np.empty(0))
+except MemoryError as error:
+    print(error)
+"""
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert run.stderr == ""
+    assert run.stdout == "there is not enough memory for this; take fewer samples at a time\n"

@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 import strainwave as sw
 from hypothesis import given
@@ -118,7 +119,7 @@ def test_not_a_number_is_refused(model: type, field: Field) -> None:
 
 
 @pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
-@pytest.mark.parametrize("value", [None, True, "1", 1j, object])
+@pytest.mark.parametrize("value", [None, True, "1", 1j, object, np.complex128(1j), np.ma.masked, np.array(1j), np.array(True)])
 def test_what_is_no_number_is_refused(model: type, field: Field, value: object) -> None:
     given = [value] if field["kind"] == "sequence" else value
     with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be a number, not "):

@@ -27,10 +27,12 @@ struct LuGre {
         sigma_0 = bristle_stiffness, sigma_1 = bristle_damping, sigma_2 = viscous, phi = damping_fading: the reciprocal of the
         speed v_d at which the bristle's damping has fallen to 1/e, 0 for a constant one.
 
-        Valid for one contact under constant load; leaves out load, position and temperature. G must be positive: a bristle
-        without reach at rest would lose all its torque in every reversal, in no time. Dissipates for every motion if
-        sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then
-        also necessary. A set that violates this is accepted, and ``check()`` warns with both sides.
+        Valid for one contact under constant load; leaves out load, position and temperature. At rest it holds elastically and
+        drifts: under a load that wavers below breakaway each wave moves the shaft a little further, without end. Where the
+        shaft must hold, use Coulomb or Stribeck. G must be positive: a bristle without reach at rest would lose all its
+        torque in every reversal, in no time. Dissipates for every motion if sigma_2 >= max_v sigma_1(v) (F_s/G(v) - 1), which
+        for a constant damping is sigma_2 >= sigma_1 (F_s - F_c)/F_c and then also necessary. A set that violates this is
+        accepted, and ``check()`` warns with both sides.
 
         >>> from strainwave.friction import LuGre
         >>> law = LuGre(coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, bristle_stiffness=50.0, bristle_damping=5e-5,

@@ -39,8 +39,8 @@ struct PositionDependent {
 
         with q the angle and v the speed of the place it acts on, s_1 = quadratic, s_2 = linear, s_3 = constant, a_k = cosine and
         b_k = sine, by their place k = 1, 2 ..., kappa = static_ratio, epsilon = speed_factor, v_c = reference_speed (at which
-        f_aver was measured), b = viscous. A level below zero counts as zero. Document P has s_1 = 1.5738e-6, s_2 = -3.7901e-4,
-        s_3 = 0.0720, kappa = 1.0388, epsilon = 0.0004 and v_c = 0.8, all SI, and prints no a_k and b_k.
+        f_aver was measured), b = viscous. A level below zero counts as zero. Document P prints no a_k and b_k; its other numbers
+        are those of the example, all SI.
 
         Valid for q from domain_start to domain_end. A parabola grows without bound: the one of document P has its minimum,
         0.0491812523669 N.m, at 120.412377685 rad, and is back at its start at twice that angle (E-P8). Beyond the domain,
@@ -52,9 +52,10 @@ struct PositionDependent {
         and is left out (E-P9).
 
         >>> from strainwave.friction import PositionDependent
-        >>> law = PositionDependent(constant=0.5, cosine=[0.25], viscous=0.125, domain_start=0.0, domain_end=6.3)
-        >>> law.steady([2.0, -2.0])
-        array([ 1., -1.]))";
+        >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, static_ratio=1.0388,
+        ...                         speed_factor=0.0004, reference_speed=0.8, domain_start=0.0, domain_end=240.8)
+        >>> law.steady([0.8, -0.8])
+        array([ 0.072, -0.072]))";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
