@@ -14,6 +14,7 @@ from strainwave.identify.experiment import ENCODERS, DriveLog, FrictionTable
 from strainwave.identify.fit import Fit
 from strainwave.kinematics import StrainWave
 from strainwave.recording import Recording
+from strainwave.units import convert
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,11 @@ LEFT_IN_LOOP = 0.1
 LEFT_IN_TORQUE = 0.3
 BETTER = 0.5  # of what was unexplained before: a cause that leaves more explains nothing
 RATIO = 0.03  # by which the ratio of two encoders must differ from the gear's to be another one
-PER_DEGREE, PER_RPM = np.pi / 180.0, np.pi / 30.0
+# What the header of a column may name wrongly, and what it may be.
+MISTAKEN = {
+    "rad": ("deg", "rev", "arcmin"), "deg": ("rad", "rev", "arcmin"), "rad/s": ("rpm", "deg/s"), "rpm": ("rad/s",),
+    "deg/s": ("rad/s",), "N.m": ("mN.m", "N.cm"), "mN.m": ("N.m",), "A": ("mA",), "V": ("mV",),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -112,13 +117,10 @@ def _likely(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
 def _units(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
     for name in recording.names:
         unit = recording.unit(name)
-        others = {"rad": {"deg": PER_DEGREE, "rev": 2.0 * np.pi}, "deg": {"rad": 1.0 / PER_DEGREE, "rev": 360.0}}
-        others |= {"rad/s": {"rpm": PER_RPM, "deg/s": PER_DEGREE}, "rpm": {"rad/s": 1.0 / PER_RPM}}
-        others |= {"deg/s": {"rad/s": 1.0 / PER_DEGREE}, "A": {"mA": 1e-3}, "V": {"mV": 1e-3}}
-        for other, factor in others.get(unit, {}).items():
+        for other in MISTAKEN.get(unit, ()):
             yield Cause(
                 f'"{name}" is in {other}, not in {unit}', f"state its unit, as in {name} [{other}]",
-                _scaled(recording, name, factor), drive,
+                _scaled(recording, name, convert(1.0, other, unit)), drive,
             )  # fmt: skip
 
 

@@ -207,7 +207,9 @@ def regression(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cutof
     position, torque, time = _checked(position, torque, time)
     step = float(time[-1] - time[0]) / (len(time) - 1)
     frequency, acceleration, noise, position_noise = _spectra(position, step)
-    cutoff = _cutoff(frequency, acceleration, noise, 1 / step) if cutoff is None else _allowed(cutoff, 1 / step)
+    if cutoff is None:
+        cutoff = _cutoff(frequency, acceleration, noise, 1 / step)
+    cutoff = arguments.number("cutoff", cutoff, "Hz", low=0.0, high=0.5 / step)  # half the sampling rate
     every = round(1 / (step * cutoff))  # the filter of `decimate` ends at 0.8 of its Nyquist frequency: 0.4 cut-off
 
     smooth = signal.sosfiltfilt(signal.butter(4, cutoff, fs=1 / step, output="sos"), position)
@@ -284,12 +286,6 @@ def _cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float) ->
     if edge == 0.0:
         raise ValueError(f"position: its noise exceeds {_NOISE_SHARE:g} of the acceleration's power at every frequency")
     return edge / _PASS_BAND
-
-
-def _allowed(cutoff: float, rate: float) -> float:
-    if not 0.0 < arguments.number("cutoff", cutoff) < rate / 2:
-        raise ValueError(f"cutoff = {cutoff:g} Hz must lie in (0, {rate / 2:g}) Hz, half the sampling rate")
-    return float(cutoff)
 
 
 def _near_rest(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:

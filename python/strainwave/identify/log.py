@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from operator import methodcaller
 from typing import Any
 
 import numpy as np
@@ -58,11 +60,11 @@ def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
     near = fit(drive, log.beginning(QUICK / 2 * log.dt), free).model if is_long else drive
     found = fit(near, log, free, training=training)
     for _ in range(ROUNDS):
-        law, wanted = innermost(found.gear.friction_input), _breakaway(found.gear, drive.gear)
-        if wanted is None or abs(law.breakaway - wanted) <= FOLLOWED * wanted:
+        law, wanted = found.gear.friction_input, _breakaway(found.gear, drive.gear)
+        if wanted is None or abs(innermost(law).breakaway - wanted) <= FOLLOWED * wanted:
             break
-        gear = found.gear.replace(friction_input=_with_breakaway(found.gear.friction_input, wanted))
-        found = fit(found.model.replace(gear=gear), log, free, training=training)
+        follows = _changed(law, methodcaller("replace", breakaway=wanted))
+        found = fit(found.model.replace(gear=found.gear.replace(friction_input=follows)), log, free, training=training)
     found = _within_a_turn(found)
     return LogFit(found, found.rms(held_out=True))
 
@@ -84,6 +86,11 @@ def innermost(law: Any) -> Any:
     return innermost(law.law) if hasattr(law, "law") else law
 
 
+def _changed(law: Any, change: Callable[[Any], Any]) -> Any:
+    """The law with its innermost one changed."""
+    return law.replace(law=_changed(law.law, change)) if hasattr(law, "law") else change(law)
+
+
 def _breakaway(gear: Gear, start: Gear) -> float | None:
     """What breakaway follows from Coulomb's torque: its ratio of before in Coulomb's law, no less in others; None without."""
     law, before = innermost(gear.friction_input), innermost(start.friction_input)
@@ -92,13 +99,6 @@ def _breakaway(gear: Gear, start: Gear) -> float | None:
     if isinstance(law, friction.Coulomb) and before.coulomb > 0.0:
         return float(law.coulomb * max(before.breakaway / before.coulomb, 1.0))
     return float(max(law.breakaway, law.coulomb))
-
-
-def _with_breakaway(law: Any, breakaway: float) -> Any:
-    """A law of friction that breaks away at this torque, within others too."""
-    if hasattr(law, "law"):
-        return law.replace(law=_with_breakaway(law.law, breakaway))
-    return law.replace(breakaway=breakaway)
 
 
 def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool, torsion_known: bool) -> list[str]:
@@ -118,7 +118,7 @@ def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool
 
 def prepared(log: DriveLog, drive: PositionDrive, *, friction_known: bool) -> PositionDrive:
     """The drive with a gear whose laws have the parameters that the log can tell, started near the measurement."""
-    gear = drive.gear.replace(friction_input=_with_coulomb(drive.gear.friction_input))
+    gear = drive.gear.replace(friction_input=_changed(drive.gear.friction_input, _with_coulomb))
     if {"input_angle", "output_angle"} <= set(log.channels):
         gear = gear.replace(kinematic_error=_harmonics(log, gear.kinematics.ratio))
     drive = drive.replace(gear=gear)
@@ -132,23 +132,18 @@ def _set_in_motion(log: DriveLog, drive: PositionDrive) -> PositionDrive:
     for _ in range(HALVINGS):
         if not log.stands_still(log.predict(tried, [], zeros)[0]):
             return tried
-        tried = tried.replace(gear=tried.gear.replace(friction_input=_with_dry(tried.gear.friction_input, 0.5)))
+        tried = tried.replace(gear=tried.gear.replace(friction_input=_changed(tried.gear.friction_input, _halved)))
     return drive
 
 
-def _with_dry(law: Any, factor: float) -> Any:
-    """A law of friction with its dry torque multiplied, within others too."""
-    if hasattr(law, "law"):
-        return law.replace(law=_with_dry(law.law, factor))
-    dry = {name: factor * getattr(law, name) for name in ("coulomb", "breakaway") if hasattr(law, name)}
-    return law.replace(**dry)
+def _halved(law: Any) -> Any:
+    """A law of friction with half its dry torque."""
+    return law.replace(**{name: 0.5 * getattr(law, name) for name in ("coulomb", "breakaway") if hasattr(law, name)})
 
 
 def _with_coulomb(law: Any) -> Any:
-    """A law of friction with Coulomb's in place of a purely viscous one, within others too."""
-    if isinstance(law, friction.Viscous):
-        return friction.Coulomb(coulomb=1e-3, breakaway=1e-3, viscous=law.viscous)
-    return law.replace(law=_with_coulomb(law.law)) if hasattr(law, "law") else law
+    """Coulomb's law in place of a purely viscous one."""
+    return friction.Coulomb(coulomb=1e-3, viscous=law.viscous) if isinstance(law, friction.Viscous) else law
 
 
 def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:

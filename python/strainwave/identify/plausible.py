@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave._core import Gear
 from strainwave.identify.experiment import FrictionTable, TorsionLoop
+from strainwave.identify.explain import MISTAKEN
 from strainwave.identify.fit import Fit
 from strainwave.recording import Recording
+from strainwave.units import convert
 
 Array = NDArray[np.float64]
 
@@ -19,10 +21,6 @@ NEAR = 4.0  # a mistake explains a factor that it comes as near to as this
 MOVING = 0.5  # of what a table leaves unexplained: if acceleration explains more, the table is a log
 FEWEST = 30  # rows of a log; tables of steady friction are shorter, or in no order that acceleration could follow
 ELASTIC = 0.2  # of the torque at the ends of a loop: a gear carries more of it by its spring
-
-# Units that a header may name wrongly: the one it names, the one that it may be, and by how much a result is then too large.
-UNITS_OF_TORQUE = (("N.m", "mN.m", 1e3), ("mN.m", "N.m", 1e-3), ("N.m", "N.cm", 1e2))
-UNITS_OF_ANGLE = (("rad", "deg", np.pi / 180.0), ("rad", "arcmin", np.pi / 10_800.0), ("deg", "arcmin", 1.0 / 60.0))
 
 
 def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
@@ -41,7 +39,7 @@ def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[t
         return
     factor, ratio = measured / known, abs(start.kinematics.ratio)
     at_joint = measured / ratio / start.friction_input.steady(speed * ratio)
-    mistake, rest = _nearest(factor, _wrong_units("torque", recording.unit("torque"), UNITS_OF_TORQUE))
+    mistake, rest = _nearest(factor, _wrong_units("torque", recording.unit("torque")))
     what = (
         f"it gives {measured:.3g} N·m at {speed:.3g} rad/s of the input, {_times(factor)} what the gear it starts from has "
         f"({known:.3g} N·m)"
@@ -82,8 +80,8 @@ def doubts_of_loop(recording: Recording, found: Fit, start: Gear) -> Iterator[tu
             "input_angle and input_torque were measured at the output (name them twist and torque)": squared,
         }
         torque, angle = ("torque", "twist") if loop.input_ratio is None else ("input_torque", "input_angle")
-        mistakes |= _wrong_units("torque", recording.unit(torque), UNITS_OF_TORQUE)
-        mistakes |= _wrong_units("angle", recording.unit(angle), UNITS_OF_ANGLE)
+        mistakes |= _wrong_units("torque", recording.unit(torque))
+        mistakes |= {what: 1.0 / size for what, size in _wrong_units("angle", recording.unit(angle)).items()}
         yield (
             f"it gives {measured:.3g} N·m/rad, {_times(factor)} what the gear it starts from has ({known:.3g} N·m/rad)",
             f"{_nearest(factor, mistakes)[0]}see whether sides and units are right; if they are, --accept",
@@ -102,9 +100,9 @@ def _is_accelerating(recording: Recording, found: Fit) -> bool:
     return bool(np.var(rest) < (1.0 - MOVING) * np.var(residual)) and bool(np.any(np.diff(np.sign(change))))
 
 
-def _wrong_units(quantity: str, unit: str, known: Sequence[tuple[str, str, float]]) -> dict[str, float]:
-    """Mistakes in the unit of a quantity, and by how much they make a result too large."""
-    return {f"the {quantity} is in {other}, not in {named}": size for named, other, size in known if named == unit}
+def _wrong_units(quantity: str, unit: str) -> dict[str, float]:
+    """Mistakes in the unit of a quantity, and by how much they make it too large."""
+    return {f"the {quantity} is in {other}, not in {unit}": convert(1.0, unit, other) for other in MISTAKEN.get(unit, ())}
 
 
 def _nearest(factor: float, mistakes: dict[str, float]) -> tuple[str, float]:

@@ -186,7 +186,7 @@ def test_columns_that_are_no_experiment_are_refused() -> None:
         ({"channels": "torque"}, TypeError, r"^channels must be a list of names, not 'torque'$"),
         ({"dt": "1 ms"}, TypeError, r"^dt must be a number, not '1 ms'$"),
         ({"training": [0, 1, 2]}, TypeError, r"^training must hold True or False for each sample, not int64$"),
-        ({"loss": "cauchy"}, ValueError, r"^loss = 'cauchy' must be linear or soft_l1$"),
+        ({"loss": "cauchy"}, ValueError, r'^loss = "cauchy" must be one of linear, soft_l1$'),
         (
             {"model": gear(), "recording": friction_table(), "free": []},
             ValueError,
