@@ -205,8 +205,9 @@ def _step(period: float, dt: float) -> float:
 def _change(values: Array, before: Array) -> float:
     """The largest difference as a share of the swing; of what hardly swings, of a millionth of its size."""
     level = _levelled(values)
-    size = max(0.5 * float(np.ptp(level)), 1e-6 * float(np.abs(values).max()), np.finfo(float).tiny)
-    return float(np.abs(level - _levelled(before)).max()) / size
+    size = np.float64(max(0.5 * np.ptp(level), 1e-6 * np.abs(values).max(), np.finfo(float).tiny))
+    with np.errstate(over="ignore"):  # of a swing of nearly nothing the share is infinite
+        return float(np.abs(level - _levelled(before)).max() / size)
 
 
 def _levelled(values: Array) -> Array:

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core, arguments
 from strainwave.memory import check_instants, room_for
+from strainwave.messages import shortened
 from strainwave.recording import Recording
 
 Array = NDArray[np.float64]
@@ -85,6 +86,8 @@ class Scenario:
                 raise ValueError(f"scenario.{name} = {values[~np.isfinite(values)][0]} must be finite")
         if not (self.start.size and self.start[0] == 0.0 and (np.diff(self.start, append=self.duration) > 0.0).all()):
             raise ValueError(f"scenario.start must increase from 0 s and stay below {self.duration} s")
+        if not (isinstance(self.waves, tuple) and all(isinstance(wave, Wave) for wave in self.waves)):
+            raise TypeError(f"scenario.waves must be a tuple of waves, not {shortened(self.waves)}")
         for wave in self.waves:
             for name, value in vars(wave).items():
                 arguments.number(f"wave.{name}", value)

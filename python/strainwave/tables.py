@@ -56,7 +56,7 @@ def labels(path: str | Path) -> Sequence[Label]:
 
     try:
         return [parquet_label(field) for field in read_schema(path)]
-    except (OSError, pyarrow.ArrowException, UnicodeDecodeError) as error:
+    except (OSError, pyarrow.ArrowException, UnicodeError) as error:
         raise ValueError(unreadable(path, error)) from None
 
 
@@ -74,12 +74,12 @@ def read_parquet(path: str | Path, columns: Mapping[str, str] | None, units: Map
 
     file = one_line(str(path))
     try:
-        with ParquetFile(path, page_checksum_verification=True) as opened:
+        with ParquetFile(Path(path), page_checksum_verification=True) as opened:
             schema = opened.schema_arrow
             sources = sources_of(file, [parquet_label(field) for field in schema], columns, units)
             table = opened.read(columns=[schema.field(source.position).name for source in sources])
             title = (schema.metadata or {}).get(b"title", b"").decode()
-    except (OSError, pyarrow.ArrowException, UnicodeDecodeError) as error:
+    except (OSError, pyarrow.ArrowException, UnicodeError) as error:
         raise ValueError(unreadable(path, error)) from None
     numbers = {source.name: parquet_numbers(file, table, schema.field(source.position)) for source in sources}
     return _table(sources, numbers, title, "row {}".format)
@@ -221,7 +221,7 @@ def open_csv(path: str | Path) -> CsvTable:
     file = one_line(str(path))
     try:
         data = Path(path).read_bytes()
-    except (OSError, UnicodeEncodeError) as error:
+    except (OSError, UnicodeError) as error:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
     title = re.match(TITLE.encode() + rb"([^\n]*)", data)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import arguments
 from strainwave.messages import quoted, shortened
 
 if TYPE_CHECKING:
@@ -89,6 +90,7 @@ def convert(values: Values, unit: str, to: str) -> Values:
     Raises:
         ValueError: a unit is not known, the two measure different things, or a value is too large a number in `to`.
             Angles are not plain numbers.
+        TypeError: the values are not numbers
 
     >>> convert(30.0, "rpm", "rad/s")
     3.141592653589793
@@ -100,6 +102,7 @@ def convert(values: Values, unit: str, to: str) -> Values:
     """
     import pint
 
+    arguments.numbers("values", values)
     source, target = _parse(unit), _parse(to)
     if source == target:
         return values

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+import warnings
 from math import pi, sqrt
 
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.response import _change
 
 from tests.geared import RATIO, K, geared
 from tests.reference_drive import DRIVE
@@ -116,6 +118,12 @@ def test_what_does_not_become_periodic_says_so() -> None:
     )
     with pytest.raises(RuntimeError, match=r"at 3 Hz the motion is not periodic after 20 periods: .* tolerance = 1e-06"):
         sw.frequency_response(ringing, 3.0, 1.0, input="load_torque", most_periods=20)
+
+
+def test_a_share_of_a_swing_of_nothing_is_infinite_in_silence() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert _change(np.zeros(3), np.array([0.0, 10.0, 0.0])) == np.inf
 
 
 def test_what_makes_no_sense_is_refused() -> None:

@@ -7,6 +7,7 @@ import pickle
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -321,6 +322,8 @@ def test_what_is_no_signal_is_refused(make: Callable[[], object], message: str) 
     [
         (lambda: sine("1", 1.0, 1.0), "sine.amplitude must be a number, not '1'"),  # type: ignore[arg-type]
         (lambda: step(1.0, None), "step.duration must be a number, not None"),  # type: ignore[arg-type]
+        (lambda: replace(step(1.0, 1.0), waves=[3]), "scenario.waves must be a tuple of waves, not [3]"),
+        (lambda: replace(step(1.0, 1.0), waves=(3,)), "scenario.waves must be a tuple of waves, not (3,)"),
         (lambda: step(1.0, 1.0) - [1.0], "unsupported operand type(s) for -: 'Scenario' and 'list'"),  # type: ignore[operator]
         (lambda: step(1.0, 1.0) + 1.0, "unsupported operand type(s) for +: 'Scenario' and 'float'"),  # type: ignore[operator]
         (lambda: np.ones(2) * step(1.0, 1.0), "unsupported operand type(s) for *: 'numpy.ndarray' and 'Scenario'"),  # type: ignore[operator]

@@ -5,8 +5,10 @@ from __future__ import annotations
 import csv
 import re
 import time
+from collections.abc import Callable
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -326,6 +328,20 @@ def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
 
 
 # Parquet, damaged too
+
+
+@pytest.mark.parametrize("read", [Recording.from_csv, Recording.from_parquet, Recording.header, Recording.read])
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_a_name_that_no_file_can_have_is_refused_in_one_line(read: Callable[[Any], object], suffix: str) -> None:
+    with pytest.raises(ValueError, match=r"^\S+ cannot be read: [^\n]*surrogates not allowed$"):
+        read(f"\ud800.{suffix}")
+
+
+@pytest.mark.parametrize("read", [Recording.from_csv, Recording.from_parquet, Recording.header, Recording.read])
+def test_what_is_no_path_is_refused_in_one_line(read: Callable[[Any], object], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(TypeError, match=r"^[^\n]*not (a|')?Recording'?$"):
+        read(Recording({"x": [1.0]}, {"x": "1"}))
+    assert capsys.readouterr() == ("", "")
 
 
 def write_parquet(path: Path, **columns: object) -> None:

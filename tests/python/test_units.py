@@ -162,6 +162,12 @@ def test_a_unit_that_is_not_a_text_is_refused(unit: object) -> None:
         check(unit)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(("values", "kind"), [(np.array(["a"]), "<U1"), (len, "object"), (True, "bool"), ("3", "<U1")])
+def test_what_is_no_number_is_refused(values: object, kind: str) -> None:
+    with pytest.raises(TypeError, match=exactly(f"values must hold numbers, not {kind}")):
+        convert(values, "s", "min")  # type: ignore[type-var]
+
+
 def test_a_value_too_large_for_the_other_unit_is_refused() -> None:
     with pytest.raises(ValueError, match=exactly("1e+308 km is too large a number in m")):
         convert(np.array([1.0, 1e308]), "km", "m")

@@ -133,8 +133,8 @@ def rigid_drive(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cuto
 
     Raises:
         ValueError: arrays that are not finite, of unequal length or too short; time that does not rise uniformly; a
-            cut-off outside (0, half the sampling rate); a position whose noise hides the motion; motion in one
-            direction only, which leaves `coulomb` and `offset` one inseparable constant.
+            cut-off with no period within the record, or above half the sampling rate; a position whose noise hides the
+            motion; motion in one direction only, which leaves `coulomb` and `offset` one inseparable constant.
 
     Valid for a drive that is rigid in the pass band, with friction that depends on speed alone. What the four terms
     miss (position- or load-dependent friction, Stribeck effect) widens the covariance but can also bias the parameters.
@@ -209,7 +209,8 @@ def regression(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cutof
     frequency, acceleration, noise, position_noise = _spectra(position, step)
     if cutoff is None:
         cutoff = _cutoff(frequency, acceleration, noise, 1 / step)
-    cutoff = arguments.number("cutoff", cutoff, "Hz", low=0.0, high=0.5 / step)  # half the sampling rate
+    # from one period within the record to half the sampling rate
+    cutoff = arguments.number("cutoff", cutoff, "Hz", low=1.0 / float(time[-1] - time[0]), high=0.5 / step)
     every = round(1 / (step * cutoff))  # the filter of `decimate` ends at 0.8 of its Nyquist frequency: 0.4 cut-off
 
     smooth = signal.sosfiltfilt(signal.butter(4, cutoff, fs=1 / step, output="sos"), position)

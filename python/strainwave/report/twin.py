@@ -16,8 +16,9 @@ from strainwave.gear_set import Entry, GearSet
 from strainwave.identify.branches import SAMPLES
 from strainwave.identify.evidence import Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
+from strainwave.identify.fit import Fit
 from strainwave.identify.twin import Contradiction, Twin
-from strainwave.identify.verdict import State, Verdict
+from strainwave.identify.verdict import State, Verdict, estimated, numbers
 from strainwave.report import figures
 from strainwave.report.experiment import Experiment
 from strainwave.report.page import render
@@ -124,17 +125,6 @@ def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: 
 
 def _measurement(twin: Twin, evidence: Evidence) -> dict[str, Any]:
     experiment = evidence.fit.experiment
-    free = len(evidence.fit.estimates) - len(experiment.nuisances)
-    verdicts = {verdict.path: verdict for verdict in twin.verdicts}
-    rows = []
-    for position, estimate in enumerate(evidence.fit.estimates):
-        path = estimate.path if estimate.path.startswith("gear.") else f"gear.{estimate.path}"
-        value, of = uncertain(estimate.value, estimate.sigma), unit(estimate.unit)
-        if position < free:
-            start, name = _start(verdicts[path]), _name(twin.gear_set, path)
-            rows.append(Parameter(path, name, of, value, start, verdicts[path].state, ""))
-        else:
-            rows.append(Parameter("", estimate.path.replace("_", " "), of, value, "", "of the measurement", ""))
     return {
         "title": _title(evidence),
         "evidence": evidence,
@@ -146,10 +136,26 @@ def _measurement(twin: Twin, evidence: Evidence) -> dict[str, Any]:
                 experiment.channels, experiment.units, evidence.error, experiment.measured, strict=True
             )
         ],
-        "estimates": rows,
+        "estimates": list(_estimates(twin, evidence)),
         "candidates": [(name, quantity(error, experiment.units[0])) for name, error in evidence.candidates],
         "plates": list(_plates(evidence)),
     }
+
+
+def _estimates(twin: Twin, evidence: Evidence) -> Iterator[Parameter]:
+    """What was fitted to a measurement; a verdict is that of the last measurement that a parameter was fitted to."""
+    verdicts, last, before = {v.path: v for v in twin.verdicts}, estimated(twin.evidence), numbers(twin.start.gear)
+    free = len(evidence.fit.estimates) - len(evidence.fit.experiment.nuisances)
+    for position, estimate in enumerate(evidence.fit.estimates):
+        path, value, of = evidence.path(estimate), uncertain(estimate.value, estimate.sigma), unit(estimate.unit)
+        if position >= free:
+            yield Parameter("", estimate.path.replace("_", " "), of, value, "", "of the measurement", "")
+        elif path in verdicts and last[path][0] is evidence:
+            start = _start(verdicts[path])
+            yield Parameter(path, _name(evidence.fit, path), of, value, start, verdicts[path].state, "")
+        else:
+            start = number(before[path][0]) if path in before else ""
+            yield Parameter(path, _name(evidence.fit, path), of, value, start, "replaced by a later measurement", "")
 
 
 def _title(evidence: Evidence) -> str:
@@ -312,9 +318,9 @@ def _split(path: str) -> tuple[str, str, int | None]:
     return part, name, int(place) if place else None
 
 
-def _member(gear_set: GearSet, path: str) -> dict[str, Any]:
+def _member(owner: GearSet | Fit, path: str) -> dict[str, Any]:
     part, name, _ = _split(path)
-    found: dict[str, Any] = next(m for m in attrgetter(part)(gear_set).fields if m["name"] == name)
+    found: dict[str, Any] = next(m for m in attrgetter(part)(owner).fields if m["name"] == name)
     return found
 
 
@@ -324,10 +330,10 @@ def _value(gear_set: GearSet, path: str) -> float:
     return float(value if place is None else value[place])
 
 
-def _name(gear_set: GearSet, path: str) -> str:
+def _name(owner: GearSet | Fit, path: str) -> str:
     """What a parameter is, in words."""
     place = _split(path)[2]
-    words: str = _member(gear_set, path)["doc"]
+    words: str = _member(owner, path)["doc"]
     return words if place is None else f"{words}, no. {place + 1}"
 
 

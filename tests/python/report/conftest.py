@@ -41,6 +41,14 @@ def from_log(start: GearSet) -> sw.Twin:
 
 
 @pytest.fixture(scope="module")
+def from_log_and_loop(start: GearSet) -> sw.Twin:
+    """A log fitted before the loop, whose friction it tells; the loop then gives a spring of another kind."""
+    full = with_drive(start)
+    friction = start.gear.friction_input.coulomb
+    return sw.twin(full, log=drive_log(full), torsion=input_loop(start, friction))
+
+
+@pytest.fixture(scope="module")
 def contradicted(start: GearSet) -> sw.Twin:
     """A set whose friction was measured before, and now is another."""
     earlier = Entry("test report 7 <of 2019>", uncertainty=1e-3)
@@ -61,7 +69,7 @@ def complete(start: GearSet) -> sw.Twin:
     return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
 
 
-EACH = ["from_friction", "from_torsion", "from_input", "from_log", "contradicted", "complete"]
+EACH = ["from_friction", "from_torsion", "from_input", "from_log", "from_log_and_loop", "contradicted", "complete"]
 
 
 @pytest.fixture(scope="module", params=EACH)

@@ -109,6 +109,17 @@ def test_every_channel_of_a_log_has_its_error_and_its_figure(from_log: sw.Twin) 
     assert len(section(html, "log").find("figure")) == 3
 
 
+def test_a_parameter_that_a_later_measurement_replaces_says_so(from_log_and_loop: sw.Twin) -> None:
+    rows = {
+        path.text: row.find("td", **{"data-label": "Verdict"})[0].text
+        for row in section(twin_report(from_log_and_loop), "log").find("tr")
+        for path in row.find("code")
+    }
+    assert "stiffness.k" in {estimate.path for estimate in from_log_and_loop.evidence[1].fit.estimates}
+    assert rows["gear.stiffness.k1"] == "replaced by a later measurement"
+    assert "replaced by a later measurement" not in (rows["gear.friction_input.coulomb"], rows["gear.kinematic_error.phase[0]"])
+
+
 def test_a_contradiction_shows_both_values_and_both_sources_and_no_average(contradicted: sw.Twin) -> None:
     html = twin_report(contradicted)
     assert {found.path for found in contradicted.contradictions} == {"gear.friction_input.coulomb"}

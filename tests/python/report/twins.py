@@ -29,11 +29,11 @@ def torsion_loop() -> sw.Recording:
     return sw.Recording({"twist": path, "torque": torque}, {"twist": "rad", "torque": "N.m"})
 
 
-def input_loop(start: GearSet) -> sw.Recording:
+def input_loop(start: GearSet, friction: float = 0.05) -> sw.Recording:
     """The same gear, measured at the input with the output locked."""
     loop, ratio = torsion_loop(), start.gear.kinematics.ratio
     angle = ratio * loop["twist"]
-    torque = loop["torque"] / ratio + 0.05 * np.sign(np.gradient(angle))
+    torque = loop["torque"] / ratio + friction * np.sign(np.gradient(angle))
     return sw.Recording({"input_angle": angle, "input_torque": torque}, {"input_angle": "rad", "input_torque": "N.m"})
 
 
