@@ -84,7 +84,7 @@ class Quantity(Entry):
 
     def to(self, unit: str) -> Quantity:
         """The same in another unit; `ValueError` where the units do not agree."""
-        if unit == self.unit:
+        if arguments.text("unit", unit) == self.unit:
             return self
         uncertainty = self.uncertainty
         if uncertainty is not None:  # a difference: the zeros of the units do not count
@@ -222,6 +222,8 @@ class GearSet:
         """
         from strainwave import gear_file
 
+        if sources is not None:
+            arguments.mapping("sources", sources, '{"gear.damping": Entry("assumed")}')
         whole = model.model if isinstance(model, Fitted) else model
         models = _models(whole)
         _drive(models)  # refuses what is no gear
@@ -484,16 +486,13 @@ def _drive(models: Mapping[str, Any]) -> PositionDrive:
 
 def _check_texts(name: str, maker: str, note: str) -> None:
     _check_line("name", name)
-    if maker != "":
+    if arguments.text("maker", maker):
         _check_line("maker", maker)
-    if not isinstance(note, str):
-        raise TypeError(f"note must be a text, not {shortened(note)}")
+    arguments.text("note", note)
 
 
 def _check_line(name: str, text: str) -> None:
-    if not isinstance(text, str):
-        raise TypeError(f"{name} must be a text, not {shortened(text)}")
-    if not text.strip() or not text.isprintable():
+    if not arguments.text(name, text).strip() or not text.isprintable():
         raise ValueError(f"{name} = {shortened(text)} must be one line of text")
 
 

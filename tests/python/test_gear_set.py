@@ -125,6 +125,7 @@ def test_a_source_may_be_named_for_a_number_a_sequence_or_a_part_and_the_longer_
         ),
         ({"gear": "x"}, TypeError, "gear must have a strainwave.gear_set.Entry, not 'x'"),
         (3, TypeError, 'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not 3'),
+        (np.zeros(2), TypeError, 'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not array([0., 0.])'),
     ],
 )
 def test_a_source_that_fits_nothing_is_refused(sources: Any, error: type[Exception], message: str | None) -> None:
@@ -224,6 +225,12 @@ def test_a_set_is_saved_under_its_own_name(tmp_path: Path) -> None:
             'unit "N.n" is not known; write it like N.m, rad/s, deg',
         ),
         (lambda: GearSet.read("hfuc-25-100").replace(maker=3), TypeError, "maker must be a text, not 3"),
+        (
+            lambda: GearSet.read("hfuc-25-100").replace(maker=np.zeros(2)),
+            TypeError,
+            "maker must be a text, not array([0., 0.])",
+        ),
+        (lambda: Quantity("x", value=1.0, unit="N.m").to(np.zeros(2)), TypeError, "unit must be a text, not array([0., 0.])"),
         (lambda: GearSet.read("hfuc-25-100").replace(maker="a\nb"), ValueError, r"maker = 'a\nb' must be one line of text"),
         (lambda: GearSet.read("hfuc-25-100").replace(note=3), TypeError, "note must be a text, not 3"),
         (

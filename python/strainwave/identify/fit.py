@@ -158,6 +158,7 @@ def fit(
         TypeError: an argument is not of its kind
         ValueError: an unknown path, too few samples, a recording without the columns needed, a model that is not valid over
             the measurement from the start
+        FloatingPointError: at the start the model diverges, or its derivatives grow beyond all numbers
 
     Warns:
         RuntimeWarning: the bristles of the drive found are too stiff for `dt`
@@ -289,7 +290,13 @@ class _Problem:
             self.evaluations += 1
             numbers = [place.number for place in self.places]
             nuisances = x[len(self.places) :]
-            self._last = key, self.experiment.predict(self.model_with(x), numbers, nuisances)
+            predicted, slopes = self.experiment.predict(self.model_with(x), numbers, nuisances)
+            if not (np.isfinite(predicted).all() and np.isfinite(slopes).all()):
+                raise FloatingPointError(
+                    "what the model predicts, or its derivatives, grow beyond all numbers: look whether units and sides of the "
+                    "measurement are right, and the numbers of the gear to start from"
+                )
+            self._last = key, (predicted, slopes)
         return self._last[1]
 
     def solve(self, start: Array, weights: Array, loss: Literal["linear", "soft_l1"], tolerance: float) -> Array:

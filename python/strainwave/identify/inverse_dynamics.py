@@ -30,6 +30,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.messages import shortened
 from strainwave.recording import Recording, check_recording
 
 PARAMETERS = ("inertia", "viscous", "coulomb", "offset")
@@ -191,7 +192,9 @@ def rigid_drive_of(
         ValueError: as `rigid_drive`; no such column; a unit that does not convert
     """
     check_recording("recording", recording)
-    of_position, of_torque = arguments.names("units", units)
+    if len(given := arguments.names("units", units)) != 2:
+        raise ValueError(f"units must be two, of position and torque, not {shortened(units)}")
+    of_position, of_torque = given
     q, tau = recording.values(position, of_position), recording.values(torque, of_torque)
     return rigid_drive(q, tau, recording.time, cutoff=cutoff)
 

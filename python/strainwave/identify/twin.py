@@ -126,6 +126,7 @@ def twin(
     Raises:
         TypeError: a measurement is none
         ValueError: no measurement, or one that cannot be used; says which and why
+        FloatingPointError: as `sw.fit`
 
     >>> import numpy as np, strainwave as sw
     >>> speed = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0])

@@ -200,6 +200,16 @@ def test_what_makes_no_sense_is_refused(given: dict[str, Any], error: type[Excep
         sw.fit(**arguments | given)
 
 
+def test_derivatives_beyond_all_numbers_are_told_in_words() -> None:
+    class Endless(TorsionLoop):
+        def predict(self, *given: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+            predicted, slopes = super().predict(*given)
+            return predicted, np.full_like(slopes, np.nan)
+
+    with pytest.raises(FloatingPointError, match=r"^what the model predicts, or its derivatives, grow beyond all numbers"):
+        fit(scaled(1.0), Endless(near_the_bound().twist, near_the_bound().torque), ["stiffness.flexspline_stiffness"])
+
+
 def test_fewer_samples_than_unknowns_are_refused() -> None:
     with pytest.raises(ValueError, match="cannot determine"):
         fit(gear(), friction_table(), FREE, training=np.arange(len(SPEED)) < 2)

@@ -295,6 +295,8 @@ def test_recording_is_converted_to_si() -> None:
     assert drive.parameters == pytest.approx(rigid_drive(position, torque, time).parameters, rel=1e-9)
     with pytest.raises(ValueError, match=r'cannot convert "mN\.m" to "N"'):
         rigid_drive_of(log, position="motor", torque="current_torque", units=("rad", "N"))
+    with pytest.raises(ValueError, match=r"^units must be two, of position and torque, not \['rad'\]$"):
+        rigid_drive_of(log, position="motor", torque="current_torque", units=["rad"])  # type: ignore[arg-type]
 
 
 # --- refusals
