@@ -257,9 +257,11 @@ class Recording:
 
         Raises:
             ValueError: a column is not there, nothing is left to draw, or a value lies beyond 1e300.
+            TypeError: a name is no text.
         """
         from matplotlib.figure import Figure
 
+        arguments.text("against", against)
         groups: dict[str, list[str]] = {}
         drawn = [name for name in self.names if name != against] if names is None else arguments.names("names", names)
         for name in drawn:

@@ -90,9 +90,8 @@ def check_round_trip(recording: sw.Recording, folder: Path) -> None:
 
 def check_against_csv(recording: sw.Recording, data: bytes) -> None:
     """Each number is what Python's own reader finds at its place."""
-    lines = [
-        line for line in re.findall(r"[^\r\n]+[\r\n]*", data.decode("utf-8-sig")) if line.strip(" \r\n") and line[0] != "#"
-    ]
+    ended = re.findall(r"[^\r\n]+(?:\r\n|\r|\n)?", data.decode("utf-8-sig"))
+    lines = [line for line in ended if line.strip(" \r\n") and line[0] != "#"]
     delimiter = next(mark for mark in "\t;," if mark in lines[0] or mark == ",")
     _, *rows = csv.reader(io.StringIO("".join(lines), newline=""), delimiter=delimiter, strict=True)
     assert len(rows) == len(recording), f"{len(recording)} rows, where Python's csv finds {len(rows)}"

@@ -238,6 +238,7 @@ def test_what_is_not_there_is_refused(ask: Callable[[], object], message: str) -
 @pytest.mark.parametrize(
     ("ask", "message"),
     [
+        (lambda: RUN.plot(against=True), "against must be a text, not True"),
         (lambda: Recording([1.0], {}), 'columns must be a mapping, as in {"time": [0.0, 0.1]}, not [1.0]'),  # type: ignore[arg-type]
         (lambda: Recording({"a": [1.0]}, "s"), """units must be a mapping, as in {"time": "s"}, not 's'"""),  # type: ignore[arg-type]
         (lambda: Recording({"a": [1.0]}, {"a": "1"}, 3), "title must be a text, not 3"),  # type: ignore[arg-type]

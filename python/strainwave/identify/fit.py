@@ -319,18 +319,19 @@ class _Problem:
             _, slopes = self.predict(x)
             return (slopes * weights)[:, :, self.training].reshape(len(x), -1).T
 
-        solution = least_squares(
-            residuals,
-            inside,
-            jac=jacobian,
-            bounds=(low, high),
-            x_scale="jac",
-            loss=loss,
-            xtol=tolerance,
-            ftol=tolerance,
-            gtol=tolerance,
-            max_nfev=TRIALS,
-        )
+        with np.errstate(over="ignore"):  # SciPy takes a smaller step where its model of the residuals is infinite
+            solution = least_squares(
+                residuals,
+                inside,
+                jac=jacobian,
+                bounds=(low, high),
+                x_scale="jac",
+                loss=loss,
+                xtol=tolerance,
+                ftol=tolerance,
+                gtol=tolerance,
+                max_nfev=TRIALS,
+            )
         return np.asarray(solution.x)
 
     def fit(self, x: Array, weights: Array) -> Fit:
@@ -358,6 +359,7 @@ class _Problem:
         )
 
 
+@np.errstate(over="ignore")  # a variance beyond all numbers is infinite
 def _covariance(jacobian: Array, residual: Array) -> tuple[Array, float]:
     """Covariance of the unknowns, and the degrees of freedom it rests on.
 
