@@ -88,8 +88,8 @@ def convert(values: Values, unit: str, to: str) -> Values:
         The values in `to`; where both units are the same, `values` itself.
 
     Raises:
-        ValueError: a unit is not known, the two measure different things, or a value is too large a number in `to`.
-            Angles are not plain numbers.
+        ValueError: a unit is not known, the two measure different things, or a value is not a number or too large a one
+            in `to`. Angles are not plain numbers.
         TypeError: the values are not numbers
 
     >>> convert(30.0, "rpm", "rad/s")
@@ -102,7 +102,8 @@ def convert(values: Values, unit: str, to: str) -> Values:
     """
     import pint
 
-    arguments.numbers("values", values)
+    if np.isnan(arguments.numbers("values", values)).any():
+        raise ValueError("values must be numbers, and nan is none")
     source, target = _parse(unit), _parse(to)
     if source == target:
         return values

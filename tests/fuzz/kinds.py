@@ -43,7 +43,7 @@ KINDS = {
     "units": Kind(units_case, 4, 0.5),
     "calls": Kind(calls_case, 12, 5.0),
     "scalars": Kind(scalars_case, 12, 5.0),
-    "drives": Kind(drives_case, 8, 5.0),
+    "drives": Kind(drives_case, 8, 10.0),  # as long as all steps take that an adaptive run may take
     "measurements": Kind(measurements_case, 1, 20.0),
     "files": Kind(files_case, 3, 2.0),
 }

@@ -96,7 +96,7 @@ def check_against_csv(recording: sw.Recording, data: bytes) -> None:
     _, *rows = csv.reader(io.StringIO("".join(lines), newline=""), delimiter=delimiter, strict=True)
     assert len(rows) == len(recording), f"{len(recording)} rows, where Python's csv finds {len(rows)}"
     for place, name in enumerate(recording.names):
-        cells = [row[place].strip(" ") for row in rows]
+        cells = [row[place].strip(" \t") for row in rows]
         odd = [cell for cell in cells if not _NUMBER.fullmatch(cell)]
         assert not odd, f"takes {odd[0]!r} for a number"
         expected = np.array([float(cell.replace(",", ".")) for cell in cells])

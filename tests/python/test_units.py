@@ -168,6 +168,12 @@ def test_what_is_no_number_is_refused(values: object, kind: str) -> None:
         convert(values, "s", "min")  # type: ignore[type-var]
 
 
+@pytest.mark.parametrize("values", [math.nan, np.array([1.0, math.nan])])
+def test_not_a_number_is_refused(values: float) -> None:
+    with pytest.raises(ValueError, match=exactly("values must be numbers, and nan is none")):
+        convert(values, "s", "min")
+
+
 def test_a_value_too_large_for_the_other_unit_is_refused() -> None:
     with pytest.raises(ValueError, match=exactly("1e+308 km is too large a number in m")):
         convert(np.array([1.0, 1e308]), "km", "m")

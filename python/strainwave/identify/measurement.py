@@ -39,6 +39,7 @@ NEEDED: dict[Kind, tuple[tuple[str, ...], ...]] = {
 }
 ALIASES = {"position": "input_angle"}  # of a drive log: the encoder that closes the loop sits on the motor
 SYMBOLS = {"t": "time", "omega": "speed", "tau": "torque"}  # that many files have instead of a name
+OTHER_WORDS = {"command": ("reference", "setpoint", "target")}  # by which a column is offered, but not taken
 NOT_FITTED = ("temperature",)  # read, so that whoever has the recording has them too
 
 
@@ -175,19 +176,29 @@ def _check_needed(kind: Kind, path: str | Path, present: Sequence[Label], found:
         wanted = " or ".join(" and ".join(needed) for needed in NEEDED[kind])
         needs = f"a {kind} measurement needs columns {wanted}; this file has {listed(label.name for label in present)}"
         free = [label for label in present if not {label.text, label.name} & set(found.values())]
-        advice = _advice(missing[0], COLUMNS[kind][missing[0]], free)
+        advice = " ".join(_advice(name, COLUMNS[kind][name], free) for name in missing)
         raise ValueError(one_line(f"{path}: {needs}. Name yours like {advice}"))
 
 
-def _advice(name: str, wanted: Units, free: Sequence[Label]) -> str:
-    """How to name the column that is missing, and its unit: one that measures what is wanted, or else is called alike."""
+def _advice(name: str, wanted: Units, free: list[Label]) -> str:
+    """How to name a column that is missing, and its unit: one that measures what is wanted, or else is called alike.
+
+    The column is then no longer free.
+    """
     if not free:
         return as_option("column", name, "NAME")
     alike = [label for label in free if _stated_unit(label, wanted)] or free
-    label = max(alike, key=lambda label: SequenceMatcher(None, name, _plain(label.name)).ratio())
+    label = max(alike, key=lambda label: _likeness(name, label.name))
+    free.remove(label)
     unit = _stated_unit(label, wanted)
     option = as_option("column", name, label.name)
     return option if unit is None or unit == label.unit else f"{option} {as_option('unit', name, unit)}"
+
+
+def _likeness(name: str, name_in_file: str) -> float:
+    """How much a name in a file looks like a name wanted, or like another word for it."""
+    words = (name, *OTHER_WORDS.get(name, ()))
+    return max(SequenceMatcher(None, word, _plain(name_in_file)).ratio() for word in words)
 
 
 def _stated_unit(label: Label, wanted: Units) -> str | None:

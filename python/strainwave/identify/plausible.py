@@ -17,17 +17,18 @@ from strainwave.units import convert
 Array = NDArray[np.float64]
 
 APART = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
+SPREAD = 1.3  # by which gears of one kind differ in stiffness, as makers say
 NEAR = 4.0  # a mistake explains a factor that it comes as near to as this
 MOVING = 0.5  # of what a table leaves unexplained: if acceleration explains more, the table is a log
 FEWEST = 30  # rows of a log; tables of steady friction are shorter, or in no order that acceleration could follow
 ELASTIC = 0.2  # of the torque at the ends of a loop: a gear carries more of it by its spring
 
 
-def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[tuple[str, str]]:
-    """What speaks against a friction table, each with what to do about it."""
+def doubts_of_table(recording: Recording, found: Fit, start: Gear, side: str | None) -> Iterator[tuple[str, str]]:
+    """What speaks against a friction table, each with what to do about it. Of the side only if it was not said."""
     table = found.experiment
     assert isinstance(table, FrictionTable)
-    if _is_accelerating(recording, found):
+    if _is_accelerating(recording, found, abs(start.kinematics.ratio) if side == "output" else 1.0):
         yield (
             "its torque follows the acceleration: this is a log of a moving drive, not a table of steady friction",
             "average the torque over stretches of constant speed, one row for each; or give the log as --log",
@@ -48,7 +49,9 @@ def doubts_of_table(recording: Recording, found: Fit, start: Gear) -> Iterator[t
     law, known_law = found.gear.friction_input, start.friction_input
     shapes = np.abs(np.log(law.steady(ends) / ratio / known_law.steady(ends * ratio)))
     off = float(shapes.max())  # what the other side would leave unexplained, as a logarithm
-    if factor > APART and off < np.log(APART) and off < max(rest, np.log(NEAR)):
+    if side == "output":
+        yield what, f"if it was measured at the input, leave --side output out; {mistake}see whether units are right"
+    elif factor > APART and off < np.log(APART) and off < max(rest, np.log(NEAR)):
         yield (
             f"{what}; taken as measured at the output, it gives {_times(at_joint)} that gear's",
             "if it was measured at the output, say so: --side output; if at the input, --side input",
@@ -88,9 +91,26 @@ def doubts_of_loop(recording: Recording, found: Fit, start: Gear) -> Iterator[tu
         )
 
 
-def _is_accelerating(recording: Recording, found: Fit) -> bool:
-    """Whether what steady friction leaves unexplained follows the change of speed from row to row."""
-    speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
+def hint_of_ratio(found: Fit, start: Gear) -> Iterator[str]:
+    """That a loop from the input, whose stiffness is not that of the starting set, has it at another ratio."""
+    loop = found.experiment
+    assert isinstance(loop, TorsionLoop)
+    half = 0.5 * float(np.ptp(loop.twist))
+    factor = float(found.gear.stiffness.torque(half) / start.stiffness.torque(half))
+    if loop.input_ratio is not None and not 1.0 / SPREAD < factor < SPREAD:
+        ratio = abs(loop.input_ratio) / np.sqrt(factor)
+        yield (
+            f"its stiffness is {_times(factor)} that of the set it starts from. Seen from the input, stiffness goes with the "
+            f"square of the ratio: with a ratio of {ratio:.0f} it would be that of the set. See whether the ratio is right"
+        )
+
+
+def _is_accelerating(recording: Recording, found: Fit, ratio: float) -> bool:
+    """Whether what steady friction leaves unexplained follows the change of speed from row to row.
+
+    `ratio` is the speed of the input over the one recorded.
+    """
+    speed, torque = ratio * recording.values("speed", "rad/s"), recording.values("torque", "N.m") / ratio
     if len(speed) < FEWEST:
         return False
     residual = torque - found.gear.friction_input.steady(speed)

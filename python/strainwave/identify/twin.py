@@ -23,7 +23,7 @@ from strainwave.identify.friction import fit_friction
 from strainwave.identify.influence import Influence, influence
 from strainwave.identify.log import fit_log, free_parameters, prepared
 from strainwave.identify.measurement import Kind, read_measurement
-from strainwave.identify.plausible import doubts_of_loop, doubts_of_table
+from strainwave.identify.plausible import doubts_of_loop, doubts_of_table, hint_of_ratio
 from strainwave.identify.torsion import Candidate, Friction, Nothing, fit_loop, held_out_blocks
 from strainwave.identify.verdict import MOST_TOLD, Verdict, estimated, judged, known, numbers, verdicts
 from strainwave.messages import shortened
@@ -212,9 +212,8 @@ def _from_friction(gear: Gear, recording: Recording, source: str, side: str | No
     if best.name == "Coulomb and viscous":
         remarks.append("no fall of torque towards low speed within this range: breakaway and Stribeck speed are not seen")
     remarks += [*_thinned(table.samples, len(table.speed)), *_unused(recording, ("speed", "torque"))]
-    doubts = [*_not_explained(best.fit)]
-    if side is None:
-        doubts = [*doubts_of_table(recording, best.fit, start)] or doubts
+    doubts = [] if side == "input" else [*doubts_of_table(recording, best.fit, start, side)]
+    doubts = doubts or [*_not_explained(best.fit)]
     return Evidence(
         "friction", source, recording, best.fit, held_out, np.array([best.error]),
         tuple((c.name, c.error) for c in (best, *others)), influence(best.fit), _shares(best.fit),
@@ -229,6 +228,7 @@ def _from_torsion(gear: Gear, recording: Recording, source: str, friction_measur
         f"valid up to {np.abs(loop.torque).max():.4g} N·m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
     ]
     remarks += [*_of_friction(loop, best, gear, friction_measured), *_thinned(loop.samples, len(loop.twist))]
+    remarks += hint_of_ratio(best.fit, start)
     remarks += _unused(recording, ("input_angle", "input_torque") if at_input(recording) else ("twist", "torque"))
     if isinstance(best.beside, Nothing):
         remarks.append(

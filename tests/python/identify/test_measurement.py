@@ -151,7 +151,15 @@ def test_a_column_that_measures_something_else_is_refused(tmp_path: Path, kind: 
             "note,motor_speed_rpm,moment_Nm",
             "a friction measurement needs columns speed and torque; this file has note, motor_speed_rpm, moment_Nm. "
             'Name yours like --column speed=motor_speed_rpm (in Python columns={"speed": "motor_speed_rpm"}) '
-            '--unit speed=rpm (in Python units={"speed": "rpm"})',
+            '--unit speed=rpm (in Python units={"speed": "rpm"}) '
+            '--column torque=moment_Nm (in Python columns={"torque": "moment_Nm"}) '
+            '--unit torque=Nm (in Python units={"torque": "Nm"})',
+        ),
+        (
+            "log",
+            "time [s],motor_angle [deg],reference [deg]",
+            "a log measurement needs columns time and command; this file has time, motor_angle, reference. "
+            'Name yours like --column command=reference (in Python columns={"command": "reference"})',
         ),
         (
             "torsion",

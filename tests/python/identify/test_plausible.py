@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 import numpy as np
@@ -44,6 +45,11 @@ def test_a_table_from_the_joint_is_asked_about_and_taken_as_said() -> None:
     assert confirmed.gear_set.gear.friction_input.coulomb == pytest.approx(RATIO * LAW.coulomb, rel=0.05)
 
 
+def test_a_table_from_the_input_called_one_from_the_joint_is_asked_about() -> None:
+    (doubt,) = sw.twin(start(), friction=table(SPEED, LAW.steady(SPEED)), side="output").doubts
+    assert doubt.remedy.startswith("if it was measured at the input, leave --side output out; ")
+
+
 def test_a_side_that_is_none_is_refused() -> None:
     with pytest.raises(ValueError, match=r'^side = "joint" must be one of input, output$'):
         sw.twin(start(), friction=at_the_joint(), side="joint")  # type: ignore[arg-type]
@@ -75,6 +81,25 @@ def loop(stiffness: float, breakaway: float, amplitude: float) -> sw.Recording:
     twist = np.concatenate((quarter, quarter[-2::-1], -quarter[1:], -quarter[-2::-1], quarter[1:]))
     element = sw.hysteresis.MaxwellSlip(stiffness=[20.0 * breakaway / amplitude], breakaway=[breakaway])
     return sw.Recording({"twist": twist, "torque": stiffness * twist + element.trace(twist)}, {"twist": "rad", "torque": "N.m"})
+
+
+def from_the_input(ratio: float) -> sw.Recording:
+    """A loop of the starting gear's stiffness, seen through this ratio."""
+    twist = loop(stiffness=1.0, breakaway=1.0, amplitude=1e-3)["twist"]
+    element = sw.hysteresis.MaxwellSlip(stiffness=[2e4], breakaway=[1.0])
+    torque = start().gear.stiffness.torque(twist) + element.trace(twist)
+    columns = {"input_angle": ratio * twist, "input_torque": torque / ratio}
+    return sw.Recording(columns, {"input_angle": "rad", "input_torque": "N.m"})
+
+
+@pytest.mark.parametrize(("ratio", "told"), [(RATIO, False), (0.8 * RATIO, True), (1.25 * RATIO, True)])
+def test_a_loop_from_the_input_through_another_ratio_says_which_ratio_would_fit(ratio: float, told: bool) -> None:
+    (evidence,) = sw.twin(start(), torsion=from_the_input(ratio)).evidence
+    hints = [remark for remark in evidence.remarks if "square of the ratio" in remark]
+    assert len(hints) == told
+    if told:
+        fits = float(re.search(r"with a ratio of (\d+)", hints[0])[1])
+        assert fits == pytest.approx(ratio, rel=0.1)
 
 
 def test_friction_over_an_angle_is_no_torsion_loop() -> None:
