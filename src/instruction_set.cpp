@@ -4,43 +4,30 @@
 
 #include <cstdlib>
 
+#include "supported.hpp"
+
 namespace strainwave::host {
 
 namespace {
 
-struct Choice {
-    const char* name;
-    bool runs;
-};
-
-/// From the widest to what every machine has.
-std::vector<Choice> choices() {
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    // Of those that were compiled.
-    const auto built = [](const char* name) {
-        return std::string(SW_INSTRUCTION_SETS).find(std::string(",") + name + ",") != std::string::npos;
-    };
-    const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-    return {{"avx512", wide && built("avx512")},
-            {"avx2", __builtin_cpu_supports("avx2") && built("avx2")},
-            {"baseline", built("baseline")}};
-#else
-    return {{"baseline", true}};
-#endif
+/// Whether the loops over time were compiled for an instruction set.
+bool built(std::string_view name) {
+    return std::string_view(SW_INSTRUCTION_SETS).find("," + std::string(name) + ",") != std::string_view::npos;
 }
 
 std::string choose() {
     const char* wanted = std::getenv("STRAINWAVE_INSTRUCTION_SET");
     std::string known;
-    for (const Choice& choice : choices()) {
-        if (!choice.runs) continue;
-        if (!wanted || !*wanted || std::string(wanted) == choice.name) return choice.name;
-        known += known.empty() ? choice.name : std::string(", ") + choice.name;
+    for (const std::string_view name : instruction_sets) {
+        if (!built(name) || !supported(name)) continue;
+        if (!wanted || !*wanted || name == wanted) return std::string(name);
+        known += (known.empty() ? "" : ", ") + std::string(name);
     }
+    if (known.empty())
+        throw nanobind::value_error("this build has no instruction set that this machine runs; build it anew on this machine");
     throw nanobind::value_error(
-        ("STRAINWAVE_INSTRUCTION_SET = " + std::string(wanted) + " is not one that this machine runs: " + known).c_str());
+        ("STRAINWAVE_INSTRUCTION_SET = " + std::string(wanted) + " is not one that this build and this machine have: " + known)
+            .c_str());
 }
 
 }  // namespace

@@ -41,9 +41,10 @@ KINDS = {
     "names": Kind(name_case, 1, 2.0),
     "parquet": Kind(parquet_case, 4, 2.0),
     "units": Kind(units_case, 4, 0.5),
-    "calls": Kind(calls_case, 12, 5.0),
-    "scalars": Kind(scalars_case, 12, 5.0),
-    "drives": Kind(drives_case, 8, 10.0),  # as long as all steps take that an adaptive run may take
+    "calls": Kind(calls_case, 12, 10.0),
+    # The slowest of what runs drives is what all steps take that an adaptive run may take.
+    "scalars": Kind(scalars_case, 12, 10.0),
+    "drives": Kind(drives_case, 8, 10.0),
     "measurements": Kind(measurements_case, 1, 20.0),
     "files": Kind(files_case, 3, 2.0),
 }

@@ -175,8 +175,15 @@ def script(code: str, **variables: str) -> subprocess.Popen[str]:
 own_digests = cache(digests)
 
 
+def built() -> set[str]:
+    """The instruction sets that this installation was compiled for."""
+    return {file.name.partition(".")[0].removeprefix("_time_") for file in Path(_core.__file__).parent.glob("_time_*")}
+
+
 @pytest.mark.parametrize("instruction_set", FLAGS)
 def test_the_instruction_set_changes_no_bit(instruction_set: str) -> None:
+    if instruction_set not in built():
+        pytest.skip("not compiled: a build to develop with has the best instruction set of its machine only")
     if missing := FLAGS[instruction_set] - machine_flags():
         pytest.skip(f"this machine has no {', '.join(sorted(missing))}")
     code = (
@@ -192,10 +199,10 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
     code = "import strainwave as sw; sw.simulate(sw.drives.PositionDrive(), sw.scenario.constant(0.0, 1e-3))"
     process = script(code, STRAINWAVE_INSTRUCTION_SET="sse9")
     _, wrong = process.communicate(timeout=60)
-    running = [name for name in reversed(FLAGS) if FLAGS[name] <= machine_flags()]
+    running = [name for name in reversed(FLAGS) if name in built() and FLAGS[name] <= machine_flags()]
     assert process.returncode == 1
     assert wrong.splitlines()[-1] == (
-        f"ValueError: STRAINWAVE_INSTRUCTION_SET = sse9 is not one that this machine runs: {', '.join(running)}"
+        "ValueError: STRAINWAVE_INSTRUCTION_SET = sse9 is not one that this build and this machine have: " + ", ".join(running)
     )
 
 

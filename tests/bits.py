@@ -1,0 +1,97 @@
+"""The bits of many runs, to compare before and after a change that must not alter them.
+
+    python -m tests.bits write bits.txt                 before the change
+    python -m tests.bits compare bits.txt               after it
+
+Random drives of all models, as those of `tests.stress`: each run by every method, to a tolerance, in a pack of eight, and with
+derivatives. What is refused must be refused again. The file has a digest of each run; nobody needs to keep it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import strainwave as sw
+from strainwave import _core
+from strainwave.simulation import METHODS, differentiate
+
+from tests.stress import MOST_STEPS, OUTPUTS, STEPS, model, neighbours, step
+from tests.workers import answers
+
+DERIVATIVES = 12
+LIMIT = 120.0  # s, for all runs of a drive
+
+
+def digest(number: int) -> dict[str, str]:
+    """Of each run of a drive."""
+    warnings.simplefilter("ignore")
+    random = np.random.default_rng(number)
+    drive = model(sw.drives.PositionDrive, random)
+    dt = step(drive, random)
+    volts = sw.scenario.sine(random.uniform(0.0, 48.0), random.uniform(0.5, 5.0) / (STEPS * dt), STEPS * dt)
+    acting: dict[str, Any] = {"load_torque": random.normal(0.0, 10.0), "temperature": random.uniform(230.0, 370.0)}
+    varied, sample = neighbours(drive, random), 5.0 * dt
+    count = min(DERIVATIVES, len(_core.parameters(drive)))
+    free = sorted(random.choice(len(_core.parameters(drive)), count, replace=False).tolist())
+    course: dict[str, Any] = {"sample": sample, **acting}
+    runs: dict[str, Callable[[], Any]] = {
+        method: partial(sw.simulate, drive, volts, dt, method=method, **course) for method in METHODS
+    }
+    runs["adaptive"] = partial(sw.simulate_adaptively, drive, volts, 1e-5, most_steps=MOST_STEPS, **course)
+    runs["many"] = partial(sw.simulate_many, drive, volts, varied, dt, record=OUTPUTS, **course)
+    runs["derivatives"] = partial(differentiate, drive, volts, free, dt, sample)
+    return {kind: bits(run) for kind, run in runs.items()}
+
+
+def bits(run: Callable[[], Any]) -> str:
+    try:
+        found = run()
+    except (ValueError, FloatingPointError, RuntimeError) as error:
+        return f"refused: {type(error).__name__}"
+    return hashlib.sha256(b"".join(np.ascontiguousarray(array).tobytes() for array in arrays(found))).hexdigest()[:16]
+
+
+def arrays(found: Any) -> Iterator[Any]:
+    """The numbers of a result, in order."""
+    if isinstance(found, tuple):
+        for one in found:
+            yield from arrays(one)
+    elif isinstance(found, np.ndarray):
+        yield found
+    else:
+        yield from found.columns.values()
+
+
+def lines(drives: int, processes: int) -> Iterator[str]:
+    for number, found in answers(digest, range(drives), processes, LIMIT):
+        kinds = found if isinstance(found, dict) else {"all": "no answer"}
+        yield from (f"{number} {kind} {value}" for kind, value in kinds.items())
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("verb", choices=["write", "compare"])
+    options.add_argument("file", type=Path)
+    options.add_argument("--drives", type=int, default=1000)
+    options.add_argument("--processes", type=int, default=2)
+    given = options.parse_args()
+    found = sorted(lines(given.drives, given.processes))
+    if given.verb == "write":
+        given.file.write_text("\n".join(found) + "\n")
+        print(f"{len(found)} runs, {sum('refused' in line for line in found)} refused")
+        return
+    other = sorted(set(found) ^ set(given.file.read_text().splitlines()))
+    print("\n".join(other[:40]) or f"{len(found)} runs, all as they were")
+    sys.exit(bool(other))
+
+
+if __name__ == "__main__":
+    main()
