@@ -1,5 +1,6 @@
 /// Prints how many sums, products and quotients a step of the reference drive takes, and how many this processor does at most
 /// [1e9/s], in multiply-adds of its widest registers.
+#include <strainwave/drive.hpp>
 #include <strainwave/integrate.hpp>
 #include <strainwave/models.hpp>
 
@@ -79,12 +80,12 @@ double operations_of_a_step() {
         const double angle = COMMAND_SLOPE * t + COMMAND_AMPLITUDE * std::sin(w * t);
         return Input<S>{angle, COMMAND_SLOPE + COMMAND_AMPLITUDE * w * std::cos(w * t), 0.0, 293.15};
     };
-    auto at = drive.standing(drive.rest(), input(0.0));
+    auto at = drive.evaluate(drive.rest(), input(0.0));
     counting::operations = 0;
     for (int i = 0; i < steps; ++i) {
         const double t = dt * i;
-        const Interval<S> u{input(t), input(t + 0.5 * dt), input(t + dt)};
-        at = drive.standing(integrate::exponential_step(drive, at, u, S(dt)), u.end);
+        const Interval<Input<S>> u{input(t), input(t + 0.5 * dt), input(t + dt)};
+        at = drive.evaluate(integrate::exponential_step(drive, at, u, S(dt)), u.end);
     }
     return double(counting::operations) / steps;
 }

@@ -182,8 +182,8 @@ private:
 nb::list motion_of(const Drive& drive) {
     nb::list list;
     int number = 0;
-    const Drive::Motion motion{};
-    Drive::Motion::fields(motion, [&]<class T>(const T& member, const Field& field) {
+    const Drive::Continuous motion{};
+    Drive::Continuous::fields(motion, [&]<class T>(const T& member, const Field& field) {
         if constexpr (is_slots<T>) {
             Naming naming{list, std::string(field.name) + ".", number};
             const std::string part = field.name;
@@ -346,7 +346,7 @@ void bind_drives(nb::module_& core) {
         }
     });
     auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
-    bind<Drive::Motion>(core, "Motion", "motion");
+    bind<Drive::Continuous>(core, "ContinuousState", "continuous");
     bind<Drive::State>(core, "State", "state");
     verb(drive, "rest", {}, python_type<Drive::State>(false), "The state at rest, untwisted and without history, input angle 0.",
          [](const Drive& self, const Call&) { return self.rest(); });
@@ -378,8 +378,8 @@ void bind_drives(nb::module_& core) {
              const auto at = [&](double share) {
                  return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
              };
-             const Interval<double> u{at(0.0), at(0.5), at(1.0)};
-             const auto before = self.standing(self.consistent(state), u.start);
+             const Interval<Input<double>> u{at(0.0), at(0.5), at(1.0)};
+             const auto before = self.evaluate(self.consistent(state), u.start);
              check_bounds<double>(self, before, 0.0);
              const auto after = step<double>(self, before, u, dt, called_step<double, Drive>);
              check_bounds<double>(self, after, dt);
@@ -472,26 +472,26 @@ void bind_drives(nb::module_& core) {
         nb::sig("def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ", dt: float) -> State"),
         "`state` with what friction remembers after `dt` [s] at constant speeds.");
     core.def(
-        "led",
+        "advance_hysteresis",
         [](const Drive& drive, Drive::State state, double twist) {
-            drive.lead(state, twist);
+            drive.advance_hysteresis(state, twist);
             return state;
         },
         nb::arg("drive"), nb::arg("state"), nb::arg("twist"),
-        nb::sig("def led(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State"),
+        nb::sig("def advance_hysteresis(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State"),
         "`state` with its hysteresis brought up to date at `twist` [rad].");
     core.def(
         "consistent", [](const Drive& drive, const Drive::State& state) { return drive.consistent(state); }, nb::arg("drive"),
         nb::arg("state"), nb::sig("def consistent(drive: strainwave.drives.PositionDrive, state: State) -> State"),
-        "`state` with each side's sense of sliding as its speed and its law have it.");
+        "`state` with the slip direction of each shaft as its speed and its law have it.");
     core.def(
-        "released",
+        "break_away",
         [](const Drive& drive, const Drive::State& state, const Numbers& u) {
-            return drive.released(drive.standing(state, input_of(u)), input_of(u)).state;
+            return system::break_away(drive, drive.evaluate(state, input_of(u)), input_of(u)).state;
         },
         nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
-        nb::sig("def released(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> State"),
-        "`state` with the sides set off that stick and are driven beyond what their friction holds.");
+        nb::sig("def break_away(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> State"),
+        "`state` with those shafts slipping that stick and are driven beyond what their friction holds.");
     core.def("differentiate_loop", &loop_derivatives, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
              nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),

@@ -73,7 +73,7 @@ void differentiate_by(const Parts& parts, const Course& course, const std::vecto
     const auto dual = seeded<AnyPositionDrive, n>(parts, parameters, first);
     Writer<n> record(first, parameters.size(), kept + 1, out, slopes);
     const Input<Scalar> at_start = interval<Scalar>(course.inputs).start;
-    record(dual.output(dual.standing(dual.rest(), at_start), at_start));
+    record(dual.output(dual.evaluate(dual.rest(), at_start), at_start));
     run<Scalar>(dual, dual.rest(), course, record, [&](std::size_t i) { pause(first * course.steps + n * i); });
     record.flush();
 }
@@ -105,8 +105,8 @@ void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<d
                     slopes[p * rows + row + i] = values[i].slope[p - first];
             }
         };
-        write(flattened<Slope>(dual.flow(state, state.motion, input).rate), 0);
-        write(flattened<Slope>(dual.output(dual.standing(state, input), input)), motions);
+        write(flattened<Slope>(dual.derivatives(state, state.continuous, input).rate), 0);
+        write(flattened<Slope>(dual.output(dual.evaluate(state, input), input)), motions);
     }
 }
 

@@ -143,19 +143,19 @@ To refilled(const From& from) {
     to.held_rate = from.held_rate;
     to.elapsed = from.elapsed;
     to.turns = from.turns;
-    to.sliding_input = from.sliding_input;
-    to.sliding_output = from.sliding_output;
+    to.input_slip_direction = from.input_slip_direction;
+    to.output_slip_direction = from.output_slip_direction;
     detail::refill<S>(to.hysteresis, from.hysteresis);
-    auto& motion = to.motion;
-    motion.input_angle = from.motion.input_angle;
-    motion.input_speed = from.motion.input_speed;
-    motion.transmission_error = from.motion.transmission_error;
-    motion.output_speed = from.motion.output_speed;
-    detail::refill<S>(motion.motor, from.motion.motor);
-    detail::refill<S>(motion.control, from.motion.control);
-    detail::refill<S>(motion.friction_input, from.motion.friction_input);
-    detail::refill<S>(motion.friction_mesh, from.motion.friction_mesh);
-    detail::refill<S>(motion.friction_output, from.motion.friction_output);
+    auto& motion = to.continuous;
+    motion.input_angle = from.continuous.input_angle;
+    motion.input_speed = from.continuous.input_speed;
+    motion.transmission_error = from.continuous.transmission_error;
+    motion.output_speed = from.continuous.output_speed;
+    detail::refill<S>(motion.motor, from.continuous.motor);
+    detail::refill<S>(motion.control, from.continuous.control);
+    detail::refill<S>(motion.friction_input, from.continuous.friction_input);
+    detail::refill<S>(motion.friction_mesh, from.continuous.friction_mesh);
+    detail::refill<S>(motion.friction_output, from.continuous.friction_output);
     return to;
 }
 

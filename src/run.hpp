@@ -40,7 +40,7 @@ void each_lane(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c, F&& f) {
 }
 
 template <class S>
-Interval<S> interval(const double* inputs) {
+Interval<Input<S>> interval(const double* inputs) {
     const auto at = [](const double* u) { return Input<S>{S(u[0]), S(u[1]), S(u[2]), S(u[3])}; };
     return {at(inputs), at(inputs + driving), at(inputs + 2 * driving)};
 }
@@ -69,8 +69,8 @@ struct OutOfBounds {
 
 /// Throws OutOfBounds if a part is not valid where the drive stands, in any lane.
 template <class S, class Drive>
-void check_bounds(const Drive& drive, const typename Drive::Standing& at, double time) {
-    drive.bounds(at.flow, [&](const char* part, const Domain<S>& domain) {
+void check_bounds(const Drive& drive, const typename Drive::Evaluation& at, double time) {
+    drive.bounds(at.derivatives, [&](const char* part, const Domain<S>& domain) {
         if (all(domain.holds())) return;
         each_lane(domain.value, domain.low, domain.high, [&](double value, double low, double high) {
             const Domain<double> of_lane{domain.name, value, low, high, domain.unit, domain.remedy};
@@ -100,14 +100,14 @@ public:
 
 /// A step without events, every call on the way inlined: worth its size where there is not too much to choose from.
 template <class S, class Drive>
-[[gnu::flatten, gnu::noinline]] typename Drive::Standing inlined_step(const Drive& drive, const typename Drive::Standing& from,
-                                                                      const Interval<S>& u, const S& dt) {
-    return drive.standing(integrate::exponential_step(drive, from, u, dt), u.end);
+[[gnu::flatten, gnu::noinline]] typename Drive::Evaluation inlined_step(const Drive& drive, const typename Drive::Evaluation& from,
+                                                                        const Interval<Input<S>>& u, const S& dt) {
+    return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 template <class S, class Drive>
-[[gnu::noinline]] typename Drive::Standing called_step(const Drive& drive, const typename Drive::Standing& from,
-                                                       const Interval<S>& u, const S& dt) {
-    return drive.standing(integrate::exponential_step(drive, from, u, dt), u.end);
+[[gnu::noinline]] typename Drive::Evaluation called_step(const Drive& drive, const typename Drive::Evaluation& from,
+                                                         const Interval<Input<S>>& u, const S& dt) {
+    return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 
 /// Runs a compiled drive from `start` through one step or more and calls record(output) at the end of each step to be kept.
@@ -118,9 +118,9 @@ typename Drive::State run_compiled(const Drive& drive, const typename Drive::Sta
                                    const Pause& pause, const Advance& advance) {
     const bool has_bounds = drive.has_bounds();
     Pauses pauses(pause);
-    Interval<S> u = interval<S>(course.inputs);
-    using Standing = typename Drive::Standing;
-    Standing places[2]{drive.standing(drive.consistent(start), u.start), {}}, *here = places, *there = places + 1;
+    Interval<Input<S>> u = interval<S>(course.inputs);
+    using Evaluation = typename Drive::Evaluation;
+    Evaluation places[2]{drive.evaluate(drive.consistent(start), u.start), {}}, *here = places, *there = places + 1;
     if (has_bounds) check_bounds<S>(drive, *here, course.instants[0]);
     bool lost = false;
     for (std::size_t i = 0; i < course.steps; ++i) {
@@ -134,9 +134,9 @@ typename Drive::State run_compiled(const Drive& drive, const typename Drive::Sta
             const double *const inputs = course.inputs + 3 * driving * i, *const before = inputs - driving;
             u = interval<S>(inputs);
             const bool jump = !std::equal(inputs, inputs + driving, before);
-            if (jump) *here = drive.standing(here->state, u.start);
+            if (jump) *here = drive.evaluate(here->state, u.start);
         }
-        new (there) Standing(advance(drive, *here, u, S(course.instants[i + 1] - course.instants[i])));
+        new (there) Evaluation(advance(drive, *here, u, S(course.instants[i + 1] - course.instants[i])));
         std::swap(here, there);
         if (has_bounds) check_bounds<S>(drive, *here, course.instants[i + 1]);
         if (course.keep[i]) record(drive.output(*here, u.end));
@@ -166,7 +166,8 @@ template <class S, class Record>
 typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
                                         const Course& course, Record&& record, const Pause& pause) {
     const auto runner = [&]<bool inlines, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        const auto advance = [](const Compiled& moved, const typename Compiled::Standing& at, const Interval<S>& u, const S& dt) {
+        const auto advance = [](const Compiled& moved, const typename Compiled::Evaluation& at, const Interval<Input<S>>& u,
+                                const S& dt) {
             if constexpr (inlines)
                 return step(moved, at, u, dt, inlined_step<S, Compiled>);
             else

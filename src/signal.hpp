@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/drive.hpp>
 #include <strainwave/integrate/interval.hpp>
 
 #include <cstddef>
@@ -39,7 +40,9 @@ public:
     Unbroken(const Signals& signals_, double begin_);
 
     Input<double> at(double fraction, double dt) const;
-    Interval<double> part(double from, double to, double dt) const { return {at(from, dt), at(0.5 * (from + to), dt), at(to, dt)}; }
+    Interval<Input<double>> part(double from, double to, double dt) const {
+        return {at(from, dt), at(0.5 * (from + to), dt), at(to, dt)};
+    }
 };
 
 /// The inputs of a course through instants[0..steps], as `Course` holds them: the right limits at the start of a step, the left at

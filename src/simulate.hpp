@@ -19,7 +19,7 @@ inline constexpr int channels = [] {
 }();
 
 /// How many numbers flow continuously.
-inline constexpr int motions = size_of<double, Drive::Motion>;
+inline constexpr int motions = size_of<double, Drive::Continuous>;
 
 /// How many members of a crowd take every step together.
 inline constexpr int lanes = 8;

@@ -157,7 +157,7 @@ private:
             twist = max(twist, abs(output.twist));
         };
         const Input<S> at_start = interval<S>(course.inputs).start;
-        record(drive.output(drive.standing(drive.rest(), at_start), at_start));
+        record(drive.output(drive.evaluate(drive.rest(), at_start), at_start));
         run<S>(drive, drive.rest(), course, record, [this](std::size_t) {
             if (stopping) throw Stopped{};
         });

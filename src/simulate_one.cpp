@@ -34,12 +34,12 @@ Drive::State simulate(const Drive& drive, const Drive::State& start, const Cours
     Writer record{out, samples};
     if (method == Method::moreau_jean)
         return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& at, const auto& u, double dt) {
-            return moved.standing(integrate::moreau_jean_step(moved, at, u, dt), u.end);
+            return moved.evaluate(integrate::moreau_jean_step(moved, at, u, dt), u.end);
         });
     if (method == Method::rosenbrock)
         return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& at, const auto& u, double dt) {
             return step(moved, at, u, dt, [](const auto& m, const auto& from, const auto& over, double h) {
-                return m.standing(integrate::rosenbrock_step(m, from, over, h), over.end);
+                return m.evaluate(integrate::rosenbrock_step(m, from, over, h), over.end);
             });
         });
     return run<double>(drive, start, course, record, pause);
@@ -52,7 +52,7 @@ template <class Compiled>
 typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled::State x, const Signals& signals,
                                         const Instants& ends, const integrate::Tolerance& tolerance, long most,
                                         const Instants& wanted, Writer& record, Steps& steps, const Pause& pause) {
-    using Standing = typename Compiled::Standing;
+    using Evaluation = typename Compiled::Evaluation;
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
     const auto smooth = called_step<double, Compiled>;
@@ -63,9 +63,9 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     for (std::size_t i = 0; i + 1 < ends.count; ++i) {
         const double begin = ends.at[i], dt = ends.at[i + 1] - begin;
         const Unbroken u(signals, begin);
-        const Standing start = drive.standing(x, u.at(0.0, dt));
+        const Evaluation start = drive.evaluate(x, u.at(0.0, dt));
         if (has_bounds) check_bounds<double>(drive, start, begin);
-        const auto within = [&](double done, double to, const Standing& end, const auto& standing_at) {
+        const auto within = [&](double done, double to, const Evaluation& end, const auto& standing_at) {
             if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
             pauses(taken++, i);
             if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
@@ -95,7 +95,7 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
 }
 
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
-    Writer{out, 1}(drive.output(drive.standing(x, u), u));
+    Writer{out, 1}(drive.output(drive.evaluate(x, u), u));
 }
 
 }  // namespace strainwave::host

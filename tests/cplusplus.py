@@ -15,7 +15,7 @@ from strainwave import _core
 
 ROOT = Path(__file__).parents[1]
 INCLUDE = ROOT / "include"
-HEADERS = "#include <strainwave/integrate.hpp>\n#include <strainwave/models.hpp>\n"
+HEADERS = "#include <strainwave/drive.hpp>\n#include <strainwave/integrate.hpp>\n#include <strainwave/models.hpp>\n"
 # A pack is passed in a register or in memory as the machine has it; no ABI of ours crosses a library border.
 STRICT = ("-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-psabi", f"-I{INCLUDE}")
 

@@ -174,8 +174,8 @@ def held(value: Any) -> list[float]:
 def check_end(drive: sw.drives.PositionDrive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
     """What was recorded last is what the state at the end makes of the inputs; what sticks there stands still."""
     for side in ("input", "output"):
-        sticks = getattr(run.end, f"sliding_{side}") == 0.0
-        assert not sticks or getattr(run.end.motion, f"{side}_speed") == 0.0, f"{WRONG}the {side} sticks and moves"
+        sticks = getattr(run.end, f"{side}_slip_direction") == 0.0
+        assert not sticks or getattr(run.end.continuous, f"{side}_speed") == 0.0, f"{WRONG}the {side} sticks and moves"
     for name, now in zip(OUTPUTS, _core.now(drive, run.end, inputs)[:, 0], strict=True):
         assert abs(now - run[name][-1]) <= 1e-9 * np.abs(run[name]).max(), f"{WRONG}{name} at the end is not that of the state"
 

@@ -162,9 +162,9 @@ int main() {
     drive.gear.friction_input.model =
         friction::Thermal<double, AnyOf<double, friction::Varying>>{{friction::Quadratic<double>{.drag = 2e-5}}};
     auto state = drive.rest();
-    const Interval<double> input{{12.0}, {12.0}, {12.0}};
+    const Interval<Input<double>> input{{12.0}, {12.0}, {12.0}};
     for (int i = 0; i < 20000; ++i) state = step(drive, state, input, 1e-4);
-    std::printf("%.15g", state.motion.input_speed);
+    std::printf("%.15g", state.continuous.input_speed);
 }
 """
 

@@ -80,7 +80,7 @@ struct Choice {
     SW_VERB(advance)
     SW_VERB(current)
     SW_VERB(voltage)
-    SW_VERB(decay)
+    SW_VERB(relaxation_rate)
     SW_VERB(rate)
     SW_VERB(everett)
     SW_VERB(rising)
@@ -108,20 +108,20 @@ struct Choice {
     constexpr State rate(const State& x, const friction::Contact<S>& at) const {
         return visit([&](const auto& law) { return stored(law, friction::rate(law, own(law, x), at)); });
     }
-    constexpr State decay(const State& x, const friction::Contact<S>& at) const {
-        return visit([&](const auto& law) { return stored(law, friction::decay(law, own(law, x), at)); });
+    constexpr State relaxation_rate(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::relaxation_rate(law, own(law, x), at)); });
     }
-    constexpr State confined(const State& x, const friction::Contact<S>& at) const {
-        return visit([&](const auto& law) { return stored(law, friction::confined(law, own(law, x), at)); });
+    constexpr State clamped(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::clamped(law, own(law, x), at)); });
     }
-    constexpr State renewed(const State& x, const friction::Contact<S>& at) const {
-        return visit([&](const auto& law) { return stored(law, friction::renewed(law, own(law, x), at)); });
+    constexpr State update_mode(const State& x, const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::update_mode(law, own(law, x), at)); });
     }
     constexpr State advance(const State& x, const friction::Contact<S>& at, const S& dt) const {
         return visit([&](const auto& law) { return stored(law, friction::advance(law, own(law, x), at, dt)); });
     }
-    constexpr State settled(const friction::Contact<S>& at) const {
-        return visit([&](const auto& law) { return stored(law, friction::settled(law, at)); });
+    constexpr State steady_state(const friction::Contact<S>& at) const {
+        return visit([&](const auto& law) { return stored(law, friction::steady_state(law, at)); });
     }
 
     template <class Where>

@@ -2,8 +2,9 @@
 #include <strainwave/condition.hpp>
 #include <strainwave/control/reference.hpp>
 #include <strainwave/friction/contact.hpp>
-#include <strainwave/friction/sticking.hpp>
 #include <strainwave/gear.hpp>
+#include <strainwave/shaft.hpp>
+#include <strainwave/system.hpp>
 
 namespace strainwave {
 
@@ -22,12 +23,28 @@ struct Input {
         visit(SW_FIELD(m, load_torque, "N.m", "Torque that holds the output back, besides the load's own"));
         visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
     }
+
+    /// At a fraction of a step. Between the three instants the command is Hermite's cubic, all else the parabola through them.
+    static constexpr Input between(const Input& start, const Input& middle, const Input& end, const S& fraction, const S& dt) {
+        const auto late = fraction > S(0.5);
+        const S x = S(2.0) * fraction - select(late, S(1.0), S(0.0)), half = S(0.5) * dt;
+        const S a = select(late, middle.command, start.command), b = select(late, end.command, middle.command);
+        const S da = half * select(late, middle.command_rate, start.command_rate);
+        const S db = half * select(late, end.command_rate, middle.command_rate);
+        const S bend = S(3.0) * (b - a) - S(2.0) * da - db, turn = S(2.0) * (a - b) + da + db;
+        const auto parabola = [&](S Input::* signal) {
+            const S from = start.*signal, bow = S(2.0) * (from - S(2.0) * (middle.*signal) + end.*signal);
+            return from + fraction * ((end.*signal - from - bow) + fraction * bow);
+        };
+        return {a + x * (da + x * (bend + x * turn)), (da + x * (S(2.0) * bend + S(3.0) * x * turn)) / max(half, S(smallest)),
+                parabola(&Input::load_torque), parabola(&Input::temperature)};
+    }
 };
 
-/// What flows continuously. The transmission error theta_in / i - theta_out replaces the output angle.
+/// What changes continuously. The transmission error theta_in / i - theta_out replaces the output angle.
 template <class S, class MotorState, class ControlState, class FrictionInputState, class FrictionMeshState,
           class FrictionOutputState>
-struct Motion {
+struct Continuous {
     MotorState motor{};
     ControlState control{};
     S input_angle{0.0};
@@ -53,27 +70,27 @@ struct Motion {
 };
 
 /// A drive at one instant: the motion, and what it remembers of the past.
-template <class S, class Motion, class HysteresisState>
+template <class S, class Continuous, class HysteresisState>
 struct State {
-    Motion motion{};
+    Continuous continuous{};
     HysteresisState hysteresis{};
     S held_twist{0.0};
     S held_rate{0.0};
     S elapsed{0.0};
     S turns{0.0};
-    S sliding_input{1.0};
-    S sliding_output{1.0};
+    S input_slip_direction{1.0};
+    S output_slip_direction{1.0};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, motion, "What flows continuously"));
+        visit(SW_PART(m, continuous, "What changes continuously"));
         visit(SW_PART(m, hysteresis, "Memory of the hysteresis"));
         visit(SW_FIELD(m, held_twist, "rad", "Twist at which the hysteresis was last brought up to date"));
         visit(SW_FIELD(m, held_rate, "rad/s", "Rate of the twist there"));
         visit(SW_FIELD(m, elapsed, "s", "Time since"));
         visit(SW_FIELD(m, turns, "1", "Whole revolutions of the input"));
-        visit(SW_FIELD(m, sliding_input, "1", "Sense of sliding at the input, 0 while it sticks"));
-        visit(SW_FIELD(m, sliding_output, "1", "Sense of sliding at the output, 0 while it sticks"));
+        visit(SW_FIELD(m, input_slip_direction, "1", "Slip direction of the input shaft, 0 while it sticks"));
+        visit(SW_FIELD(m, output_slip_direction, "1", "Slip direction of the output shaft, 0 while it sticks"));
     }
 };
 
@@ -162,10 +179,12 @@ struct PositionDrive {
     using FrictionOutput = decltype(Gear{}.friction_output);
     using Hysteresis = decltype(Gear{}.hysteresis);
 
-    using Motion = strainwave::Motion<S, typename Motor::State, typename Control::State, typename FrictionInput::State,
-                                      typename FrictionMesh::State, typename FrictionOutput::State>;
-    using State = strainwave::State<S, Motion, typename Hysteresis::State>;
+    using Continuous = strainwave::Continuous<S, typename Motor::State, typename Control::State, typename FrictionInput::State,
+                                              typename FrictionMesh::State, typename FrictionOutput::State>;
+    using State = strainwave::State<S, Continuous, typename Hysteresis::State>;
+    using Input = strainwave::Input<S>;
     using Output = strainwave::Output<S>;
+    using Shaft = strainwave::Shaft<S>;
     using Contact = friction::Contact<S>;
 
     /// The places where friction acts.
@@ -173,20 +192,20 @@ struct PositionDrive {
         Contact input, mesh, output;
     };
 
-    /// Rate of the motion, the torques that friction which can stick must hold, and what they came from.
-    struct Flow {
-        Motion rate;
+    /// The rate of the continuous numbers, and what it was worked out from.
+    struct Derivatives {
+        Continuous rate;
         typename Gear::Mesh mesh;
         Contacts contacts;
         S voltage, current, load_torque;
-        S friction_input, friction_mesh, friction_output;  ///< of places that slide, N.m
-        S input_balance, output_balance;
+        S friction_input, friction_mesh, friction_output;  ///< N.m, of places that slip
+        S input_driving_torque, output_driving_torque;     ///< N.m, all but set-valued friction
     };
 
-    /// Where a drive stands at one instant: its state, brought up to date, and what flows there. A step leads from one to the next.
-    struct Standing {
+    /// A state, its memory brought up to date, and the derivatives there. A step leads from one to the next.
+    struct Evaluation {
         State state;
-        Flow flow;
+        Derivatives derivatives;
     };
 
     /// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
@@ -194,111 +213,121 @@ struct PositionDrive {
         State x{};
         // Once is enough without noise; with noise, whose amplitude follows the torque, a few rounds bring the twist to zero.
         for (int i = 0; i < 8; ++i)
-            x.motion.transmission_error = gear.geometry({}, S(0.0), x.motion.transmission_error, S(0.0)).error;
-        x.sliding_input = S(input_sticks() ? 0.0 : 1.0);
-        x.sliding_output = S(output_sticks() ? 0.0 : 1.0);
+            x.continuous.transmission_error = gear.geometry({}, S(0.0), x.continuous.transmission_error, S(0.0)).error;
+        x.input_slip_direction = S(input_sticks() ? 0.0 : 1.0);
+        x.output_slip_direction = S(output_sticks() ? 0.0 : 1.0);
         return x;
     }
 
-    constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u) const { return flow(x, y, u, mesh(x, y)); }
-
-    /// Where a drive in this state stands, brought up to date.
-    constexpr Standing standing(State x, const Input<S>& u) const {
-        const auto geometry = this->geometry(x, x.motion);
-        remember(x, geometry);
-        return {x, flow(x, x.motion, u, gear.loaded(geometry, x.hysteresis, x.held_twist))};
+    constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u) const {
+        return derivatives(x, y, u, mesh(x, y));
     }
 
-    constexpr Flow flow(const State& x, const Motion& y, const Input<S>& u, const typename Gear::Mesh& mesh) const {
+    /// Brings the memory of a state up to date.
+    constexpr Evaluation evaluate(State x, const Input& u) const {
+        const auto geometry = this->geometry(x, x.continuous);
+        commit(x, geometry);
+        return {x, derivatives(x, x.continuous, u, gear.loaded(geometry, x.hysteresis, x.held_twist))};
+    }
+
+    constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const typename Gear::Mesh& mesh) const {
         const auto reference = this->reference(x, y, u);
         const S voltage = control.voltage(y.control, reference), current = motor.current(y.motor, voltage, y.input_speed);
         const S motor_torque = motor.torque(current), load_torque = load.torque(output_angle(x, y)) + u.load_torque;
 
-        Motion rate{};
+        Continuous rate{};
         const Contacts at = contacts(x, y, mesh, u);
         const Resistance input = resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
         const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
         const Resistance output = resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
-        const S input_balance = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
-        const S output_balance = mesh.torque - load_torque - output.always;
+        const S input_driving_torque = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
+        const S output_driving_torque = mesh.torque - load_torque - output.always;
         rate.motor = motor.rate(y.motor, voltage, y.input_speed);
         rate.control = control.rate(y.control, reference);
         rate.input_angle = y.input_speed;
-        rate.input_speed = moving(at.input, input_balance - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
+        rate.input_speed =
+            moving(at.input, input_driving_torque - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
-        rate.output_speed = moving(at.output, output_balance - output.sliding) / inertia_of(load);
-        return {rate,          mesh,          at, voltage, current, load_torque, input.torque(), meshing.torque(), output.torque(),
-                input_balance, output_balance};
+        rate.output_speed = moving(at.output, output_driving_torque - output.sliding) / inertia_of(load);
+        return {rate,
+                mesh,
+                at,
+                voltage,
+                current,
+                load_torque,
+                input.torque(),
+                meshing.torque(),
+                output.torque(),
+                input_driving_torque,
+                output_driving_torque};
     }
 
-    /// How fast each member forgets itself [1/s]: what an explicit method could not follow.
-    constexpr Motion decay(const Motion& y, const Contacts& at) const {
-        Motion rates{};
-        rates.motor = motor.decay();
-        rates.friction_input = friction::decay(gear.friction_input, y.friction_input, at.input);
-        rates.friction_mesh = friction::decay(gear.friction_mesh, y.friction_mesh, at.mesh);
-        rates.friction_output = friction::decay(gear.friction_output, y.friction_output, at.output);
+    constexpr Continuous relaxation_rate(const Continuous& y, const Derivatives& now) const {
+        Continuous rates{};
+        rates.motor = motor.relaxation_rate();
+        rates.friction_input = friction::relaxation_rate(gear.friction_input, y.friction_input, now.contacts.input);
+        rates.friction_mesh = friction::relaxation_rate(gear.friction_mesh, y.friction_mesh, now.contacts.mesh);
+        rates.friction_output = friction::relaxation_rate(gear.friction_output, y.friction_output, now.contacts.output);
         return rates;
     }
-
-    /// The states of friction within what they can ever reach, also where an integrator's stage would leave it. `at` holds the
-    /// contacts of an instant close by.
-    constexpr Motion confined(Motion y, const Contacts& at, const S& per_input) const {
-        y.friction_input = friction::confined(gear.friction_input, y.friction_input, at.input.moving(y.input_speed));
-        y.friction_mesh = friction::confined(gear.friction_mesh, y.friction_mesh, at.mesh.moving(y.input_speed * per_input));
-        y.friction_output = friction::confined(gear.friction_output, y.friction_output, at.output.moving(y.output_speed));
+    constexpr Continuous clamped(Continuous y, const Derivatives& now) const {
+        const Contacts at = moved(now, y);
+        y.friction_input = friction::clamped(gear.friction_input, y.friction_input, at.input);
+        y.friction_mesh = friction::clamped(gear.friction_mesh, y.friction_mesh, at.mesh);
+        y.friction_output = friction::clamped(gear.friction_output, y.friction_output, at.output);
         return y;
     }
-
-    /// What a step keeps fixed of the states of friction, decided anew at its end.
-    constexpr Motion renewed(Motion y, const Contacts& at, const S& per_input) const {
-        y.friction_input = friction::renewed(gear.friction_input, y.friction_input, at.input.moving(y.input_speed));
-        y.friction_mesh = friction::renewed(gear.friction_mesh, y.friction_mesh, at.mesh.moving(y.input_speed * per_input));
-        y.friction_output = friction::renewed(gear.friction_output, y.friction_output, at.output.moving(y.output_speed));
+    constexpr Continuous update_mode(Continuous y, const Derivatives& now) const {
+        const Contacts at = moved(now, y);
+        y.friction_input = friction::update_mode(gear.friction_input, y.friction_input, at.input);
+        y.friction_mesh = friction::update_mode(gear.friction_mesh, y.friction_mesh, at.mesh);
+        y.friction_output = friction::update_mode(gear.friction_output, y.friction_output, at.output);
         return y;
     }
 
     /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
-    constexpr State aged(State x, const Input<S>& u, const S& dt) const {
-        const Contacts at = contacts(x, x.motion, mesh(x, x.motion), u);
-        x.motion.friction_input = friction::advance(gear.friction_input, x.motion.friction_input, at.input, dt);
-        x.motion.friction_mesh = friction::advance(gear.friction_mesh, x.motion.friction_mesh, at.mesh, dt);
-        x.motion.friction_output = friction::advance(gear.friction_output, x.motion.friction_output, at.output, dt);
+    constexpr State aged(State x, const Input& u, const S& dt) const {
+        const Contacts at = contacts(x, x.continuous, mesh(x, x.continuous), u);
+        x.continuous.friction_input = friction::advance(gear.friction_input, x.continuous.friction_input, at.input, dt);
+        x.continuous.friction_mesh = friction::advance(gear.friction_mesh, x.continuous.friction_mesh, at.mesh, dt);
+        x.continuous.friction_output = friction::advance(gear.friction_output, x.continuous.friction_output, at.output, dt);
         return x;
     }
 
-    /// Leads the hysteresis straight to a twist.
-    constexpr void lead(State& x, const S& twist) const {
+    /// Advances the hysteresis straight to a twist.
+    constexpr void advance_hysteresis(State& x, const S& twist) const {
         x.hysteresis = gear.hysteresis.advance(x.hysteresis, twist - x.held_twist);
         x.held_twist = twist;
         x.held_rate = x.elapsed = S(0.0);
     }
 
-    /// Brings the hysteresis up to date where the shafts now stand. Where the twist has turned round on the way it is led to the
-    /// turning point first: missing it would be an error of memory, that stays.
-    constexpr void remember(State& x, const typename Gear::Mesh& now) const {
+    /// Commits the twist at which the shafts now stand to the hysteresis. Where the twist has turned round on the way, the turning
+    /// point is committed first: to miss it would be an error of memory, which stays.
+    constexpr void commit(State& x, const typename Gear::Mesh& now) const {
         const auto turned = x.held_rate * now.twist_rate < S(0.0);
         if (any(turned)) {
             State there = x;
-            lead(there, turning_point(x, now));
+            advance_hysteresis(there, turning_point(x, now));
             x = chosen<S>(turned, there, x);
         }
-        lead(x, now.twist);
+        advance_hysteresis(x, now.twist);
         x.held_rate = now.twist_rate;
     }
 
-    /// The state becomes that `dt` [s] after it was remembered: its input angle within its turn, whole turns counted.
-    constexpr void wrap(State& x, const S& dt) const {
+    /// The state becomes that `dt` [s] after it was committed: its input angle within its turn, whole turns counted.
+    constexpr void finish_step(State& x, const S& dt) const {
         x.elapsed = dt;
-        const S turns = rint(x.motion.input_angle * S(0.5 / pi));
-        x.motion.input_angle = x.motion.input_angle - turns * S(2.0 * pi);
+        const S turns = rint(x.continuous.input_angle * S(0.5 / pi));
+        x.continuous.input_angle = x.continuous.input_angle - turns * S(2.0 * pi);
         x.turns = x.turns + turns;
     }
 
-    /// A state from outside, with each side's sense of sliding as its speed and its law have it.
+    /// A state from outside, with the slip direction of each shaft as its speed and its friction have it.
     constexpr State consistent(State x) const {
-        x.sliding_input = input_sticks() ? friction::sense_at(x.motion.input_speed, x.sliding_input) : S(1.0);
-        x.sliding_output = output_sticks() ? friction::sense_at(x.motion.output_speed, x.sliding_output) : S(1.0);
+        x.input_slip_direction =
+            Shaft{input_sticks(), input_inertia(), x.continuous.input_speed, x.input_slip_direction}.consistent_direction();
+        x.output_slip_direction =
+            Shaft{output_sticks(), inertia_of(load), x.continuous.output_speed, x.output_slip_direction}.consistent_direction();
         return x;
     }
 
@@ -312,14 +341,14 @@ struct PositionDrive {
     /// back-EMF and control. The larger eigenvalue of what two speeds do to their rates.
     constexpr S damping() const {
         State x = rest();
-        x.sliding_input = x.sliding_output = S(1.0);
+        x.input_slip_direction = x.output_slip_direction = S(1.0);
         const auto rate = [&](double input_speed, double output_speed) {
-            Motion y = x.motion;
+            Continuous y = x.continuous;
             y.input_speed = S(input_speed);
             y.output_speed = S(output_speed);
-            return flow(x, y, Input<S>{}).rate;
+            return derivatives(x, y, Input{}).rate;
         };
-        const Motion slow = rate(1.0, 1.0), by_input = rate(2.0, 1.0), by_output = rate(1.0, 2.0);
+        const Continuous slow = rate(1.0, 1.0), by_input = rate(2.0, 1.0), by_output = rate(1.0, 2.0);
         const S input = slow.input_speed - by_input.input_speed, output = slow.output_speed - by_output.output_speed;
         const S across = (slow.input_speed - by_output.input_speed) * (slow.output_speed - by_input.output_speed);
         const S mean = S(0.5) * (input + output), product = input * output - across, square = mean * mean - product;
@@ -337,83 +366,52 @@ struct PositionDrive {
         return sqrt(max(input / input_inertia(), presliding_stiffness(gear.friction_output) / inertia_of(load)));
     }
 
-    /// Whether a side can stick.
-    constexpr bool set_valued() const { return input_sticks() || output_sticks(); }
+    // Events: a shaft stops, or breaks away.
 
-    /// Whether a side sticks, in any lane.
+    constexpr bool has_events() const { return input_sticks() || output_sticks(); }
+
+    /// Whether a shaft sticks, in any lane.
     constexpr bool sticks(const State& x) const {
-        return (input_sticks() && any(x.sliding_input == S(0.0))) || (output_sticks() && any(x.sliding_output == S(0.0)));
+        return (input_sticks() && any(x.input_slip_direction == S(0.0))) ||
+               (output_sticks() && any(x.output_slip_direction == S(0.0)));
     }
-
-    /// How far both sides are from changing between sticking and sliding; below zero, one has.
-    constexpr S margin(const Standing& at) const { return min(margin_input(at.state, at.flow), margin_output(at.state, at.flow)); }
-
-    /// Whether a side that sticks is driven beyond what its friction holds, in any lane.
-    constexpr bool sets_off(const Standing& at) const {
-        return sticks(at.state) && ((input_sticks() && any(input_sets_off(at))) || (output_sticks() && any(output_sets_off(at))));
+    constexpr Array<Shaft, 2> shafts(const State& x, const Derivatives& now) const {
+        return {{input_shaft(x, now), output_shaft(x, now)}};
     }
-
-    /// The same with those sides sliding.
-    constexpr Standing released(const Standing& at, const Input<S>& u) const {
-        State x = at.state;
-        if (input_sticks()) x.sliding_input = select(input_sets_off(at), sign(at.flow.input_balance), x.sliding_input);
-        if (output_sticks()) x.sliding_output = select(output_sets_off(at), sign(at.flow.output_balance), x.sliding_output);
-        return standing(x, u);
+    constexpr void set_shaft(State& x, int i, const S& speed, const S& slip_direction) const {
+        (i == 0 ? x.continuous.input_speed : x.continuous.output_speed) = speed;
+        (i == 0 ? x.input_slip_direction : x.output_slip_direction) = slip_direction;
     }
-
-    /// The state `dt` [s] after `x`, at `end` but for what moves: its speeds are those that friction which can stick lets the two
-    /// sides reach under the torques of `now`, a side that its friction brings to rest sticking.
-    constexpr State arriving(const State& x, const Motion& end, const Flow& now, const S& dt) const {
-        State y = x;
-        y.motion = end;
-        const auto input = arrival(input_sticks(), x.sliding_input, x.motion.input_speed, input_inertia(), now.input_balance * dt,
-                                   hold_input(now) * dt, [&](const S& sense) { return input_friction(x, now, sense) * dt; });
-        const auto output =
-            arrival(output_sticks(), x.sliding_output, x.motion.output_speed, inertia_of(load), now.output_balance * dt,
-                    hold_output(now) * dt, [&](const S& sense) { return output_friction(x, now, sense) * dt; });
-        y.sliding_input = input.sliding;
-        y.sliding_output = output.sliding;
-        y.motion.input_speed = input.momentum / input_inertia();
-        y.motion.output_speed = output.momentum / inertia_of(load);
+    constexpr S slip_friction(int i, const State& x, const Derivatives& now, const S& direction) const {
+        return i == 0 ? input_friction(x, now, direction) : output_friction(x, now, direction);
+    }
+    constexpr void move_positions(State& x, const State& before, const S& dt) const {
         const S half = S(0.5) * dt, inverse = gear.kinematics.inverse_ratio();
-        y.motion.input_angle = x.motion.input_angle + half * (x.motion.input_speed + y.motion.input_speed);
-        y.motion.transmission_error =
-            x.motion.transmission_error +
-            half * (inverse * (x.motion.input_speed + y.motion.input_speed) - (x.motion.output_speed + y.motion.output_speed));
-        return y;
+        const Continuous& from = before.continuous;
+        Continuous& to = x.continuous;
+        to.input_angle = from.input_angle + half * (from.input_speed + to.input_speed);
+        to.transmission_error = from.transmission_error +
+                                half * (inverse * (from.input_speed + to.input_speed) - (from.output_speed + to.output_speed));
     }
 
-    /// At an event: the side whose margin is used up stops, or breaks away, or turns round.
-    template <class Mask>
-    constexpr State settled(const Standing& at, const Input<S>& u, const Mask& lanes) const {
-        State x = at.state;
-        const Flow& before = at.flow;
-        const auto at_input = lanes & !(margin_output(x, before) < margin_input(x, before));
-        const auto at_output = lanes & (margin_output(x, before) < margin_input(x, before));
-        const auto input_stops = at_input & !(x.sliding_input == S(0.0)), output_stops = at_output & !(x.sliding_output == S(0.0));
-        x.motion.input_speed = select(input_stops, S(0.0), x.motion.input_speed);
-        x.motion.output_speed = select(output_stops, S(0.0), x.motion.output_speed);
-        const Flow now = standing(x, u).flow;
-        x.sliding_input = select(at_input, friction::sense_after(now.input_balance, hold_input(now), input_stops), x.sliding_input);
-        x.sliding_output =
-            select(at_output, friction::sense_after(now.output_balance, hold_output(now), output_stops), x.sliding_output);
+    // Error control. The torque shows what the hysteresis holds; where it turns over, friction that grows with it holds nothing,
+    // be it for a moment.
+
+    constexpr S watched(const Evaluation& at) const { return at.derivatives.mesh.torque; }
+    constexpr State aligned(State x, const State& to) const {
+        x.continuous.input_angle = x.continuous.input_angle + S(2.0 * pi) * (x.turns - to.turns);
         return x;
     }
-
-    /// A drive whose event was settled in a state close by, `after` which its sides stand or slide: at the event itself friction
-    /// that holds one way only may not tell.
-    constexpr Standing as_settled(const Standing& at, const State& after, const Input<S>& u) const {
-        State x = at.state;
-        x.sliding_input = after.sliding_input;
-        x.sliding_output = after.sliding_output;
-        x.motion.input_speed = select(after.motion.input_speed == S(0.0), S(0.0), x.motion.input_speed);
-        x.motion.output_speed = select(after.motion.output_speed == S(0.0), S(0.0), x.motion.output_speed);
-        return standing(x, u);
+    constexpr Continuous speeds(const Continuous& y) const {
+        Continuous only{};
+        only.input_speed = y.input_speed;
+        only.output_speed = y.output_speed;
+        return only;
     }
 
-    /// Whether every part is valid where the drive stands; visit(part, Domain) of those that may not be.
+    /// Calls visit(part, Domain) for each part that is valid within bounds only.
     template <class Visit>
-    constexpr void bounds(const Flow& now, Visit&& visit) const {
+    constexpr void bounds(const Derivatives& now, Visit&& visit) const {
         if (bounded<S>(gear.stiffness)) visit("gear.stiffness", domain<S>(gear.stiffness, now.mesh.twist));
         if (bounded<Contact>(gear.friction_input)) visit("gear.friction_input", domain<S>(gear.friction_input, now.contacts.input));
         if (bounded<Contact>(gear.friction_mesh)) visit("gear.friction_mesh", domain<S>(gear.friction_mesh, now.contacts.mesh));
@@ -425,19 +423,18 @@ struct PositionDrive {
                bounded<Contact>(gear.friction_output);
     }
 
-    constexpr typename Gear::Mesh geometry(const State& x, const Motion& y) const {
+    constexpr typename Gear::Mesh geometry(const State& x, const Continuous& y) const {
         return gear.geometry({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
     }
-    constexpr typename Gear::Mesh mesh(const State& x, const Motion& y) const {
+    constexpr typename Gear::Mesh mesh(const State& x, const Continuous& y) const {
         return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist);
     }
 
-    constexpr Output output(const Standing& at, const Input<S>& u) const {
+    constexpr Output output(const Evaluation& at, const Input& u) const {
         const State& x = at.state;
-        const Flow& now = at.flow;
-        const Motion& y = x.motion;
-        const S of_input = input_sticks() ? friction::share_of_hold(now.input_balance, hold_input(now)) : S(0.0);
-        const S of_output = output_sticks() ? friction::share_of_hold(now.output_balance, hold_output(now)) : S(0.0);
+        const Derivatives& now = at.derivatives;
+        const Continuous& y = x.continuous;
+        const S of_input = input_shaft(x, now).share_of_hold(), of_output = output_shaft(x, now).share_of_hold();
         return {u.command,
                 input_angle(x, y),
                 y.input_speed,
@@ -477,57 +474,61 @@ private:
     }
     constexpr bool output_sticks() const { return friction::set_valued(gear.friction_output); }
 
+    constexpr Shaft input_shaft(const State& x, const Derivatives& now) const {
+        const S hold = input_sticks() ? input_hold(now) : S(0.0);
+        return {input_sticks(), input_inertia(), x.continuous.input_speed, x.input_slip_direction, now.input_driving_torque, hold};
+    }
+    constexpr Shaft output_shaft(const State& x, const Derivatives& now) const {
+        const S hold = output_sticks() ? output_hold(now) : S(0.0);
+        return {output_sticks(),         inertia_of(load),          x.continuous.output_speed,
+                x.output_slip_direction, now.output_driving_torque, hold};
+    }
+
     /// How each place moves and what it bears. The output's angle is split into whole turns before it is multiplied out.
-    constexpr Contacts contacts(const State& x, const Motion& y, const typename Gear::Mesh& mesh, const Input<S>& u) const {
+    constexpr Contacts contacts(const State& x, const Continuous& y, const typename Gear::Mesh& mesh, const Input& u) const {
         const S inverse = gear.kinematics.inverse_ratio(), turned = x.turns * inverse, turns = rint(turned);
         const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse;
-        return {
-            {y.input_speed, x.sliding_input, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, u.temperature},
-            {y.input_speed * mesh.per_input, along(mesh.per_input, x.sliding_input), {rigid, turns}, mesh.torque, u.temperature},
-            {y.output_speed, x.sliding_output, {rigid - y.transmission_error, turns}, mesh.torque, u.temperature}};
+        return {{y.input_speed, x.input_slip_direction, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, u.temperature},
+                {y.input_speed * mesh.per_input,
+                 along(mesh.per_input, x.input_slip_direction),
+                 {rigid, turns},
+                 mesh.torque,
+                 u.temperature},
+                {y.output_speed, x.output_slip_direction, {rigid - y.transmission_error, turns}, mesh.torque, u.temperature}};
     }
 
-    /// The largest torque that holds the input against what drives it, and likewise the output.
-    constexpr S hold_input(const Flow& now) const {
-        const S push = sign(now.input_balance), per_input = now.mesh.per_input;
+    /// The contacts of an instant, moving at other speeds.
+    constexpr Contacts moved(const Derivatives& now, const Continuous& y) const {
+        return {now.contacts.input.moving(y.input_speed), now.contacts.mesh.moving(y.input_speed * now.mesh.per_input),
+                now.contacts.output.moving(y.output_speed)};
+    }
+
+    /// The largest torque that holds a shaft against what drives it.
+    constexpr S input_hold(const Derivatives& now) const {
+        const S push = sign(now.input_driving_torque), per_input = now.mesh.per_input;
         const S held = friction::hold(gear.friction_input, now.contacts.input.pushed(push)) +
                        abs(per_input) * friction::hold(gear.friction_mesh, now.contacts.mesh.pushed(along(per_input, push)));
-        return max(held, S(friction::negligible_hold));
+        return max(held, S(negligible_hold));
     }
-    constexpr S hold_output(const Flow& now) const {
-        const S held = friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_balance)));
-        return max(held, S(friction::negligible_hold));
+    constexpr S output_hold(const Derivatives& now) const {
+        const S held = friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_driving_torque)));
+        return max(held, S(negligible_hold));
     }
 
-    /// The torque with which friction that can stick would oppose the input sliding one way, and likewise the output.
-    constexpr S input_friction(const State& x, const Flow& now, const S& sense) const {
+    /// The torque of set-valued friction against a shaft that slips one way.
+    constexpr S input_friction(const State& x, const Derivatives& now, const S& sense) const {
         const Contact mesh = now.contacts.mesh.pushed(along(now.mesh.per_input, sense));
-        return sliding(gear.friction_input, x.motion.friction_input, now.contacts.input.pushed(sense)) +
-               sliding(gear.friction_mesh, x.motion.friction_mesh, mesh) * now.mesh.per_input;
+        return sliding(gear.friction_input, x.continuous.friction_input, now.contacts.input.pushed(sense)) +
+               sliding(gear.friction_mesh, x.continuous.friction_mesh, mesh) * now.mesh.per_input;
     }
-    constexpr S output_friction(const State& x, const Flow& now, const S& sense) const {
-        return sliding(gear.friction_output, x.motion.friction_output, now.contacts.output.pushed(sense));
+    constexpr S output_friction(const State& x, const Derivatives& now, const S& sense) const {
+        return sliding(gear.friction_output, x.continuous.friction_output, now.contacts.output.pushed(sense));
     }
     template <class Law>
     static constexpr S sliding(const Law& law, const typename Law::State& x, const Contact& contact) {
         return friction::set_valued(law) ? friction::torque(law, x, contact) : S(0.0);
     }
 
-    constexpr auto input_sets_off(const Standing& at) const {
-        return friction::sets_off(at.state.sliding_input, hold_input(at.flow), at.flow.input_balance);
-    }
-    constexpr auto output_sets_off(const Standing& at) const {
-        return friction::sets_off(at.state.sliding_output, hold_output(at.flow), at.flow.output_balance);
-    }
-
-    constexpr S margin_input(const State& x, const Flow& now) const {
-        if (!input_sticks()) return S(unbounded);
-        return friction::margin(x.sliding_input, x.motion.input_speed, hold_input(now), now.input_balance);
-    }
-    constexpr S margin_output(const State& x, const Flow& now) const {
-        if (!output_sticks()) return S(unbounded);
-        return friction::margin(x.sliding_output, x.motion.output_speed, hold_output(now), now.output_balance);
-    }
     /// Torque per angle [N.m/rad] of a friction that is about to slip.
     template <class Law>
     static constexpr S presliding_stiffness(const Law& law) {
@@ -547,16 +548,7 @@ private:
         return x.held_twist + at * (begin + at * (S(0.5) * slope + at * bend * S(1.0 / 3.0)));
     }
 
-    /// How a side moves after the impulse `push`, be it one that `can_stick`.
-    template <class Friction>
-    static constexpr friction::Arrival<S> arrival(bool can_stick, const S& sliding, const S& speed, const S& inertia, const S& push,
-                                                  const S& hold, const Friction& friction) {
-        const S momentum = speed * inertia;
-        if (!can_stick) return {momentum + push, sliding};
-        return friction::arrival(sliding, momentum, push, hold, friction);
-    }
-
-    /// A side that sticks does not accelerate.
+    /// A shaft that sticks does not accelerate.
     static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
 
     /// A place that sticks balances its share of what drives its side.
@@ -566,12 +558,12 @@ private:
         return select(contact.sliding == S(0.0), share * friction::hold(law, contact.pushed(sign(share))), sliding);
     }
 
-    constexpr S input_angle(const State& x, const Motion& y) const { return y.input_angle + S(2.0 * pi) * x.turns; }
-    constexpr S output_angle(const State& x, const Motion& y) const {
+    constexpr S input_angle(const State& x, const Continuous& y) const { return y.input_angle + S(2.0 * pi) * x.turns; }
+    constexpr S output_angle(const State& x, const Continuous& y) const {
         return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;
     }
 
-    constexpr control::Reference<S> reference(const State& x, const Motion& y, const Input<S>& u) const {
+    constexpr control::Reference<S> reference(const State& x, const Continuous& y, const Input& u) const {
         const S ratio = gear.kinematics.ratio();
         return {u.command, ratio * u.command - input_angle(x, y), ratio * u.command_rate - y.input_speed};
     }

@@ -185,7 +185,7 @@ class Gear:
         Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of `trace`, to rounding, for every spring and hysteresis.
         """
 
-class Motion:
+class ContinuousState:
     """
     Parameters
     ----------
@@ -207,7 +207,7 @@ class Motion:
 
     def __init__(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_mesh: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_mesh: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> Motion:
+    def replace(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_mesh: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> ContinuousState:
         """The same with the named parameters changed."""
 
     @property
@@ -258,7 +258,7 @@ class Motion:
 
     def __reduce__(self) -> tuple[Any, ...]: ...
 
-    name: str = 'motion'
+    name: str = 'continuous'
 
     fields: tuple[dict[str, Any], ...]
 
@@ -266,14 +266,14 @@ class State:
     """
     Parameters
     ----------
-    motion: What flows continuously; default Motion(motor=(0.0,), control=(0.0,), input_angle=0.0, input_speed=0.0, transmission_error=0.0, output_speed=0.0, friction_input=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_mesh=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_output=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    continuous: What changes continuously; default ContinuousState(motor=(0.0,), control=(0.0,), input_angle=0.0, input_speed=0.0, transmission_error=0.0, output_speed=0.0, friction_input=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_mesh=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_output=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     hysteresis: Memory of the hysteresis; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     held_twist: Twist at which the hysteresis was last brought up to date [rad]; default 0.0
     held_rate: Rate of the twist there [rad/s]; default 0.0
     elapsed: Time since [s]; default 0.0
     turns: Whole revolutions of the input; default 0.0
-    sliding_input: Sense of sliding at the input, 0 while it sticks; default 1.0
-    sliding_output: Sense of sliding at the output, 0 while it sticks; default 1.0
+    input_slip_direction: Slip direction of the input shaft, 0 while it sticks; default 1.0
+    output_slip_direction: Slip direction of the output shaft, 0 while it sticks; default 1.0
 
     Raises
     ------
@@ -281,14 +281,14 @@ class State:
     ValueError: a number that is not finite or out of its range
     """
 
-    def __init__(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> None: ...
+    def __init__(self, *, continuous: ContinuousState = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., input_slip_direction: float = ..., output_slip_direction: float = ...) -> None: ...
 
-    def replace(self, *, motion: Motion = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., sliding_input: float = ..., sliding_output: float = ...) -> State:
+    def replace(self, *, continuous: ContinuousState = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., input_slip_direction: float = ..., output_slip_direction: float = ...) -> State:
         """The same with the named parameters changed."""
 
     @property
-    def motion(self) -> Motion:
-        """What flows continuously"""
+    def continuous(self) -> ContinuousState:
+        """What changes continuously"""
 
     @property
     def hysteresis(self) -> tuple[float, ...]:
@@ -311,12 +311,12 @@ class State:
         """Whole revolutions of the input"""
 
     @property
-    def sliding_input(self) -> float:
-        """Sense of sliding at the input, 0 while it sticks"""
+    def input_slip_direction(self) -> float:
+        """Slip direction of the input shaft, 0 while it sticks"""
 
     @property
-    def sliding_output(self) -> float:
-        """Sense of sliding at the output, 0 while it sticks"""
+    def output_slip_direction(self) -> float:
+        """Slip direction of the output shaft, 0 while it sticks"""
 
     def __repr__(self) -> str: ...
 
@@ -405,17 +405,17 @@ def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typ
     `state` with what friction remembers after `dt` [s] at constant speeds.
     """
 
-def led(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State:
+def advance_hysteresis(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State:
     """`state` with its hysteresis brought up to date at `twist` [rad]."""
 
 def consistent(drive: strainwave.drives.PositionDrive, state: State) -> State:
     """
-    `state` with each side's sense of sliding as its speed and its law have it.
+    `state` with the slip direction of each shaft as its speed and its law have it.
     """
 
-def released(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> State:
+def break_away(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> State:
     """
-    `state` with the sides set off that stick and are driven beyond what their friction holds.
+    `state` with those shafts slipping that stick and are driven beyond what their friction holds.
     """
 
 def differentiate_loop(gear: Gear, twist: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:

@@ -175,7 +175,7 @@ def linearise(
     if state is None:
         state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
     state = _core.consistent(drive, arguments.state("state", state))
-    if state.motion.input_speed != 0.0:
+    if state.continuous.input_speed != 0.0:
         drive = averaged(drive)
     slopes = [_core.differentiate_flow(drive, _vibrating(drive, state, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
     if not all(np.isfinite(each).all() for each in slopes):
@@ -198,31 +198,31 @@ def _vibrating(drive: PositionDrive, state: _core.State, inputs: Array, sense: f
     """`state` as a vibration finds it that is too small to change it and just passes in one `sense`, not for the first time."""
     twist = _core.now(drive, state, inputs)[TWIST].item()
     little, ratio = 1e-12 * max(abs(twist), 1e-3), abs(drive.gear.kinematics.ratio)
-    at_rest = state.motion.input_speed == state.motion.output_speed == 0.0
+    at_rest = state.continuous.input_speed == state.continuous.output_speed == 0.0
 
-    def passing(way: float) -> _core.Motion:
+    def passing(way: float) -> _core.ContinuousState:
         """The motion with the speeds of what rests but does not stick, `way` times a little within `SLOWLY`."""
         speed = way * little / SLOWLY
-        return found.motion.replace(
-            input_speed=state.motion.input_speed or (ratio * speed if state.sliding_input else 0.0),
-            output_speed=state.motion.output_speed or (speed if state.sliding_output else 0.0),
+        return found.continuous.replace(
+            input_speed=state.continuous.input_speed or (ratio * speed if state.input_slip_direction else 0.0),
+            output_speed=state.continuous.output_speed or (speed if state.output_slip_direction else 0.0),
         )
 
     found = state
     for way in (1.0, -2.0, 1.0):
         twist += way * little
-        found = _core.led(drive, found, twist)
+        found = _core.advance_hysteresis(drive, found, twist)
         if at_rest:
-            found = _core.aged(drive, found.replace(motion=passing(way)), inputs, SLOWLY)
-    return _core.led(drive, found, twist - 0.5 * sense * little).replace(motion=passing(sense))
+            found = _core.aged(drive, found.replace(continuous=passing(way)), inputs, SLOWLY)
+    return _core.advance_hysteresis(drive, found, twist - 0.5 * sense * little).replace(continuous=passing(sense))
 
 
 def _moving(state: _core.State, names: dict[int, str]) -> list[int]:
     """The places of what moves: all but the states of a side that sticks."""
     stuck = set[str]()
-    if state.sliding_input == 0.0:
+    if state.input_slip_direction == 0.0:
         stuck |= {"input_angle", "input_speed", "friction_input", "friction_mesh"}
-    if state.sliding_output == 0.0:
+    if state.output_slip_direction == 0.0:
         stuck |= {"output_speed", "friction_output", "transmission_error"}
     return [place for place, name in names.items() if name.partition(".")[0] not in stuck]
 
@@ -230,7 +230,7 @@ def _moving(state: _core.State, names: dict[int, str]) -> list[int]:
 def _tied(drive: PositionDrive, state: _core.State) -> Array:
     """The motion by its members, columns: while the output sticks, the transmission error goes with the input."""
     moved = np.eye(N_MOTION)
-    if state.sliding_output == 0.0:
+    if state.output_slip_direction == 0.0:
         moved[PLACE["transmission_error"], PLACE["input_angle"]] = 1.0 / drive.gear.kinematics.ratio
     return moved
 

@@ -123,7 +123,7 @@ def frequency_response(
     if start is None:
         start = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
     arguments.state("start", start)
-    if start.motion.input_speed != 0.0:
+    if start.continuous.input_speed != 0.0:
         drive = averaged(drive)
     warn_of_bristles(drive, max(_step(1.0 / f, dt) for f in frequencies.tolist()))
     sines = _Sines(drive, start, temperature, dt)

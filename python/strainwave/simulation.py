@@ -304,7 +304,7 @@ _NAMED: dict[Method, str] = {
 def _named(method: Method, drive: PositionDrive) -> str:
     """A method in words, as it is where friction of the drive holds its place at rest or does not."""
     rest = drive.rest()
-    sticks = not rest.sliding_input or not rest.sliding_output
+    sticks = not rest.input_slip_direction or not rest.output_slip_direction
     return _NAMED[method] + (", cut at events" if sticks and method != "moreau_jean" else "")
 
 

@@ -57,16 +57,16 @@ def equilibrium(
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> held = sw.equilibrium(sw.drives.PositionDrive(load=arm), command=0.5)
-    >>> held.motion.input_speed, held.motion.output_speed
+    >>> held.continuous.input_speed, held.continuous.output_speed
     (0.0, 0.0)
     """
     arguments.drive(drive)
     inputs = constant_inputs(command, load_torque, temperature)
     begin = _at_rest(drive, drive.rest() if start is None else arguments.state("start", start))
     found = _resting(drive, begin, inputs) or _running(averaged(drive), begin, inputs)
-    turns = round(found.motion.input_angle / tau)
-    motion = found.motion.replace(input_angle=found.motion.input_angle - tau * turns)
-    return found.replace(motion=motion, turns=found.turns + turns)
+    turns = round(found.continuous.input_angle / tau)
+    motion = found.continuous.replace(input_angle=found.continuous.input_angle - tau * turns)
+    return found.replace(continuous=motion, turns=found.turns + turns)
 
 
 def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:
@@ -90,7 +90,7 @@ def averaged(drive: PositionDrive) -> PositionDrive:
 # The motion as an array: what a solver moves
 
 
-_MOTION = {field["name"]: np.shape(getattr(_core.Motion(), field["name"])) for field in _core.Motion.fields}
+_MOTION = {field["name"]: np.shape(getattr(_core.ContinuousState(), field["name"])) for field in _core.ContinuousState.fields}
 _ENDS = np.cumsum([int(np.prod(shape)) for shape in _MOTION.values()])
 PLACE = {name: slice(end - int(np.prod(_MOTION[name])), end) for name, end in zip(_MOTION, _ENDS.tolist(), strict=True)}
 N_MOTION = int(_ENDS[-1])
@@ -98,7 +98,7 @@ N_MOTION = int(_ENDS[-1])
 
 def numbers_of(state: _core.State) -> Array:
     """The numbers of the motion, shape (N_MOTION,), each member in its `PLACE`."""
-    return np.concatenate([np.atleast_1d(getattr(state.motion, name)) for name in PLACE])
+    return np.concatenate([np.atleast_1d(getattr(state.continuous, name)) for name in PLACE])
 
 
 def with_numbers(state: _core.State, numbers: Array) -> _core.State:
@@ -106,7 +106,7 @@ def with_numbers(state: _core.State, numbers: Array) -> _core.State:
     members: dict[str, Any] = {
         name: numbers[place].tolist() if _MOTION[name] else numbers[place].item() for name, place in PLACE.items()
     }
-    return state.replace(motion=_core.Motion(**members))
+    return state.replace(continuous=_core.ContinuousState(**members))
 
 
 TWIST = [name for name, _, _ in _core.outputs].index("twist")
@@ -147,8 +147,8 @@ class Flow(ComparedByFields):
 
 def _at_rest(drive: PositionDrive, state: _core.State) -> _core.State:
     """`state` without its speeds, every side that can stick sticking."""
-    motion = state.motion.replace(input_speed=0.0, output_speed=0.0)
-    return _core.consistent(drive, state.replace(motion=motion, sliding_input=0.0, sliding_output=0.0))
+    motion = state.continuous.replace(input_speed=0.0, output_speed=0.0)
+    return _core.consistent(drive, state.replace(continuous=motion, input_slip_direction=0.0, output_slip_direction=0.0))
 
 
 def _resting(drive: PositionDrive, start: _core.State, inputs: Array) -> _core.State | None:
@@ -158,16 +158,21 @@ def _resting(drive: PositionDrive, start: _core.State, inputs: Array) -> _core.S
         slow = _Slow(drive, sliding, inputs)
         found = _balance(slow, slow.guess())
         last = slow.moved(slow.guess() if found is None else found)
-        freed = _core.released(drive, last, inputs)
+        freed = _core.break_away(drive, last, inputs)
         integral = Flow.of(drive, last, inputs).rate[PLACE["control"]].item()
-        if found is None and freed.sliding_input == 0.0:  # the integral grows until the input gives way
-            freed = freed.replace(sliding_input=float(np.sign(integral)))
-        if (freed.sliding_input, freed.sliding_output) == (sliding.sliding_input, sliding.sliding_output):
+        if found is None and freed.input_slip_direction == 0.0:  # the integral grows until the input gives way
+            freed = freed.replace(input_slip_direction=float(np.sign(integral)))
+        if (freed.input_slip_direction, freed.output_slip_direction) == (
+            sliding.input_slip_direction,
+            sliding.output_slip_direction,
+        ):
             break
-        sliding = sliding.replace(sliding_input=freed.sliding_input, sliding_output=freed.sliding_output)
+        sliding = sliding.replace(
+            input_slip_direction=freed.input_slip_direction, output_slip_direction=freed.output_slip_direction
+        )
     if found is None:
         return None
-    stopped = _at_rest(drive, _core.led(drive, last, _core.now(drive, last, inputs)[TWIST].item()))
+    stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST].item()))
     return stopped if Flow.of(drive, stopped, inputs).vanishes(slow.rows, 1e-9) else None  # a way without end is none
 
 
@@ -182,7 +187,7 @@ class _Slow(ComparedByFields):
     @property
     def free(self) -> tuple[bool, bool]:
         """Whether input and output may move."""
-        return self.start.sliding_input != 0.0, self.start.sliding_output != 0.0
+        return self.start.input_slip_direction != 0.0, self.start.output_slip_direction != 0.0
 
     @property
     def rows(self) -> list[int]:
@@ -196,7 +201,7 @@ class _Slow(ComparedByFields):
         numbers = numbers_of(self.start)
         if self.free[0] and _controls_position(self.drive):
             ratio = self.drive.gear.kinematics.ratio
-            turned = self.inputs[0] * ratio - tau * self.start.turns - self.start.motion.input_angle
+            turned = self.inputs[0] * ratio - tau * self.start.turns - self.start.continuous.input_angle
             numbers[PLACE["input_angle"]] += turned
             numbers[PLACE["transmission_error"]] += 0.0 if self.free[1] else turned / ratio
         return numbers
@@ -240,11 +245,11 @@ def _running(drive: PositionDrive, start: _core.State, inputs: Array) -> _core.S
     if found is None:
         raise ValueError(_unsteady(inputs, "the torques do not balance at any speed"))
     state = steady.moved(found)
-    motion = state.motion
-    elsewhere = Flow.of(drive, state.replace(motion=motion.replace(input_angle=motion.input_angle + 1.0)), inputs)
+    motion = state.continuous
+    elsewhere = Flow.of(drive, state.replace(continuous=motion.replace(input_angle=motion.input_angle + 1.0)), inputs)
     if not elsewhere.vanishes(steady.rows, 1e-9):
         raise ValueError(_unsteady(inputs, "load or friction depends on the angle that the drive turns through"))
-    return _core.led(drive, state, _core.now(drive, state, inputs)[TWIST].item())
+    return _core.advance_hysteresis(drive, state, _core.now(drive, state, inputs)[TWIST].item())
 
 
 def _unsteady(inputs: Array, why: str) -> str:

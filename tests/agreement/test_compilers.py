@@ -24,7 +24,9 @@ RUN_TIME_CHOICE = """
 
 def stepped(scalar: str, drive: str) -> str:
     """Makes the compiler write out the step of a drive."""
-    arguments = f"const {drive}&, const {drive}::State&, const strainwave::Interval<{scalar}>&, const {scalar}&"
+    arguments = (
+        f"const {drive}&, const {drive}::State&, const strainwave::Interval<strainwave::Input<{scalar}>>&, const {scalar}&"
+    )
     return f"template {drive}::State strainwave::step<{scalar}>({arguments});\n"
 
 

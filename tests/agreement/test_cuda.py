@@ -11,7 +11,8 @@ from tests.cplusplus import HEADERS, INCLUDE, drives
 
 KERNEL = """
 extern "C" __global__ void run_{number}(const {drive}* drive, {drive}::State* state,
-                                        const strainwave::Interval<{scalar}>* input, int members, int steps, {scalar} dt) {{
+                                        const strainwave::Interval<strainwave::Input<{scalar}>>* input,
+                                        int members, int steps, {scalar} dt) {{
     const int i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= members) return;
     auto x = state[i];

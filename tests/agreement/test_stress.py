@@ -56,6 +56,6 @@ def test_a_recording_that_contradicts_itself_is_told(column: str, said: str) -> 
 def test_what_sticks_and_moves_is_told() -> None:
     volts = Excitation(sw.scenario.constant(1.0, 0.01))
     run = sw.simulate(SLIDING, volts.command, 1e-4)
-    held = sw.Run({name: run[name] for name in run.names}, run.units, run.end.replace(sliding_input=0.0), run.method)
+    held = sw.Run({name: run[name] for name in run.names}, run.units, run.end.replace(input_slip_direction=0.0), run.method)
     with pytest.raises(AssertionError, match=r"^WRONG: the input sticks and moves$"):
         check(SLIDING, held, volts.over(volts.course(1e-4, None))[-1, -1])

@@ -69,7 +69,7 @@ def test_an_error_is_as_exact_after_many_turns_as_its_orders_are(error: Fourier,
     """The reference counts the fraction of a turn that each order has advanced in exact fractions."""
     drive = sw.drives.PositionDrive(gear=sw.Gear(kinematic_error=error))
     state = drive.rest()
-    turned = state.replace(turns=float(turns), motion=state.motion.replace(input_angle=angle))
+    turned = state.replace(turns=float(turns), continuous=state.continuous.replace(input_angle=angle))
     column = [name for name, *_ in _core.outputs].index("kinematic_error")
     expected = rounding = 0.0
     for order, amplitude, phase in zip(error.order, error.amplitude, error.phase, strict=True):

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <strainwave/drive.hpp>
 #include <strainwave/integrate.hpp>
 #include <strainwave/models.hpp>
 #include <strainwave/scalar/pack.hpp>
@@ -15,18 +16,20 @@ struct Chattering : Base {
     S wall{unbounded};
     mutable int events = 0, arrivals = 0;
 
-    using Standing = typename Base::Standing;
-    S before_wall(const Standing& at) const { return wall - at.state.motion.input_angle - S(2.0 * pi) * at.state.turns; }
-    S margin(const Standing& at) const { return min(Base::margin(at), before_wall(at)); }
+    using Evaluation = typename Base::Evaluation;
+    S before_wall(const Evaluation& at) const { return wall - at.state.continuous.input_angle - S(2.0 * pi) * at.state.turns; }
+    S of_base(const Evaluation& at) const { return system::event_function<S>(static_cast<const Base&>(*this), at); }
+    S event_function(const Evaluation& at) const { return min(of_base(at), before_wall(at)); }
     template <class Mask>
-    typename Base::State settled(const Standing& at, const Input<S>& u, const Mask& lanes) const {
+    typename Base::State apply_event(const Evaluation& at, const Input<S>& u, const Mask& lanes) const {
         ++events;
-        return chosen<S>(Base::margin(at) < before_wall(at), Base::settled(at, u, lanes), at.state);
+        const auto applied = system::apply_event(static_cast<const Base&>(*this), at, u, lanes);
+        return chosen<S>(of_base(at) < before_wall(at), applied, at.state);
     }
-    typename Base::State arriving(const typename Base::State& x, const typename Base::Motion& end, const typename Base::Flow& now,
-                                  const S& dt) const {
+    typename Base::State impulse_step(const typename Base::State& x, const typename Base::Continuous& end,
+                                      const typename Base::Derivatives& now, const S& dt) const {
         ++arrivals;
-        return Base::arriving(x, end, now, dt);
+        return system::impulse_step(static_cast<const Base&>(*this), x, end, now, dt);
     }
 };
 
@@ -86,18 +89,19 @@ int different(const double (&walls)[8], int steps) {
     Pack<8> wall{0.0};
     for (int lane = 0; lane < 8; ++lane) wall.set(lane, walls[lane]);
     Most most;
-    const auto together = flattened<Pack<8>>(run<Pack<8>>(wall, steps, most).motion);
+    const auto together = flattened<Pack<8>>(run<Pack<8>>(wall, steps, most).continuous);
     int count = 0;
     for (int lane = 0; lane < 8; ++lane) {
-        const auto alone = flattened<double>(run<double>(walls[lane], steps, most).motion);
+        const auto alone = flattened<double>(run<double>(walls[lane], steps, most).continuous);
         for (int i = 0; i < alone.size(); ++i) count += together[i][lane] != alone[i];
     }
     return count;
 }
 
 template <class D>
-typename D::Standing smooth_step(const D& drive, const typename D::Standing& from, const Interval<double>& u, double dt) {
-    return drive.standing(integrate::exponential_step(drive, from, u, dt), u.end);
+typename D::Evaluation smooth_step(const D& drive, const typename D::Evaluation& from, const Interval<Input<double>>& u,
+                                   double dt) {
+    return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 
 /// A tenth of a second in steps that keep a tolerance; tells how many end later than an event too.
@@ -111,14 +115,14 @@ void run_adaptively(double wall) {
     const int intervals = 1000;
     const double dt = 0.1 / intervals;
     for (int i = 0; i < intervals; ++i) {
-        const Interval<double> u{voltage<double>(i * dt), voltage<double>((i + 0.5) * dt), voltage<double>((i + 1) * dt)};
-        const auto within = [&](double, double, const typename Chatters::Standing& end, const auto&) {
-            late += wall == unbounded && drive.margin(end) < -1e-9;
+        const Interval<Input<double>> u{voltage<double>(i * dt), voltage<double>((i + 0.5) * dt), voltage<double>((i + 1) * dt)};
+        const auto within = [&](double, double, const typename Chatters::Evaluation& end, const auto&) {
+            late += wall == unbounded && system::event_function<double>(drive, end) < -1e-9;
         };
-        x = adaptive.through(drive.standing(x, u.start), u, dt, within).state;
+        x = adaptive.through(drive.evaluate(x, u.start), u, dt, within).state;
     }
     std::printf("%d %d %ld %ld", late, drive.events, adaptive.accepted, adaptive.rejected);
-    const auto y = flattened<double>(x.motion);
+    const auto y = flattened<double>(x.continuous);
     for (int i = 0; i < y.size(); ++i) std::printf(" %.17g", y[i]);
     std::printf("\n");
 }
@@ -142,16 +146,16 @@ int late_after_settling() {
     int late = 0;
     for (int k = 0; k < 400; ++k) {
         integrate::Adaptive<double, Settling, decltype(smooth)> adaptive(drive, smooth, {1e-6, 1e-12}, 1e-4);
-        const auto within = [&](double, double, const typename Settling::Standing& end, const auto&) {
-            late += drive.margin(end) < -1e-9;
+        const auto within = [&](double, double, const typename Settling::Evaluation& end, const auto&) {
+            late += system::event_function<double>(drive, end) < -1e-9;
         };
         Input<double> before{}, after{};
         before.load_torque = 1.0;
         after.load_torque = k % 2 ? 2.0 : 0.0;
         after.command = 10.0;
-        const Interval<double> settling{before, before, before}, moving{after, after, after};
-        const auto settled = adaptive.through(drive.standing(drive.rest(), before), settling, 0.25 + 1e-3 * k, within);
-        adaptive.through(drive.standing(settled.state, after), moving, 0.005, within);
+        const Interval<Input<double>> settling{before, before, before}, moving{after, after, after};
+        const auto settled = adaptive.through(drive.evaluate(drive.rest(), before), settling, 0.25 + 1e-3 * k, within);
+        adaptive.through(drive.evaluate(settled.state, after), moving, 0.005, within);
     }
     return late;
 }
@@ -160,7 +164,7 @@ int main() {
     for (const double wall : {unbounded, 0.6})
         for (const int steps : {100, 200, 400, 800}) {
             Most most;
-            const auto y = flattened<double>(run<double>(wall, steps, most).motion);
+            const auto y = flattened<double>(run<double>(wall, steps, most).continuous);
             std::printf("%d %d", most.events, most.arrivals);
             for (int i = 0; i < y.size(); ++i) std::printf(" %.17g", y[i]);
             std::printf("\n");

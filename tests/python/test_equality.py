@@ -43,7 +43,7 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "Experiment": lambda: Experiment("step", (("twin", RUN),), (Figure("error", "rad", (0.1,), 0.2),)),
     "drive": lambda: DRIVE,
     "state": lambda: RUN.end,
-    "motion": lambda: RUN.end.motion,
+    "motion": lambda: RUN.end.continuous,
 } | {name: partial(usual, kind) for family in _core.families.values() for name, kind in family.items()}
 
 made = cache(lambda name: MAKERS[name]())

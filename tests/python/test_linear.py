@@ -69,7 +69,7 @@ def test_gravity_adds_to_the_spring_while_the_input_sticks() -> None:
     """J w^2 = k + m g l cos theta_out, and the states of the input are gone."""
     drive = geared(damping=0.0, friction_input=sw.friction.Coulomb(coulomb=5.0))
     start = drive.rest()
-    state = sw.equilibrium(drive, start=start.replace(motion=start.motion.replace(input_angle=2.0)))
+    state = sw.equilibrium(drive, start=start.replace(continuous=start.continuous.replace(input_angle=2.0)))
     linear = sw.linearise(drive, state)
     assert linear.states == ("motor.current", "transmission_error", "output_speed")
     stiffness = K + 15.0 * np.cos(outputs(drive, state)["output_angle"])
@@ -198,16 +198,16 @@ def test_derivatives_are_those_of_differences(place: str, model: object, data: s
     elements = turning.gear.hysteresis  # each has two slopes where it begins to slip
     assume(all(abs(error - f / k) > 1e-7 for k, f in zip(elements.stiffness, elements.breakaway, strict=True)))
     at = drive.rest()
-    motion = at.motion.replace(
+    motion = at.continuous.replace(
         motor=(0.3,),
         control=(0.01,),
         input_angle=0.4,
         input_speed=sense * speed,
-        transmission_error=at.motion.transmission_error - error,
+        transmission_error=at.continuous.transmission_error - error,
         output_speed=sense * 0.02,
     )
     inputs = np.array([0.001, 0.02, 0.7, 300.0])
-    state = _core.aged(drive, _core.consistent(drive, at.replace(motion=motion)), inputs, 1e-4)
+    state = _core.aged(drive, _core.consistent(drive, at.replace(continuous=motion)), inputs, 1e-4)
     values, slopes = _core.differentiate_flow(drive, state, inputs)
     size = np.abs(values) + np.abs([*numbers_of(state), *inputs]) @ np.abs(slopes)
 
@@ -304,7 +304,7 @@ def test_warmth_is_an_input() -> None:
     law = sw.friction.Thermal(law=sw.friction.Viscous(viscous=2e-3), viscous_fall=0.025)
     drive = geared(DISC, friction_input=law)
     linear = sw.linearise(drive, command=12.0)
-    speed = sw.equilibrium(drive, command=12.0).motion.input_speed
+    speed = sw.equilibrium(drive, command=12.0).continuous.input_speed
     slower = 0.025 * 2e-3 * speed / (2e-3 + 0.1 * 0.12 / 0.5)
     assert linear.response(1e-6, "input_speed", "temperature").real == pytest.approx(slower, rel=1e-6)
 

@@ -156,11 +156,11 @@ def test_a_step_by_hand_is_refused_where_a_run_is() -> None:
     narrow = sw.friction.PositionDependent(constant=0.072, domain_start=-10.0, domain_end=9.3)
     bounded = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=narrow))
     rest = bounded.rest()
-    turned = rest.replace(motion=rest.motion.replace(input_speed=1e3), turns=2.0)
+    turned = rest.replace(continuous=rest.continuous.replace(input_speed=1e3), turns=2.0)
     with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = .* outside of \[-10, 9\.3\]"):
         bounded.step(turned, dt=1e-4)
     with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = .* first at t = 0\.0001 s"):
-        bounded.step(turned.replace(turns=1.0, motion=turned.motion.replace(input_angle=3.0)), dt=1e-4)
+        bounded.step(turned.replace(turns=1.0, continuous=turned.continuous.replace(input_angle=3.0)), dt=1e-4)
     with pytest.raises(FloatingPointError, match=r"^the step diverged; take a smaller dt"):
         DRIVE.step(DRIVE.rest(), command=1e308, dt=1e308)
 
@@ -556,7 +556,7 @@ def test_an_hour_of_steps_loses_no_angle_speed_or_twist() -> None:
     assert run["input_angle"][-1] == pytest.approx(w * (3600.0 - lag), rel=1e-12)
     assert abs(run["twist"][-1]) < 1e-12
     assert run.end.turns > HOUR
-    assert abs(run.end.motion.input_angle) <= math.pi
+    assert abs(run.end.continuous.input_angle) <= math.pi
 
 
 # What a run may start from, and at which steps
@@ -592,7 +592,7 @@ def test_a_start_in_motion_slides_whatever_the_state_says_of_sliding() -> None:
     )
     rest = drive.rest()
     for speed in (5.0, -5.0):
-        start = rest.replace(motion=rest.motion.replace(input_speed=speed))
+        start = rest.replace(continuous=rest.continuous.replace(input_speed=speed))
         run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), start=start)
         assert run["input_speed"][-1] == pytest.approx(np.sign(speed) * (5.0 - 0.01 * 0.2 / 1e-3), rel=1e-12)
         assert np.sign(run["friction_input"][-1]) == np.sign(speed)

@@ -12,7 +12,7 @@ from tests.cplusplus import HEADERS, INCLUDE, compilation, compiler, drives, zig
 
 STEP = """
 extern "C" void step_{number}(const {drive}* drive, {drive}::State* state,
-                              const strainwave::Interval<float>* input, float dt) {{
+                              const strainwave::Interval<strainwave::Input<float>>* input, float dt) {{
     *state = strainwave::step(*drive, *state, *input, dt);
 }}
 """

@@ -47,9 +47,9 @@ struct Contact {
 template <class Law>
 concept SetValued = requires(const Law& law) { law.hold({}); };
 
-/// A law with internal state that relaxes: rate = forcing - decay * state.
+/// A law with internal state that relaxes: rate = forcing - relaxation rate * state.
 template <class Law>
-concept Bristle = requires(const Law& law, const typename Law::State& x) { law.decay(x, {}); };
+concept Bristle = requires(const Law& law, const typename Law::State& x) { law.relaxation_rate(x, {}); };
 
 /// A law that is another, under a contact it modulates.
 template <class Law>
@@ -127,33 +127,33 @@ constexpr typename Law::State rate(const Law& law, const typename Law::State& x,
 
 /// How fast each member of the state forgets itself [1/s].
 template <class Law, class S>
-constexpr typename Law::State decay(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+constexpr typename Law::State relaxation_rate(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)
-        return decay(law.law, x, law.modulated(contact));
+        return relaxation_rate(law.law, x, law.modulated(contact));
     else if constexpr (Bristle<Law>)
-        return law.decay(x, contact);
+        return law.relaxation_rate(x, contact);
     else
         return {};
 }
 
 /// The state within what it can ever reach.
 template <class Law, class S>
-constexpr typename Law::State confined(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+constexpr typename Law::State clamped(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)
-        return confined(law.law, x, law.modulated(contact));
+        return clamped(law.law, x, law.modulated(contact));
     else if constexpr (Bristle<Law>)
-        return law.confined(x, contact);
+        return law.clamped(x, contact);
     else
         return x;
 }
 
 /// The state with what is either so or so, and stays that way over a step, decided anew.
 template <class Law, class S>
-constexpr typename Law::State renewed(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
+constexpr typename Law::State update_mode(const Law& law, const typename Law::State& x, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)
-        return renewed(law.law, x, law.modulated(contact));
-    else if constexpr (requires { law.renewed(x, contact); })
-        return law.renewed(x, contact);
+        return update_mode(law.law, x, law.modulated(contact));
+    else if constexpr (requires { law.update_mode(x, contact); })
+        return law.update_mode(x, contact);
     else
         return x;
 }
@@ -171,11 +171,11 @@ constexpr typename Law::State advance(const Law& law, const typename Law::State&
 
 /// The state of a contact that has long been sliding.
 template <class Law, class S>
-constexpr typename Law::State settled(const Law& law, const Contact<S>& contact) {
+constexpr typename Law::State steady_state(const Law& law, const Contact<S>& contact) {
     if constexpr (Modulation<Law>)
-        return settled(law.law, law.modulated(contact));
-    else if constexpr (requires { law.settled(contact); })
-        return law.settled(contact);
+        return steady_state(law.law, law.modulated(contact));
+    else if constexpr (requires { law.steady_state(contact); })
+        return law.steady_state(contact);
     else
         return {};
 }
@@ -183,7 +183,7 @@ constexpr typename Law::State settled(const Law& law, const Contact<S>& contact)
 /// Torque [N.m] that opposes steady sliding, all transients gone.
 template <class Law, class S>
 constexpr S steady(const Law& law, const Contact<S>& contact) {
-    return torque(law, settled(law, contact), contact.steady());
+    return torque(law, steady_state(law, contact), contact.steady());
 }
 
 }  // namespace strainwave::friction

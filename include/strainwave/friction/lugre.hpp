@@ -65,7 +65,7 @@ struct LuGre {
     };
 
     /// The bristle of a contact that has long been sliding.
-    constexpr State settled(const Contact<S>& contact) const { return {sign(contact.speed) * reach(contact)}; }
+    constexpr State steady_state(const Contact<S>& contact) const { return {sign(contact.speed) * reach(contact)}; }
 
     /// Torque that opposes the motion, in N.m, for the bristle as it stands.
     constexpr S torque(const State& x, const Contact<S>& contact) const { return torque(x, contact, rate(x, contact)); }
@@ -81,18 +81,18 @@ struct LuGre {
     }
 
     /// How fast the bristle forgets [1/s].
-    constexpr State decay(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / reach(contact)}; }
+    constexpr State relaxation_rate(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / reach(contact)}; }
 
     /// No motion bends the bristle beyond max(F_s, F_c) / sigma_0, whatever the history: an exact invariant.
-    constexpr State confined(const State& x, const Contact<S>& contact) const {
+    constexpr State clamped(const State& x, const Contact<S>& contact) const {
         const S limit = max(contact.dry_most * max(breakaway, coulomb) / bristle_stiffness, least_reach(contact.speed));
         return {clip(x.deflection, -limit, limit)};
     }
 
     /// The bristle after `dt` [s] under one contact: the exact solution, so any step is stable.
     constexpr State advance(const State& x, const Contact<S>& contact, const S& dt) const {
-        const S slipping = settled(contact).deflection;
-        return {slipping + (x.deflection - slipping) * exp(-decay(x, contact).deflection * dt)};
+        const S slipping = steady_state(contact).deflection;
+        return {slipping + (x.deflection - slipping) * exp(-relaxation_rate(x, contact).deflection * dt)};
     }
 
     /// Elastic energy [J] held by the bristle.

@@ -72,7 +72,7 @@ struct MaxwellSlipFriction {
     };
 
     /// The elements of a contact that has long been sliding.
-    constexpr State settled(const Contact<S>& contact) const {
+    constexpr State steady_state(const Contact<S>& contact) const {
         const S sense = sign(contact.speed), level = this->level(contact);
         State x{};
         for (int i = 0; i < stiffness.count; ++i) {
@@ -104,7 +104,7 @@ struct MaxwellSlipFriction {
     }
 
     /// How fast the elements forget [1/s]: not at all while they stick.
-    constexpr State decay(const State& x, const Contact<S>& contact) const {
+    constexpr State relaxation_rate(const State& x, const Contact<S>& contact) const {
         const S relaxation = this->relaxation(contact);
         State rates{};
         for (int i = 0; i < stiffness.count; ++i) rates.torque[i] = select(slipping(x, i), relaxation, S(0.0));
@@ -114,7 +114,7 @@ struct MaxwellSlipFriction {
     /// No motion loads an element beyond alpha_i F_s, whatever the history; and while it sticks, not beyond alpha_i s(v) in the
     /// sense of the motion: there it is about to slip. The way back is free: it may carry more than s(v), if it stuck before the
     /// speed rose.
-    constexpr State confined(const State& x, const Contact<S>& contact) const {
+    constexpr State clamped(const State& x, const Contact<S>& contact) const {
         const S sense = sign(contact.speed), highest = contact.dry_most * this->highest() / total();
         const S level = min(this->level(contact), highest);
         State within = x;
@@ -129,7 +129,7 @@ struct MaxwellSlipFriction {
     }
 
     /// Which elements stick and which slip from here on; for a solver that keeps this fixed over a step.
-    constexpr State renewed(const State& x, const Contact<S>& contact) const {
+    constexpr State update_mode(const State& x, const Contact<S>& contact) const {
         const S sense = sign(contact.speed), level = this->level(contact);
         State next = x;
         for (int i = 0; i < stiffness.count; ++i) next.slipping[i] = select(slips(x, i, sense, share[i] * level), S(1.0), S(0.0));

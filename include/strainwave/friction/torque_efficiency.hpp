@@ -56,7 +56,7 @@ struct TorqueEfficiency {
     };
 
     /// The engagement of a contact that has long been sliding.
-    constexpr State settled(const Contact<S>& contact) const { return {sign(contact.speed)}; }
+    constexpr State steady_state(const Contact<S>& contact) const { return {sign(contact.speed)}; }
 
     /// Torque that opposes the motion, in N.m, for the engagement as it stands.
     constexpr S torque(const State& x, const Contact<S>& contact) const {
@@ -70,15 +70,15 @@ struct TorqueEfficiency {
     }
 
     /// How fast the engagement forgets [1/s].
-    constexpr State decay(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / angle(contact)}; }
+    constexpr State relaxation_rate(const State&, const Contact<S>& contact) const { return {abs(contact.speed) / angle(contact)}; }
 
     /// No motion engages more than fully: an exact invariant.
-    constexpr State confined(const State& x, const Contact<S>&) const { return {clip(x.engagement, S(-1.0), S(1.0))}; }
+    constexpr State clamped(const State& x, const Contact<S>&) const { return {clip(x.engagement, S(-1.0), S(1.0))}; }
 
     /// The engagement after `dt` [s] under one contact: the exact solution.
     constexpr State advance(const State& x, const Contact<S>& contact, const S& dt) const {
-        const S full = settled(contact).engagement;
-        return {full + (x.engagement - full) * exp(-decay(x, contact).engagement * dt)};
+        const S full = steady_state(contact).engagement;
+        return {full + (x.engagement - full) * exp(-relaxation_rate(x, contact).engagement * dt)};
     }
 
     /// Energy [J] held by the engagement under this load.

@@ -39,51 +39,52 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
 }
 
 /// How many events a step may hold before they count as chattering.
-inline constexpr int most_events = 16;
+inline constexpr int max_events = 16;
 
-/// Leads a step that ended `there`, where a margin lies below zero, to its right end. Each stretch ends where a side stops or
-/// breaks away; that side is put exactly at rest or set sliding, and the next begins. Where events chatter, what is left of the
-/// step is one of Moreau and Jean's.
-template <class S, class Drive, class Smooth>
-constexpr void lead_through_events(const Drive& drive, const typename Drive::Standing& from, typename Drive::Standing& there,
-                                   const Interval<S>& u, const S& dt, const Smooth& smooth) {
+/// Repeats a step that ended `there`, behind an event, as stretches that end at events. At each, the event is applied and the next
+/// stretch begins. Where events chatter, what is left of the step is one of Moreau and Jean's.
+template <class S, class System, class Smooth>
+constexpr void step_through_events(const System& system, const typename System::Evaluation& from,
+                                   typename System::Evaluation& there, const Interval<typename System::Input>& u, const S& dt,
+                                   const Smooth& smooth) {
     auto here = from;
     S done{0.0};
-    const auto reach = [&](const S& fraction) { return smooth(drive, here, u.part(done, fraction, dt), (fraction - done) * dt); };
+    const auto reach = [&](const S& fraction) { return smooth(system, here, u.part(done, fraction, dt), (fraction - done) * dt); };
     for (int events = 0;; ++events) {
-        const S margin = drive.margin(there);
-        const auto crosses = margin < S(0.0);
+        const S left = system::event_function<S>(system, there);
+        const auto crosses = left < S(0.0);
         if (!any(crosses)) return;
-        if (events == most_events) {
-            const auto end = moreau_jean_step(drive, here, u.part(done, S(1.0), dt), (S(1.0) - done) * dt);
-            there = drive.standing(chosen<S>(crosses, end, there.state), u.end);
+        if (events == max_events) {
+            const auto end = moreau_jean_step(system, here, u.part(done, S(1.0), dt), (S(1.0) - done) * dt);
+            there = system.evaluate(chosen<S>(crosses, end, there.state), u.end);
             return;
         }
-        const auto at = [&](const S& fraction) { return drive.margin(reach(fraction)); };
-        const S moment = crossing(at, done, drive.margin(here), margin);
+        const auto at = [&](const S& fraction) { return system::event_function<S>(system, reach(fraction)); };
+        const S moment = crossing(at, done, system::event_function<S>(system, here), left);
         const auto then = u.part(S(0.0), moment, dt).end;
-        here = drive.standing(chosen<S>(crosses, drive.settled(reach(moment), then, crosses), there.state), then);
+        here = system.evaluate(chosen<S>(crosses, system::apply_event(system, reach(moment), then, crosses), there.state), then);
         done = moment;
         // A lane that has arrived takes no further step, not even of 0 s.
-        there = drive.standing(chosen<S>(done < S(1.0), reach(S(1.0)).state, here.state), u.end);
+        there = system.evaluate(chosen<S>(done < S(1.0), reach(S(1.0)).state, here.state), u.end);
     }
 }
 
-/// A step from where every side that sticks is held. To copy where a drive stands would take a tenth of the step: only events do.
-template <class S, class Drive, class Smooth>
-constexpr typename Drive::Standing held_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
-                                             const S& dt, const Smooth& smooth) {
-    auto there = smooth(drive, from, u, dt);
-    if (any(drive.margin(there) < S(0.0))) lead_through_events(drive, from, there, u, dt, smooth);
+/// A step from where every shaft that sticks is held. To copy an evaluation would take a tenth of the step: only events do.
+template <class S, class System, class Smooth>
+constexpr typename System::Evaluation held_step(const System& system, const typename System::Evaluation& from,
+                                                const Interval<typename System::Input>& u, const S& dt, const Smooth& smooth) {
+    auto there = smooth(system, from, u, dt);
+    if (any(system::event_function<S>(system, there) < S(0.0))) step_through_events(system, from, there, u, dt, smooth);
     return there;
 }
 
-/// One step with set-valued friction. `smooth` leads to the end of a step without events.
-template <class S, class Drive, class Smooth>
-constexpr typename Drive::Standing event_driven_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
-                                                     const S& dt, const Smooth& smooth) {
-    if (drive.sets_off(from)) return held_step(drive, drive.released(from, u.start), u, dt, smooth);
-    return held_step(drive, from, u, dt, smooth);
+/// One step with events. `smooth` takes a step without.
+template <class S, class System, class Smooth>
+constexpr typename System::Evaluation event_driven_step(const System& system, const typename System::Evaluation& from,
+                                                        const Interval<typename System::Input>& u, const S& dt,
+                                                        const Smooth& smooth) {
+    if (system::breaks_away(system, from)) return held_step(system, system::break_away(system, from, u.start), u, dt, smooth);
+    return held_step(system, from, u, dt, smooth);
 }
 
 }  // namespace strainwave::integrate

@@ -3,7 +3,7 @@
 
 namespace strainwave::integrate {
 
-/// Coefficients of Cox and Matthews (2002), eqs. (26)-(29), for one state that decays by e^-x over the step.
+/// Coefficients of Cox and Matthews (2002), eqs. (26)-(29), for one number that decays by e^-x over the step.
 template <class S>
 struct Exponential {
     S half{1.0}, full{1.0}, stage{0.5}, first{1.0 / 6.0}, middle{1.0 / 3.0}, last{1.0 / 6.0};
@@ -41,22 +41,23 @@ private:
     }
 };
 
-/// One step of the exponential scheme: every member of X obeys y' = n(y) - decay y with its decay frozen at the step's start.
-/// Where the decay is zero this is the classical Runge-Kutta scheme.
+/// One step of the exponential scheme: every number of X obeys y' = n(y) - rate y with its relaxation rate frozen at the step's
+/// start. Where that is zero this is the classical Runge-Kutta scheme.
 template <class S, class X>
 class Relaxation {
     static constexpr int n = size_of<S, X>;
     using Scalars = Array<S, n>;
-    Scalars decay, half, full, stage, first, middle, last;  // the last four times the step
+    Scalars relaxation, half, full, stage, first, middle, last;  // the last four times the step
 
 public:
-    constexpr Relaxation(const X& rates_of_decay, const S& dt) : decay(flattened<S>(rates_of_decay)) {
-        for_each_of<n>([&](int i) { set(i, any(decay[i] > S(0.0)) ? Exponential<S>::of(decay[i] * dt) : Exponential<S>{}, dt); });
+    constexpr Relaxation(const X& rates, const S& dt) : relaxation(flattened<S>(rates)) {
+        for_each_of<n>(
+            [&](int i) { set(i, any(relaxation[i] > S(0.0)) ? Exponential<S>::of(relaxation[i] * dt) : Exponential<S>{}, dt); });
     }
     constexpr Scalars forcing(const X& rate, const X& at) const {
         Scalars force = flattened<S>(rate);
         const Scalars y = flattened<S>(at);
-        for_each_of<n>([&](int i) { force[i] = force[i] + decay[i] * y[i]; });
+        for_each_of<n>([&](int i) { force[i] = force[i] + relaxation[i] * y[i]; });
         return force;
     }
     constexpr X halfway(const X& from, const Scalars& force) const {
@@ -92,26 +93,27 @@ private:
     }
 };
 
-/// One step without events, of fourth order: the bristles relax exactly, the hysteresis is a return map, the rest is the classical
+/// One step without events, of fourth order: what relaxes does so exactly, memory is a return map, the rest is the classical
 /// Runge-Kutta scheme.
-template <class S, class Drive>
-constexpr typename Drive::State exponential_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
-                                                 const S& dt) {
+template <class S, class System>
+constexpr typename System::State exponential_step(const System& system, const typename System::Evaluation& from,
+                                                  const Interval<typename System::Input>& u, const S& dt) {
+    using Continuous = typename System::Continuous;
     auto x = from.state;
-    const auto y1 = x.motion;
-    const auto& now = from.flow;
-    const auto rate = [&](const auto& y, const Input<S>& input) { return drive.flow(x, y, input).rate; };
-    const auto confined = [&](const auto& y) { return drive.confined(y, now.contacts, now.mesh.per_input); };
-    const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y1, now.contacts), dt);
+    const Continuous& y1 = from.state.continuous;
+    const auto& now = from.derivatives;
+    const auto rate = [&](const Continuous& y, const auto& input) { return system.derivatives(x, y, input).rate; };
+    const auto clamped = [&](const Continuous& y) { return system::clamped(system, y, now); };
+    const Relaxation<S, Continuous> scheme(system::relaxation_rate(system, y1, now), dt);
     const auto n1 = scheme.forcing(now.rate, y1);
-    const auto y2 = confined(scheme.halfway(y1, n1));
+    const auto y2 = clamped(scheme.halfway(y1, n1));
     const auto n2 = scheme.forcing(rate(y2, u.middle), y2);
-    const auto y3 = confined(scheme.halfway(y1, n2));
+    const auto y3 = clamped(scheme.halfway(y1, n2));
     const auto n3 = scheme.forcing(rate(y3, u.middle), y3);
-    const auto y4 = confined(scheme.onward(y2, n3, n1));
+    const auto y4 = clamped(scheme.onward(y2, n3, n1));
     const auto n4 = scheme.forcing(rate(y4, u.end), y4);
-    x.motion = drive.renewed(confined(scheme.complete(y1, n1, n2, n3, n4)), now.contacts, now.mesh.per_input);
-    drive.wrap(x, dt);
+    x.continuous = system::update_mode(system, clamped(scheme.complete(y1, n1, n2, n3, n4)), now);
+    system::finish_step(system, x, dt);
     return x;
 }
 

@@ -4,22 +4,24 @@
 namespace strainwave::integrate {
 
 /// One step of Moreau's and Jean's time-stepping scheme, of second order between events and without any: impulses of friction bring
-/// the sides that can stick to rest, or set them off, as part of the step (Acary and Brogliato 2008, section 10.1; the forces taken
-/// at the midpoint). States that relax do so exactly.
-template <class S, class Drive>
-constexpr typename Drive::State moreau_jean_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
-                                                 const S& dt) {
+/// shafts to rest, or break them away, as part of the step (Acary and Brogliato 2008, section 10.1; the forces taken at the
+/// midpoint). What relaxes does so exactly.
+template <class S, class System>
+constexpr typename System::State moreau_jean_step(const System& system, const typename System::Evaluation& from,
+                                                  const Interval<typename System::Input>& u, const S& dt) {
+    using Continuous = typename System::Continuous;
     auto x = from.state;
-    const auto y = x.motion;
-    const auto& now = from.flow;
-    const auto confined = [&](const auto& motion) { return drive.confined(motion, now.contacts, now.mesh.per_input); };
-    const Relaxation<S, typename Drive::Motion> scheme(drive.decay(y, now.contacts), dt);
+    const Continuous& y = from.state.continuous;
+    const auto& now = from.derivatives;
+    const auto clamped = [&](const Continuous& at) { return system::clamped(system, at, now); };
+    const Relaxation<S, Continuous> scheme(system::relaxation_rate(system, y, now), dt);
     const S half = S(0.5) * dt;
-    const auto middle = confined(drive.arriving(x, scheme.halfway(y, scheme.forcing(now.rate, y)), now, half).motion);
-    const auto then = drive.flow(x, middle, u.middle);
-    x = drive.arriving(x, scheme.across(y, scheme.forcing(then.rate, middle)), then, dt);
-    x.motion = drive.renewed(confined(x.motion), now.contacts, now.mesh.per_input);
-    drive.wrap(x, dt);
+    const Continuous middle =
+        clamped(system::impulse_step(system, x, scheme.halfway(y, scheme.forcing(now.rate, y)), now, half).continuous);
+    const auto then = system.derivatives(x, middle, u.middle);
+    x = system::impulse_step(system, x, scheme.across(y, scheme.forcing(then.rate, middle)), then, dt);
+    x.continuous = system::update_mode(system, clamped(x.continuous), now);
+    system::finish_step(system, x, dt);
     return x;
 }
 

@@ -11,7 +11,7 @@ class Factored {
 
 public:
     /// Gauss's elimination; in each column the largest pivot left, but a row that holds nothing else comes first: what it says is
-    /// then solved to the last bit, as that what sticks does not move.
+    /// then solved to the last bit, as a shaft that sticks does not move.
     constexpr explicit Factored(const Array<Array<S, n>, n>& matrix) : rows(matrix), order{} {
         for (int i = 0; i < n; ++i) order[i] = i;
         for (int k = 0; k < n; ++k) {
@@ -73,16 +73,16 @@ struct Ros34pw2 {
     }
 };
 
-/// What `rate` answers to each member of `y` by itself: the Jacobian, by differences towards zero, within what `confined` allows.
-template <class S, int n, class Rate, class Confined>
-constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Confined& confined, const Array<S, n>& y, const Array<S, n>& now,
+/// What `rate` answers to each member of `y` by itself: the Jacobian, by differences towards zero, within what `clamped` allows.
+template <class S, int n, class Rate, class Clamped>
+constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Clamped& clamped, const Array<S, n>& y, const Array<S, n>& now,
                                          const S& dt) {
     Array<Array<S, n>, n> matrix{};
     for (int j = 0; j < n; ++j) {
         const S moved = S(1e-7) * (abs(y[j]) + dt * abs(now[j])) + S(1e-10);
         Array<S, n> beside = y;
         beside[j] = y[j] - along(y[j], moved);
-        beside[j] = confined(beside)[j];
+        beside[j] = clamped(beside)[j];
         const S difference = beside[j] - y[j];
         if (difference == S(0.0)) continue;
         const Array<S, n> then = rate(beside);
@@ -95,20 +95,20 @@ constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Confined& confi
 
 /// One step without events of a Rosenbrock W-method, of third order: stable whatever the stiffness of the bristles. For scalars
 /// that are plain numbers.
-template <class S, class Drive>
-constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typename Drive::Standing& from, const Interval<S>& u,
-                                                const S& dt) {
-    using Motion = typename Drive::Motion;
+template <class S, class System>
+constexpr typename System::State rosenbrock_step(const System& system, const typename System::Evaluation& from,
+                                                 const Interval<typename System::Input>& u, const S& dt) {
+    using Continuous = typename System::Continuous;
     using Table = detail::Ros34pw2;
-    constexpr int n = size_of<S, Motion>;
+    constexpr int n = size_of<S, Continuous>;
     using Vector = Array<S, n>;
     auto x = from.state;
-    const auto& now = from.flow;
-    const auto confined = [&](const Vector& y) { return drive.confined(shaped<Motion>(y), now.contacts, now.mesh.per_input); };
-    const Vector y = flattened<S>(x.motion);
+    const auto& now = from.derivatives;
+    const auto clamped = [&](const Vector& at) { return system::clamped(system, shaped<Continuous>(at), now); };
+    const Vector y = flattened<S>(x.continuous);
     const auto matrix = detail::jacobian<S, n>(
-        [&](const Vector& beside) { return flattened<S>(drive.flow(x, shaped<Motion>(beside), u.start).rate); },
-        [&](const Vector& beside) { return flattened<S>(confined(beside)); }, y, flattened<S>(now.rate), dt);
+        [&](const Vector& beside) { return flattened<S>(system.derivatives(x, shaped<Continuous>(beside), u.start).rate); },
+        [&](const Vector& beside) { return flattened<S>(clamped(beside)); }, y, flattened<S>(now.rate), dt);
     Array<Vector, n> left{};
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) left[i][j] = S(i == j ? 1.0 : 0.0) - dt * S(Table::gamma) * matrix[i][j];
@@ -123,7 +123,7 @@ constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typena
                 at[i] = at[i] + S(Table::argument[stage][j]) * k[j][i];
                 coupled[i] = coupled[i] + S(Table::coupling[stage][j]) * k[j][i];
             }
-        const Vector rate = flattened<S>(drive.flow(x, confined(at), u.at(S(Table::abscissa(stage)), dt)).rate);
+        const Vector rate = flattened<S>(system.derivatives(x, clamped(at), u.at(S(Table::abscissa(stage)), dt)).rate);
         Vector right{};
         for (int i = 0; i < n; ++i) {
             right[i] = dt * rate[i];
@@ -132,8 +132,8 @@ constexpr typename Drive::State rosenbrock_step(const Drive& drive, const typena
         k[stage] = factored.solve(right);
         for (int i = 0; i < n; ++i) end[i] = end[i] + S(Table::weight[stage]) * k[stage][i];
     }
-    x.motion = drive.renewed(confined(end), now.contacts, now.mesh.per_input);
-    drive.wrap(x, dt);
+    x.continuous = system::update_mode(system, clamped(end), now);
+    system::finish_step(system, x, dt);
     return x;
 }
 

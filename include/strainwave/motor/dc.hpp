@@ -49,7 +49,7 @@ struct DC {
     constexpr S current(const State& x, const S& voltage, const S& speed) const { return compile().current(x, voltage, speed); }
     constexpr State rate(const State& x, const S& voltage, const S& speed) const { return compile().rate(x, voltage, speed); }
     /// How fast the current forgets itself [1/s].
-    constexpr State decay() const { return compile().decay(); }
+    constexpr State relaxation_rate() const { return compile().relaxation_rate(); }
     constexpr S torque(const S& current) const { return compile().torque(current); }
 
     /// The same motor with its divisions done.
@@ -63,7 +63,7 @@ struct DC {
         constexpr State rate(const State& x, const S& voltage, const S& speed) const {
             return {(voltage - resistance * x.current - back_emf * speed) * per_inductance};
         }
-        constexpr State decay() const { return {resistance * per_inductance}; }
+        constexpr State relaxation_rate() const { return {resistance * per_inductance}; }
         constexpr S torque(const S& current) const { return torque_constant * current; }
     };
 
