@@ -27,6 +27,7 @@ from strainwave import _core
 COMMAND = ("COMMAND_SLOPE", "COMMAND_AMPLITUDE", "COMMAND_FREQUENCY")
 HERE = Path(__file__).resolve().parent
 STEP = 2e-4  # s
+LANES = {"avx512": 8, "avx2": 4}  # of a pack, whose size is that of a register
 PACKS = 8
 ROUNDS = 15
 
@@ -79,18 +80,19 @@ def run(console: Console) -> None:
     if compiler is None:
         console.print("peak: there is no C++ compiler")
         return
+    lanes = LANES.get(_core.instruction_set(), 2)
     with console.status("peak"):
         operations, most = counted(compiler)
         drive, command = strainwave_drive.drive(), strainwave_drive.command()
-        inertias = {"load.inertia": OUTPUT_INERTIA * np.linspace(0.8, 1.2, PACKS * _core.lanes)}
+        inertias = {"load.inertia": OUTPUT_INERTIA * np.linspace(0.8, 1.2, PACKS * lanes)}
         runs = {
             "one trajectory": lambda: sw.simulate(drive, command, STEP, sample=DURATION),
-            f"packs of {_core.lanes}": lambda: sw.simulate_many(drive, command, inertias, STEP, sample=DURATION, threads=1),
+            f"packs of {lanes}": lambda: sw.simulate_many(drive, command, inertias, STEP, sample=DURATION, threads=1),
         }
         alone, packed = (time * STEP / DURATION for time in shortest(runs, ROUNDS).values())
         uses = [
             Use("one trajectory", operations, alone, most),
-            Use(f"packs of {_core.lanes}", _core.lanes * operations, packed / PACKS, most),
+            Use(f"packs of {lanes}", lanes * operations, packed / PACKS, most),
         ]
     tell(console, f"Of at most {three_digits(1e-9 * most)}e9 operations a second", COLUMNS, [row(use) for use in uses])
     save("peak", uses)

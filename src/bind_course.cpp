@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "bind.hpp"
+#include "arrays.hpp"
 #include "instruction_set.hpp"
 
 namespace strainwave::host {

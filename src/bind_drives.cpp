@@ -1,8 +1,10 @@
 #include <nanobind/stl/function.h>
+#include <nanobind/stl/vector.h>
 
 #include <new>
 
 #include "instruction_set.hpp"
+#include "state.hpp"
 #include "verbs.hpp"
 
 namespace strainwave::host {
@@ -40,31 +42,52 @@ double* place_in(const Outputs& out, std::size_t first, std::size_t count) {
     return out.data() + first;
 }
 
-Drive::State run_one(const Drive& drive, const Drive::State& start, const Numbers& instants, const Numbers& inputs,
-                     const Flags& keep, Method method, const Outputs& out, std::size_t first, const nb::object& progress) {
+/// The state of a drive from its numbers as Python holds them, and back.
+Drive::State state_from(const Drive& drive, const Numbers& numbers) {
+    std::size_t count = 0;
+    const Drive::State state = state_of(drive, [&](int i) {
+        ++count;
+        return std::size_t(i) < numbers.size() ? numbers.data()[i] : 0.0;
+    });
+    if (count != numbers.size()) throw nb::value_error("a state has as many numbers as its drive names");
+    return state;
+}
+Values array_of(const Drive& drive, const Drive::State& state) {
+    const auto numbers = numbers_of(drive, state);
+    Values out = array({numbers.size()});
+    std::copy(numbers.begin(), numbers.end(), out.data());
+    return out;
+}
+
+Values run_one(const Drive& drive, const Numbers& start, const Numbers& instants, const Numbers& inputs, const Flags& keep,
+               Method method, const Outputs& out, std::size_t first, const nb::object& progress) {
     const Request request(instants, inputs, keep);
     double* const place = place_in(out, first, request.kept);
     const Pause pause = pausing(progress);
     const auto simulate = kernels().simulate;
-    nb::gil_scoped_release free;
-    return simulate(drive, start, request.course, method, place, out.shape(1), pause);
+    Drive::State state = state_from(drive, start);
+    {
+        nb::gil_scoped_release free;
+        state = simulate(drive, state, request.course, method, place, out.shape(1), pause);
+    }
+    return array_of(drive, state);
 }
 
-nb::tuple run_adaptively(const Drive& drive, const Drive::State& start, const Signal& command, const Signal& load_torque,
+nb::tuple run_adaptively(const Drive& drive, const Numbers& start, const Signal& command, const Signal& load_torque,
                          const Signal& temperature, const Numbers& ends, double relative, double absolute, long most_steps,
                          const Numbers& samples, const Outputs& out, std::size_t first, const nb::object& progress) {
     if (ends.size() < 2) throw nb::value_error("steps lead from one instant to another");
     double* const place = place_in(out, first, samples.size());
     const Pause pause = pausing(progress);
-    Drive::State end;
+    Drive::State state = state_from(drive, start);
     Steps steps;
     const auto simulate = kernels().simulate_adaptively;
     {
         nb::gil_scoped_release free;
-        end = simulate(drive, start, {command, load_torque, temperature}, {ends.data(), ends.size()}, {relative, absolute},
-                       most_steps, {samples.data(), samples.size()}, place, out.shape(1), steps, pause);
+        state = simulate(drive, state, {command, load_torque, temperature}, {ends.data(), ends.size()}, {relative, absolute},
+                         most_steps, {samples.data(), samples.size()}, place, out.shape(1), steps, pause);
     }
-    return nb::make_tuple(end, steps.accepted, steps.rejected);
+    return nb::make_tuple(array_of(drive, state), steps.accepted, steps.rejected);
 }
 
 /// What went wrong, in words.
@@ -125,79 +148,50 @@ nb::tuple run_derivatives(const Drive& drive, const Numbers& instants, const Num
     return nb::make_tuple(out, slopes);
 }
 
-double vibration(const Drive& drive, double twist) { return drive.vibration(std::abs(twist)); }
-
-double fastest_of(const Drive& drive, double twist) { return drive.fastest(std::abs(twist)); }
-
-double bristle_vibration(const Drive& drive) { return drive.bristle_vibration(); }
-
 Input<double> input_of(const Numbers& u) {
     if (u.size() != 4) throw nb::value_error("inputs at an instant are command, its rate, load torque and temperature");
     return {u.data()[0], u.data()[1], u.data()[2], u.data()[3]};
 }
 
-Values now(const Drive& drive, const Drive::State& x, const Numbers& u) {
+Values now(const Drive& drive, const Numbers& state, const Numbers& u) {
     Values out = array({std::size_t(channels), 1});
-    kernels().observe(drive, x, input_of(u), out.data());
+    kernels().observe(drive, state_from(drive, state), input_of(u), out.data());
     return out;
 }
 
-nb::tuple flow_derivatives(const Drive& drive, const Drive::State& x, const Numbers& u) {
-    Values out = array({std::size_t(motions + channels)}),
-           slopes = array({std::size_t(motions + driving), std::size_t(motions + channels)});
-    kernels().differentiate_flow(drive, x, input_of(u), out.data(), slopes.data());
+nb::tuple rate_derivatives(const Drive& drive, const Numbers& numbers, const Numbers& u) {
+    const Drive::State state = state_from(drive, numbers);
+    const std::size_t count = numbers_of(drive, state.continuous).size();
+    Values out = array({count + channels}), slopes = array({count + driving, count + channels});
+    kernels().differentiate_rates(drive, state, input_of(u), out.data(), slopes.data());
     return nb::make_tuple(out, slopes);
 }
 
-/// Appends number, name and unit of each number of a state, or of the state of the model chosen.
-struct Naming {
-    nb::list& list;
-    std::string prefix;
-    int number;
-
-    template <class T>
-    void operator()(const T& member, const Field& field) {
-        if constexpr (is_array<T>)
-            for (int i = 0; i < member.size(); ++i) append(std::string(field.name) + "[" + std::to_string(i) + "]", field);
-        else
-            append(field.name, field);
-    }
-    template <class Law>
-    void chosen(const Law& law) {
-        if constexpr (is_choice<Law>) {
-            law.visit([&](const auto& model) { chosen(model); });
-        } else if constexpr (friction::Modulation<Law>) {
-            chosen(law.law);
-        } else if constexpr (requires { typename Law::State; }) {
-            const typename Law::State state{};
-            Law::State::fields(state, *this);
-        }
-    }
-
-private:
-    void append(const std::string& name, const Field& field) { list.append(nb::make_tuple(number++, prefix + name, field.unit)); }
-};
-
-/// What flows in a drive with the models chosen.
-nb::list motion_of(const Drive& drive) {
+/// Name, unit and part of each number of a state, and how many of them are continuous.
+nb::tuple state_of_drive(const Drive& drive) {
     nb::list list;
-    int number = 0;
-    const Drive::Continuous motion{};
-    Drive::Continuous::fields(motion, [&]<class T>(const T& member, const Field& field) {
-        if constexpr (is_slots<T>) {
-            Naming naming{list, std::string(field.name) + ".", number};
-            const std::string part = field.name;
-            if (part == "motor") naming.chosen(drive.motor);
-            if (part == "control") naming.chosen(drive.control);
-            if (part == "friction_input") naming.chosen(drive.gear.friction_input);
-            if (part == "friction_mesh") naming.chosen(drive.gear.friction_mesh);
-            if (part == "friction_output") naming.chosen(drive.gear.friction_output);
-            number += member.slot.size();
-        } else {
-            Naming{list, "", number++}(member, field);
-        }
+    Drive::State state = drive.initial_state();
+    each_number(drive, state, [&](double, const std::string& part, int element, const Field& field) {
+        std::string name = part + (part.empty() ? "" : ".") + field.name;
+        if (element >= 0) name += "[" + std::to_string(element) + "]";
+        list.append(nb::make_tuple(name, field.unit, part.empty() ? field.name : part));
     });
-    return list;
+    return nb::make_tuple(list, numbers_of(drive, state.continuous).size());
+}
+
+/// What a state of a drive belongs to: of each part that has a state, the models chosen and their element counts.
+nb::dict shape_of(const Drive& drive) {
+    nb::dict shapes;
+    drive.stateful_parts([&](const char* name, const auto& part) {
+        std::string text;
+        const auto number = [](const std::string&, double, const Field&) {};
+        const auto structure = [&](int n) { text += (text.empty() ? "" : " ") + std::to_string(n); };
+        Walk walk{number, structure};
+        walk(part, Field{name, "", ""});
+        const std::string model = part.visit([](const auto& law) { return std::string(law.name); });
+        shapes[name] = nb::make_tuple(model, text);
+    });
+    return shapes;
 }
 
 nb::tuple loop_derivatives(const AnyGear<double>& gear, const Numbers& twist, const std::vector<int>& parameters) {
@@ -215,40 +209,21 @@ nb::tuple steady_derivatives(const AnyGear<double>& gear, const Numbers& speed, 
 }
 
 /// What is known of every number of a set: path, value, unit, doc, min, max.
-template <class M>
-void bind_numbers(nb::module_& core) {
-    const std::string type = python_type<M>(false);
-    core.def(
-        "parameters",
-        [](const M& model) {
-            nb::list list;
-            for (const Parameter& p : parameters_of(model))
-                list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc,
-                                           p.field.min <= -unbounded ? -HUGE_VAL : p.field.min,
-                                           p.field.max >= unbounded ? HUGE_VAL : p.field.max));
-            return list;
-        },
-        nb::arg("model"), nb::sig(kept("def parameters(model: " + type + ") -> list[tuple[str, float, str, str, float, float]]")),
-        "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
-    core.def(
-        "with_numbers",
-        [](const M& model, const std::vector<double>& numbers) {
-            const Parts parts = parts_of(model);
-            if (numbers.size() != parts.numbers.size())
-                throw nb::value_error("as many numbers as the model has parameters are needed");
-            const M other = assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
-            const std::string problem = problem_of(other);
-            if (!problem.empty()) throw nb::value_error(problem.c_str());
-            return other;
-        },
-        nb::arg("model"), nb::arg("numbers"),
-        nb::sig(kept("def with_numbers(model: " + type + ", numbers: collections.abc.Sequence[float]) -> " + type)),
-        "The same models with other numbers, in the order of `parameters`.");
+nb::list parameters_in(nb::handle model) {
+    const Description& description = description_of(model);
+    nb::list list;
+    for (const Parameter& p : description.parameters(model_in(model, description)))
+        list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc, p.field.min <= -unbounded ? -HUGE_VAL : p.field.min,
+                                   p.field.max >= unbounded ? HUGE_VAL : p.field.max));
+    return list;
 }
 
-template <template <class...> class... Law>
-void bind_numbers_of(nb::module_& core, List<Law...>) {
-    (bind_numbers<AtRunTime<Law, double>>(core), ...);
+nb::object with_numbers(nb::handle model, const std::vector<double>& numbers) {
+    const Description& description = description_of(model);
+    const void* const from = model_in(model, description);
+    if (numbers.size() != description.parameters(from).size())
+        throw nb::value_error("as many numbers as the model has parameters are needed");
+    return description.with_numbers(from, numbers);
 }
 
 /// Spring and hysteresis of a gear whose input is held, twisted slowly.
@@ -315,7 +290,7 @@ void bind_drives(nb::module_& core) {
     drives.attr("__doc__") = "Drives: motor, control, gear and load.";
     core.attr("drives") = drives;
 
-    auto gear = bind<Gear>(core, "Gear", "gear");
+    const Bound<Gear> gear{bind<Gear>(core, "Gear", "gear"), description_of<Gear>("Gear", "gear")};
     verb(gear, "save", {{"path", "str | pathlib.Path"}, {"*", ""}, {"name", "str"}, {"source", "str"}}, "None",
          "Writes a gear file, as `strainwave.save` does.", [](const Gear& self, const Call& call) {
              nb::module_::import_("strainwave.gear_set")
@@ -345,24 +320,30 @@ void bind_drives(nb::module_& core) {
             PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this; take fewer samples at a time");
         }
     });
-    auto drive = bind<Drive>(drives, "PositionDrive", "position_drive");
-    bind<Drive::Continuous>(core, "ContinuousState", "continuous");
-    bind<Drive::State>(core, "State", "state");
-    verb(drive, "rest", {}, python_type<Drive::State>(false), "The state at rest, untwisted and without history, input angle 0.",
-         [](const Drive& self, const Call&) { return self.rest(); });
+    const Bound<Drive> drive{bind<Drive>(drives, "PositionDrive", "position_drive"),
+                             description_of<Drive>("PositionDrive", "position_drive")};
+    const auto as_state = [](const Drive& self, const Values& numbers) {
+        return nb::module_::import_("strainwave.state").attr("State").attr("of")(self, numbers);
+    };
+    verb(drive, "rest", {}, "strainwave.state.State", "The state at rest, untwisted and without history, input angle 0.",
+         [as_state](const Drive& self, const Call&) { return as_state(self, array_of(self, kernels().rest(self))); });
     verb(drive, "step",
-         {{"state", kept(python_type<Drive::State>(false))},
+         {{"state", "strainwave.state.State"},
           {"*", ""},
           {"command", "float", "0.0"},
           {"command_rate", "float", "0.0"},
           {"load_torque", "float", "0.0"},
           {"temperature", "float", "293.15"},
           {"dt", "float"}},
-         python_type<Drive::State>(false),
-         "The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, for a `dt` or a "
-         "`temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.",
-         [](const Drive& self, const Call& call) {
-             const auto state = call.part<Drive::State>("state");
+         "strainwave.state.State",
+         "The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for a state of another drive, for what is "
+         "not "
+         "finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the "
+         "step diverges.",
+         [as_state](const Drive& self, const Call& call) {
+             const nb::object given =
+                 nb::module_::import_("strainwave.state").attr("start_of")(self, call["state"], "state").attr("numbers");
+             const Drive::State state = state_from(self, nb::cast<Numbers>(given));
              const double command = call.real("command"), command_rate = call.real("command_rate"),
                           load_torque = call.real("load_torque"), temperature = call.real("temperature"), dt = call.real("dt");
              const auto require = [](bool holds, const char* name, double value, const char* unit, const char* allowed) {
@@ -379,25 +360,19 @@ void bind_drives(nb::module_& core) {
                  return Input<double>{command + share * dt * command_rate, command_rate, load_torque, temperature};
              };
              const Interval<Input<double>> u{at(0.0), at(0.5), at(1.0)};
-             const auto before = self.evaluate(self.consistent(state), u.start);
-             check_bounds<double>(self, before, 0.0);
-             const auto after = step<double>(self, before, u, dt, called_step<double, Drive>);
-             check_bounds<double>(self, after, dt);
-             bool finite = true;
-             const auto numbers = flattened<double>(after.state);
-             for (int i = 0; i < numbers.size(); ++i) finite = finite && std::isfinite(numbers[i]);
-             if (!finite) {
+             const Values numbers = array_of(self, kernels().step_once(self, state, u, dt));
+             if (!std::all_of(numbers.data(), numbers.data() + numbers.size(), [](double x) { return std::isfinite(x); })) {
                  PyErr_SetString(PyExc_FloatingPointError, "the step diverged; take a smaller dt or check the parameters");
                  throw nb::python_error();
              }
-             return after.state;
+             return as_state(self, numbers);
          });
 
     nb::list outputs;
     const Output<double> output{};
     Output<double>::fields(
         output, [&](const double&, const Field& field) { outputs.append(nb::make_tuple(field.name, field.unit, field.doc)); });
-    core.attr("lanes") = lanes;
+    core.attr("max_lanes") = max_lanes;
     core.attr("largest") = largest;
     core.attr("outputs") = nb::tuple(outputs);
     nb::enum_<Method>(core, "Method", "How steps are taken.")
@@ -410,16 +385,16 @@ void bind_drives(nb::module_& core) {
 #define SW_PROGRESS ", progress: collections.abc.Callable[[int], None] | None = None"
     core.def("simulate", &run_one, nb::arg("drive"), nb::arg("start"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("method"), nb::arg("out").noconvert(), nb::arg("first"), nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: State, " SW_COURSE
-                     ", method: Method, " SW_OUTPUTS SW_PROGRESS ") -> State"),
+             nb::sig("def simulate(drive: strainwave.drives.PositionDrive, start: " SW_ARRAY ", " SW_COURSE
+                     ", method: Method, " SW_OUTPUTS SW_PROGRESS ") -> " SW_ARRAY),
              "The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on.");
     core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("command"), nb::arg("load_torque"),
              nb::arg("temperature"), nb::arg("ends"), nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"),
              nb::arg("samples"), nb::arg("out").noconvert(), nb::arg("first"), nb::arg("progress").none() = nb::none(),
-             nb::sig("def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, command: Signal, "
+             nb::sig("def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: " SW_ARRAY ", command: Signal, "
                      "load_torque: Signal, temperature: Signal, ends: " SW_ARRAY
                      ", relative: float, absolute: float, most_steps: int, samples: " SW_ARRAY ", " SW_OUTPUTS SW_PROGRESS
-                     ") -> tuple[State, int, int]"),
+                     ") -> tuple[" SW_ARRAY ", int, int]"),
              "The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; "
              "the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.");
     core.def(
@@ -435,16 +410,19 @@ void bind_drives(nb::module_& core) {
         "there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape "
         "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at "
         "rest are not run.");
-    core.def("vibration", &vibration, nb::arg("drive"), nb::arg("twist"),
-             nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
-             "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
-    core.def("fastest", &fastest_of, nb::arg("drive"), nb::arg("twist"),
-             nb::sig("def fastest(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
-             "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's "
-             "vibration, or the decay of speeds.");
-    core.def("bristle_vibration", &bristle_vibration, nb::arg("drive"),
-             nb::sig("def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float"),
-             "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
+    core.def(
+        "vibration", [](const Drive& drive, double twist) { return kernels().rates(drive, std::abs(twist)).vibration; },
+        nb::arg("drive"), nb::arg("twist"), nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
+        "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
+    core.def(
+        "fastest", [](const Drive& drive, double twist) { return kernels().rates(drive, std::abs(twist)).fastest; },
+        nb::arg("drive"), nb::arg("twist"), nb::sig("def fastest(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
+        "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's "
+        "vibration, or the decay of speeds.");
+    core.def(
+        "bristle_vibration", [](const Drive& drive) { return kernels().rates(drive, 0.0).on_bristles; }, nb::arg("drive"),
+        nb::sig("def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float"),
+        "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
     core.def("instruction_set", &instruction_set, "The instruction set that the loops over time are compiled for.");
     core.def("differentiate", &run_derivatives, nb::arg("drive"), nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"),
              nb::arg("parameters"), nb::arg("progress").none() = nb::none(),
@@ -452,46 +430,50 @@ void bind_drives(nb::module_& core) {
                      ", parameters: collections.abc.Sequence[int]" SW_PROGRESS ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Outputs from rest, shape (channels, 1 + kept), and derivatives, shape (parameters, channels, 1 + kept).");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
-             nb::sig("def now(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> " SW_ARRAY),
+             nb::sig("def now(drive: strainwave.drives.PositionDrive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
              "Outputs in `state`, shape (channels, 1).");
     core.def(
-        "differentiate_flow", &flow_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
-        nb::sig("def differentiate_flow(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY
+        "differentiate_rates", &rate_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
+        nb::sig("def differentiate_rates(drive: strainwave.drives.PositionDrive, state: " SW_ARRAY ", inputs: " SW_ARRAY
                 ") -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
-        "Rates of the n numbers of the motion, then outputs, shape (n + channels,), in `state`, and derivatives by the motion and "
+        "Rates of the n continuous numbers, then outputs, shape (n + channels,), in `state`, and derivatives by those numbers and "
         "the inputs, shape (n + 4, n + channels).");
-    core.def("motion", &motion_of, nb::arg("drive"),
-             nb::sig("def motion(drive: strainwave.drives.PositionDrive) -> list[tuple[int, str, str]]"),
-             "Place, name and unit of the numbers of the motion that the models of a drive have.");
-    core.def(
-        "aged",
-        [](const Drive& drive, const Drive::State& state, const Numbers& u, double dt) {
-            return drive.aged(state, input_of(u), dt);
+    core.def("state", &state_of_drive, nb::arg("drive"),
+             nb::sig("def state(drive: strainwave.drives.PositionDrive) -> tuple[list[tuple[str, str, str]], int]"),
+             "Name, unit and part of each number of a drive's state, and how many of them are continuous; those come first.");
+    core.def("shape", &shape_of, nb::arg("drive"),
+             nb::sig("def shape(drive: strainwave.drives.PositionDrive) -> dict[str, tuple[str, str]]"),
+             "Of each part that has a state, the name of its model and the counts that say which number means what.");
+
+    // Functions from one state to another.
+    const auto advanced = [&core](const char* name, const char* more, const char* doc, auto f, const auto&... arguments) {
+        core.def(name, f, nb::arg("drive"), nb::arg("state"), arguments...,
+                 nb::sig(kept(std::string("def ") + name + "(drive: strainwave.drives.PositionDrive, state: " SW_ARRAY + more +
+                              ") -> " SW_ARRAY)),
+                 doc);
+    };
+    advanced(
+        "aged", ", inputs: " SW_ARRAY ", dt: float", "`state` with what friction remembers after `dt` [s] at constant speeds.",
+        [](const Drive& drive, const Numbers& state, const Numbers& u, double dt) {
+            return array_of(drive, kernels().aged(drive, state_from(drive, state), input_of(u), dt));
         },
-        nb::arg("drive"), nb::arg("state"), nb::arg("inputs"), nb::arg("dt"),
-        nb::sig("def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ", dt: float) -> State"),
-        "`state` with what friction remembers after `dt` [s] at constant speeds.");
-    core.def(
-        "advance_hysteresis",
-        [](const Drive& drive, Drive::State state, double twist) {
-            drive.advance_hysteresis(state, twist);
-            return state;
+        nb::arg("inputs"), nb::arg("dt"));
+    advanced(
+        "advance_hysteresis", ", twist: float", "`state` with its hysteresis brought up to date at `twist` [rad].",
+        [](const Drive& drive, const Numbers& numbers, double twist) {
+            return array_of(drive, kernels().advance_hysteresis(drive, state_from(drive, numbers), twist));
         },
-        nb::arg("drive"), nb::arg("state"), nb::arg("twist"),
-        nb::sig("def advance_hysteresis(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State"),
-        "`state` with its hysteresis brought up to date at `twist` [rad].");
-    core.def(
-        "consistent", [](const Drive& drive, const Drive::State& state) { return drive.consistent(state); }, nb::arg("drive"),
-        nb::arg("state"), nb::sig("def consistent(drive: strainwave.drives.PositionDrive, state: State) -> State"),
-        "`state` with the slip direction of each shaft as its speed and its law have it.");
-    core.def(
-        "break_away",
-        [](const Drive& drive, const Drive::State& state, const Numbers& u) {
-            return system::break_away(drive, drive.evaluate(state, input_of(u)), input_of(u)).state;
+        nb::arg("twist"));
+    advanced("consistent", "", "`state` with the slip direction of each shaft as its speed and its law have it.",
+             [](const Drive& drive, const Numbers& state) {
+                 return array_of(drive, kernels().consistent(drive, state_from(drive, state)));
+             });
+    advanced(
+        "break_away", ", inputs: " SW_ARRAY, "`state` with those shafts slipping that stick and are driven beyond what holds them.",
+        [](const Drive& drive, const Numbers& state, const Numbers& u) {
+            return array_of(drive, kernels().break_away(drive, state_from(drive, state), input_of(u)));
         },
-        nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
-        nb::sig("def break_away(drive: strainwave.drives.PositionDrive, state: State, inputs: " SW_ARRAY ") -> State"),
-        "`state` with those shafts slipping that stick and are driven beyond what their friction holds.");
+        nb::arg("inputs"));
     core.def("differentiate_loop", &loop_derivatives, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
              nb::sig("def differentiate_loop(gear: Gear, twist: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
@@ -501,13 +483,12 @@ void bind_drives(nb::module_& core) {
              nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).");
-    bind_numbers<Gear>(core);
-    bind_numbers<Drive>(core);
-    bind_numbers_of(core, friction::Models{});
-    bind_numbers_of(core, stiffness::Models{});
-    bind_numbers_of(core, hysteresis::Models{});
-    bind_numbers_of(core, kinematic_error::Models{});
-    bind_numbers_of(core, kinematic_error::Noises{});
+    core.def("parameters", &parameters_in, nb::arg("model"),
+             nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
+             "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
+    core.def("with_numbers", &with_numbers, nb::arg("model"), nb::arg("numbers"),
+             nb::sig("def with_numbers(model: typing.Any, numbers: collections.abc.Sequence[float]) -> typing.Any"),
+             "The same models with other numbers, in the order of `parameters`.");
 }
 
 }  // namespace strainwave::host

@@ -1,4 +1,7 @@
 #pragma once
+#include <functional>
+
+#include "arrays.hpp"
 #include "bind.hpp"
 
 /// Calls of verbs from Python, taken as they come: what does not fit is refused in one line, where nanobind lists every overload.
@@ -12,20 +15,7 @@ struct Accepted {
     const char* otherwise = "";
 };
 
-/// "def verb(self, name: type = value, ...) -> result"
-inline const char* signature(const char* verb, const std::vector<Accepted>& accepted, const std::string& result) {
-    std::string text = std::string("def ") + verb + "(self";
-    for (const Accepted& one : accepted) {
-        text += std::string(", ") + one.name;
-        if (*one.type) text += std::string(": ") + one.type;
-        if (*one.otherwise) text += std::string(" = ") + one.otherwise;
-    }
-    return kept(text + ") -> " + result);
-}
-
-inline void check_finite(double x, const char* name) {
-    if (!std::isfinite(x)) throw nb::value_error((std::string(name) + " = " + shortest(x) + " is not finite").c_str());
-}
+void check_finite(double x, const char* name);
 
 /// What a verb was called with.
 class Call {
@@ -34,54 +24,14 @@ class Call {
     std::vector<nb::object> given;
 
 public:
-    Call(const std::string& verb_, const std::vector<Accepted>& accepted_, const nb::args& unnamed, const nb::kwargs& named)
-        : verb(verb_), accepted(accepted_), given(accepted_.size()) {
-        std::size_t count = 0;
-        for (nb::handle value : unnamed) {
-            if (count == accepted.size() || is_mark(accepted[count]))
-                throw nb::type_error((verb + " takes " + (count == 0 ? "nothing" : std::to_string(count) + " at most") +
-                                      " without a name, not " + std::to_string(unnamed.size()) + " arguments; it takes " +
-                                      all_names())
-                                         .c_str());
-            given[count++] = nb::borrow(value);
-        }
-        for (auto [key, value] : named) {
-            const std::size_t place = place_of(nb::cast<std::string>(key));
-            if (place == accepted.size())
-                throw nb::type_error((verb + " has no argument " + shortened(key) + "; it takes " + all_names()).c_str());
-            if (given[place].is_valid()) throw nb::type_error((verb + " is given " + shortened(key) + " twice").c_str());
-            given[place] = nb::borrow(value);
-        }
-        for (std::size_t i = 0; i < accepted.size(); ++i)
-            if (!given[i].is_valid() && !*accepted[i].otherwise && !is_mark(accepted[i]))
-                throw nb::type_error((verb + " needs " + accepted[i].name + "; it takes " + all_names()).c_str());
-    }
+    Call(const std::string& verb_, const std::vector<Accepted>& accepted_, const nb::args& unnamed, const nb::kwargs& named);
 
     /// What was given, or the value that stands for it.
-    nb::object operator[](const char* name) const {
-        const std::size_t place = place_of(name);
-        if (given[place].is_valid()) return given[place];
-        return nb::float_(std::stod(accepted[place].otherwise));
-    }
-
+    nb::object operator[](const char* name) const;
     /// A number, finite or not.
-    double real(const char* name) const {
-        const nb::object value = (*this)[name];
-        double x = 0.0;
-        if (!to_number(value, x)) refuse_type(name, "a number", value);
-        return x;
-    }
-    double number(const char* name) const {
-        const double x = real(name);
-        check_finite(x, name);
-        return x;
-    }
-    int whole(const char* name) const {
-        const nb::object value = (*this)[name];
-        const double x = number(name);
-        if (x != std::floor(x)) refuse_type(name, "a whole number", value);
-        return int(clip(x, -2147483648.0, 2147483647.0));
-    }
+    double real(const char* name) const;
+    double number(const char* name) const;
+    int whole(const char* name) const;
     /// A described struct, such as a state; as it is by default if it was not given.
     template <class T>
     T part(const char* name) const {
@@ -92,35 +42,51 @@ public:
     }
 
 private:
-    static bool is_mark(const Accepted& one) { return *one.name == '*'; }
+    std::size_t place_of(const std::string& name) const;
+    std::string all_names() const;
+    [[noreturn]] void refuse_type(const char* name, const std::string& wanted, nb::handle value) const;
+};
 
-    std::size_t place_of(const std::string& name) const {
-        std::size_t place = 0;
-        while (place < accepted.size() && (is_mark(accepted[place]) || accepted[place].name != name)) ++place;
-        return place;
-    }
-    std::string all_names() const {
-        std::string names;
-        for (const Accepted& one : accepted)
-            if (!is_mark(one)) names += (names.empty() ? "" : ", ") + std::string(one.name);
-        return names.empty() ? "no argument" : names;
-    }
-    [[noreturn]] void refuse_type(const char* name, const std::string& wanted, nb::handle value) const {
-        throw nb::type_error((verb + ": " + name + " must be " + wanted + ", not " + shortened(value)).c_str());
-    }
+// What a type can be asked: functions that get the model as a pointer, so that only they are compiled for each.
+
+/// f(model, call).
+void define_verb(nb::handle type, const Description& description, const char* name, const std::vector<Accepted>& accepted,
+                 const std::string& result, const char* doc, std::function<nb::object(const void*, const Call&)> f);
+
+/// f(model, numbers) of one number or more, all given as Python's own: what is called most often, and takes no time to look at.
+void define_function(nb::handle type, const Description& description, const char* name, const std::vector<Accepted>& accepted,
+                     const char* doc, std::function<double(const void*, const double*)> f);
+
+/// f(model).
+void define_property(nb::handle type, const Description& description, const char* name, const char* result, const char* doc,
+                     std::function<nb::object(const void*)> f);
+
+/// A model as Python binds it, while its verbs are added.
+template <class M>
+struct Bound {
+    nb::class_<M> type;
+    const Description& description;
 };
 
 /// Binds a verb of a model: f(model, call).
 template <class M, class F>
-void verb(nb::class_<M>& c, const char* name, const std::vector<Accepted>& accepted, const std::string& result, const char* doc,
-          F f) {
-    const std::string full = nb::cast<std::string>(c.attr("name")) + "." + name;
-    c.def(
-        name,
-        [f, full, accepted](const M& self, const nb::args& unnamed, const nb::kwargs& named) {
-            return f(self, Call(full, accepted, unnamed, named));
-        },
-        nb::sig(signature(name, accepted, result)), doc);
+void verb(const Bound<M>& bound, const char* name, const std::vector<Accepted>& accepted, const std::string& result,
+          const char* doc, F f) {
+    define_verb(bound.type, bound.description, name, accepted, result, doc, [f](const void* model, const Call& call) -> nb::object {
+        const M& self = *static_cast<const M*>(model);
+        if constexpr (std::is_void_v<decltype(f(self, call))>) {
+            f(self, call);
+            return nb::none();
+        } else {
+            return nb::cast(f(self, call));
+        }
+    });
+}
+
+template <class M, class F>
+void property(const Bound<M>& bound, const char* name, const char* result, const char* doc, F f) {
+    define_property(bound.type, bound.description, name, result, doc,
+                    [f](const void* model) { return nb::cast(f(*static_cast<const M*>(model))); });
 }
 
 /// Lets Ctrl-C through now and then, in step `i` of a loop.

@@ -16,14 +16,12 @@ template <class T>
 inline constexpr bool is_sequence = false;
 template <class T, int n>
 inline constexpr bool is_sequence<Sequence<T, n>> = true;
+template <class T, int n>
+inline constexpr bool is_sequence<Counted<T, n>> = true;
 template <class T>
 inline constexpr bool is_array = false;
 template <class T, int n>
 inline constexpr bool is_array<Array<T, n>> = true;
-template <class T>
-inline constexpr bool is_slots = false;
-template <class S, int n>
-inline constexpr bool is_slots<Slots<S, n>> = true;
 
 /// What a set of parameters consists of: its numbers, and the whole numbers that say which number means what
 /// (models chosen, element counts, teeth). Two sets with equal shapes differ in numbers alone.

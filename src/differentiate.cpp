@@ -2,12 +2,13 @@
 
 #include "describe.hpp"
 #include "simulate.hpp"
+#include "state.hpp"
 
 namespace strainwave::host {
 
 namespace {
 
-constexpr int width = 8;
+constexpr int width = lanes;
 using Slope = Dual<width>;
 
 /// The same set with its parameters number `first` and following as the numbers that derivatives are taken by.
@@ -21,17 +22,11 @@ Model<Dual<n>> seeded(const Parts& parts, const std::vector<int>& parameters, st
     });
 }
 
-/// A described struct of these numbers, of which the first `count` are, from number `from` on, those that derivatives may be taken
-/// by: here by number `first` and following.
-template <class X, int n>
-X sought(const Array<double, n>& numbers, int from, int count, int first) {
-    Array<Slope, n> scalars{};
-    for (int i = 0; i < n; ++i) {
-        scalars[i] = Slope(numbers[i]);
-        const int lane = from + i - first;
-        if (i < count && lane >= 0 && lane < width) scalars[i].slope[lane] = 1.0;
-    }
-    return shaped<X>(scalars);
+/// The number of this value, the one that derivatives are taken by in lane `lane`; if there is no such lane, in none.
+Slope sought(double value, int lane) {
+    Slope x(value);
+    if (lane >= 0 && lane < width) x.slope[lane] = 1.0;
+    return x;
 }
 
 /// Writes samples one after the other: values, and derivatives by the parameters number `first` and following. Rows lie far apart,
@@ -70,7 +65,7 @@ template <int n>
 void differentiate_by(const Parts& parts, const Course& course, const std::vector<int>& parameters, std::size_t first, double* out,
                       double* slopes, std::size_t kept, const Pause& pause) {
     using Scalar = Dual<n>;
-    const auto dual = seeded<AnyPositionDrive, n>(parts, parameters, first);
+    const auto dual = seeded<AnyPositionDrive, n>(parts, parameters, first).compile();
     Writer<n> record(first, parameters.size(), kept + 1, out, slopes);
     const Input<Scalar> at_start = interval<Scalar>(course.inputs).start;
     record(dual.output(dual.evaluate(dual.rest(), at_start), at_start));
@@ -82,31 +77,29 @@ void differentiate_by(const Parts& parts, const Course& course, const std::vecto
 
 void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
                    std::size_t kept, const Pause& pause) {
-    constexpr int few = width / 2;  // a run that gives only so many takes two thirds of the time
     const Parts parts = parts_of(drive);
-    for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width) {
-        if (parameters.size() <= first + few)
-            differentiate_by<few>(parts, course, parameters, first, out, slopes, kept, pause);
-        else
-            differentiate_by<width>(parts, course, parameters, first, out, slopes, kept, pause);
-    }
+    for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width)
+        differentiate_by<width>(parts, course, parameters, first, out, slopes, kept, pause);
 }
 
-void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {
-    constexpr int rows = motions + channels;
+void differentiate_rates(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {
+    const auto values = numbers_of(drive, x);
+    const auto inputs = flattened<double>(u);
+    const int count = int(numbers_of(drive, x.continuous).size()), rows = count + channels, columns = count + driving;
     const auto dual = seeded<AnyPositionDrive, width>(parts_of(drive), {}, 0);
-    for (int first = 0; first < motions + driving; first += width) {
-        const auto state = sought<AnyPositionDrive<Slope>::State>(flattened<double>(x), 0, motions, first);
-        const auto input = sought<Input<Slope>>(flattened<double>(u), motions, driving, first);
-        const auto write = [&](const auto& values, int row) {
-            for (int i = 0; i < values.size(); ++i) {
-                out[row + i] = values[i].value;
-                for (int p = first; p < first + width && p < motions + driving; ++p)
-                    slopes[p * rows + row + i] = values[i].slope[p - first];
+    for (int first = 0; first < columns; first += width) {
+        const auto state = state_of(dual, [&](int i) { return sought(values[i], i < count ? i - first : -1); });
+        Array<Slope, driving> given;
+        for (int i = 0; i < driving; ++i) given[i] = sought(inputs[i], count + i - first);
+        const auto input = shaped<Input<Slope>>(given);
+        const auto write = [&](const auto& found, int row) {
+            for (int i = 0; i < int(found.size()); ++i) {
+                out[row + i] = found[i].value;
+                for (int p = first; p < first + width && p < columns; ++p) slopes[p * rows + row + i] = found[i].slope[p - first];
             }
         };
-        write(flattened<Slope>(dual.derivatives(state, state.continuous, input).rate), 0);
-        write(flattened<Slope>(dual.output(dual.evaluate(state, input), input)), motions);
+        write(numbers_of(dual, dual.derivatives(state, state.continuous, input).rate), 0);
+        write(flattened<Slope>(dual.output(dual.evaluate(state, input), input)), count);
     }
 }
 

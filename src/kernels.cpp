@@ -8,8 +8,23 @@ namespace {
 
 using namespace strainwave::host;
 
-const Kernels kernels{&evaluate, &lay_out,       &simulate,           &simulate_adaptively, &simulate_many,
-                      &observe,  &differentiate, &differentiate_flow, &differentiate_loop,  &differentiate_steady};
+const Kernels kernels{&evaluate,
+                      &lay_out,
+                      &rest,
+                      &consistent,
+                      &aged,
+                      &advance_hysteresis,
+                      &break_away,
+                      &step_once,
+                      &rates,
+                      &observe,
+                      &simulate,
+                      &simulate_adaptively,
+                      &simulate_many,
+                      &differentiate,
+                      &differentiate_rates,
+                      &differentiate_loop,
+                      &differentiate_steady};
 
 PyModuleDef definition{PyModuleDef_HEAD_INIT, SW_MODULE, nullptr, -1, nullptr, nullptr, nullptr, nullptr, nullptr};
 

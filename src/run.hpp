@@ -3,7 +3,7 @@
 #include <strainwave/scalar/dual.hpp>
 #include <strainwave/scalar/pack.hpp>
 
-#include "narrow.hpp"
+#include "specialised.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -98,12 +98,16 @@ public:
     }
 };
 
-/// A step without events, every call on the way inlined: worth its size where there is not too much to choose from.
+/// A step without events, every call on the way inlined. Where each access is checked that takes minutes to compile.
 template <class S, class Drive>
-[[gnu::flatten, gnu::noinline]] typename Drive::Evaluation inlined_step(const Drive& drive, const typename Drive::Evaluation& from,
-                                                                        const Interval<Input<S>>& u, const S& dt) {
+#ifndef SW_CHECKED
+[[gnu::flatten, gnu::noinline]]
+#endif
+typename Drive::Evaluation inlined_step(const Drive& drive, const typename Drive::Evaluation& from, const Interval<Input<S>>& u,
+                                        const S& dt) {
     return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
 }
+/// The same, for the compiler to decide.
 template <class S, class Drive>
 [[gnu::noinline]] typename Drive::Evaluation called_step(const Drive& drive, const typename Drive::Evaluation& from,
                                                          const Interval<Input<S>>& u, const S& dt) {
@@ -144,39 +148,83 @@ typename Drive::State run_compiled(const Drive& drive, const typename Drive::Sta
     return here->state;
 }
 
-/// The state at the end of a run, which `runner` does in the code of the first of some lists of models that hold the drive; in that
-/// of all models if none does. runner.operator()<whether its steps are inlined>(compiled drive, its state).
-template <class S, class Runner, class First, class... Rest>
-typename AnyPositionDrive<S>::State run_among(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
-                                              const Runner& runner, First*, Rest*... rest) {
-    NarrowDrive<S, First> narrow{};
-    if (narrowed<S>(narrow, drive)) {
-        const auto from = refilled<S, typename decltype(narrow.compile())::State>(start);
-        return refilled<S, typename AnyPositionDrive<S>::State>(
-            runner.template operator()<inlined<S, First>>(narrow.compile(), from));
-    }
-    if constexpr (sizeof...(Rest) > 0)
-        return run_among<S>(drive, start, runner, rest...);
-    else
-        return runner.template operator()<false>(drive.compile(), start);
+/// Runs `drive`, or the same drive of a usual type, with `step` as the step without events.
+template <class S, class Drive, class Record, class Step>
+typename Drive::State run_stepwise(const Drive& drive, const typename Drive::State& start, const Course& course, Record& record,
+                                   const Pause& pause, const Step& step) {
+    const auto advance = [&](const Drive& moved, const typename Drive::Evaluation& at, const Interval<Input<S>>& u, const S& dt) {
+        return strainwave::step(moved, at, u, dt, step);
+    };
+    return run_compiled<S>(drive, start, course, record, pause, advance);
 }
 
-/// Runs `drive` in steps of fourth order, with events.
+/// Whether `drive` fits a special type; then calls run(special drive, its state) and sets `end`.
+template <class S, class Special, class Run>
+bool run_as(const CompiledDrive<S>& drive, const typename CompiledDrive<S>::State& start, const Run& run,
+            typename CompiledDrive<S>::State& end) {
+    Special special{};
+    if (!specialise<S>(special, drive)) return false;
+    end = converted<S>(start, run(special, converted<S>(special.initial_state(), start)));
+    return true;
+}
+
+/// The state at the end of run(drive, start), of the drive as the most special type that it fits.
+template <class S, class Run>
+typename CompiledDrive<S>::State run_specialised(const CompiledDrive<S>& drive, const typename CompiledDrive<S>::State& start,
+                                                 const Run& run) {
+    typename CompiledDrive<S>::State end{};
+    if (run_as<S, DriveOnBristles<S>>(drive, start, run, end)) return end;
+    if (run_as<S, DriveWithoutMemory<S>>(drive, start, run, end)) return end;
+    if (run_as<S, ShortDrive<S>>(drive, start, run, end)) return end;
+    return run(drive, start);
+}
+
+/// Whether all that a step of such a drive calls is inlined. With more models to choose from that takes minutes to compile, where
+/// slopes are carried along less already.
+template <class S, class Drive>
+inline constexpr bool inlines =
+    !std::is_same_v<Drive, CompiledDrive<S>> && !(differentiates<S> && std::is_same_v<Drive, ShortDrive<S>>);
+
+/// Runs `drive` in steps of fourth order, with events, and calls record(output) at the end of each step to be kept.
 template <class S, class Record>
-typename AnyPositionDrive<S>::State run(const AnyPositionDrive<S>& drive, const typename AnyPositionDrive<S>::State& start,
-                                        const Course& course, Record&& record, const Pause& pause) {
-    const auto runner = [&]<bool inlines, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        const auto advance = [](const Compiled& moved, const typename Compiled::Evaluation& at, const Interval<Input<S>>& u,
-                                const S& dt) {
-            if constexpr (inlines)
-                return step(moved, at, u, dt, inlined_step<S, Compiled>);
-            else
-                return step(moved, at, u, dt, called_step<S, Compiled>);
-        };
-        return run_compiled<S>(compiled, from, course, record, pause, advance);
+typename CompiledDrive<S>::State run(const CompiledDrive<S>& drive, const typename CompiledDrive<S>::State& start,
+                                     const Course& course, Record&& record, const Pause& pause) {
+    return run_specialised<S>(drive, start, [&]<class Special>(const Special& special, const typename Special::State& from) {
+        if constexpr (inlines<S, Special>)
+            return run_stepwise<S>(special, from, course, record, pause, inlined_step<S, Special>);
+        else
+            return run_stepwise<S>(special, from, course, record, pause, called_step<S, Special>);
+    });
+}
+
+/// How a run from rest went.
+template <class S>
+struct Tally {
+    S twist{0.0};              ///< largest recorded, rad
+    S max_rate{0.0};           ///< what steps had to follow up to that twist, rad/s
+    S bristle_vibration{0.0};  ///< the fastest of a shaft on its bristles, rad/s
+    S sound{0.0};              ///< 1 where all outputs at all samples are numbers up to the largest
+};
+
+/// Runs a drive from rest and calls record(output) at the start, too. Where the gear vibrates faster than `max_rate` [rad/s] at
+/// rest only that is told, with a twist of 0; where it does in all lanes nothing is run.
+template <class S, class Record>
+Tally<S> run_from_rest(const AnyPositionDrive<S>& given, const Course& course, double max_rate, Record&& record,
+                       const Pause& pause) {
+    const CompiledDrive<S> drive = given.compile();
+    const S at_rest = drive.fastest(S(0.0)), on_bristles = drive.bristle_vibration();
+    const auto too_fast = at_rest > S(max_rate);
+    if (all(too_fast)) return {S(0.0), at_rest, on_bristles, S(0.0)};
+    S twist{0.0}, sound{1.0};
+    const auto note = [&](const Output<S>& output) {
+        record(output);
+        sound = min(sound, soundness(output));
+        twist = max(twist, abs(output.twist));
     };
-    return run_among<S>(drive, start, runner, static_cast<DrivesOnBristles*>(nullptr), static_cast<DrivesWithoutMemory*>(nullptr),
-                        static_cast<Small*>(nullptr));
+    const Input<S> at_start = interval<S>(course.inputs).start;
+    note(drive.output(drive.evaluate(drive.rest(), at_start), at_start));
+    run<S>(drive, drive.rest(), course, note, pause);
+    return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.fastest(twist)), on_bristles, sound};
 }
 
 }  // namespace strainwave::host

@@ -18,11 +18,11 @@ inline constexpr int channels = [] {
     return counter.count;
 }();
 
-/// How many numbers flow continuously.
-inline constexpr int motions = size_of<double, Drive::Continuous>;
-
-/// How many members of a crowd take every step together.
-inline constexpr int lanes = 8;
+/// How many members of a crowd take every step together, and how many derivatives a run gives: those of one register. Whatever
+/// the number, each has the bits that it has alone.
+inline constexpr int lanes = strainwave::detail::register_width;
+/// The most there can be.
+inline constexpr int max_lanes = 8;
 
 /// Drives that differ from one in some of its numbers: number `numbers[p]` of member m is values[p * members + m].
 struct Variation {
@@ -85,17 +85,44 @@ std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variatio
                                    const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
                                    const Pause& pause);
 
+// A drive at one instant.
+
+/// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
+Drive::State rest(const Drive& drive);
+/// With the slip direction of each shaft as its speed and its friction have it.
+Drive::State consistent(const Drive& drive, const Drive::State& x);
+/// With what friction remembers after `dt` [s] at constant speeds.
+Drive::State aged(const Drive& drive, const Drive::State& x, const Input<double>& u, double dt);
+/// With its hysteresis brought up to date at a twist [rad].
+Drive::State advance_hysteresis(const Drive& drive, Drive::State x, double twist);
+/// With those shafts slipping that stick and are driven beyond what holds them.
+Drive::State break_away(const Drive& drive, const Drive::State& x, const Input<double>& u);
+/// After one step. Throws OutOfBounds.
+Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval<Input<double>>& u, double dt);
+
+/// How fast a drive moves by itself, as angular frequencies [rad/s], at twists up to one.
+struct Rates {
+    double vibration;  ///< of the gear on its spring
+    double fastest;    ///< that or the decay of speeds: what fixed steps must follow
+    double on_bristles;
+};
+Rates rates(const Drive& drive, double twist);
+
 /// The outputs of a drive in state `x`.
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
+
+/// A member that runs alone; writes its outputs through `record`.
+Tally<double> simulate_member(const Drive& drive, const Course& course, double max_rate,
+                              const std::function<void(const Output<double>&)>& record, const Pause& pause);
 
 /// One trajectory from rest and its derivatives with respect to the numbered parameters of the drive.
 /// Writes values, beginning with the start, to out[c * (kept + 1) + k], derivatives to slopes[(p * channels + c) * (kept + 1) + k].
 void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
                    std::size_t kept, const Pause& pause);
 
-/// The rates of the motion and then the outputs of a drive in state `x`, its history fixed: value i in out[i], its derivative with
-/// respect to number p of the motion, and then of the inputs, in slopes[p * (motions + channels) + i].
-void differentiate_flow(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes);
+/// The rates of the n continuous numbers of a state, its memory held, and then the outputs: value i in out[i], its derivative with
+/// respect to continuous number p, and then to the inputs, in slopes[p * (n + channels) + i].
+void differentiate_rates(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes);
 
 /// Quasi-static torque of a gear, virgin at the first point, along a path of twist; derivatives in slopes[p * n + i], the last
 /// by a shift of all points but the first.
@@ -110,12 +137,19 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
 struct Kernels {
     decltype(&host::evaluate) evaluate;
     decltype(&host::lay_out) lay_out;
+    decltype(&host::rest) rest;
+    decltype(&host::consistent) consistent;
+    decltype(&host::aged) aged;
+    decltype(&host::advance_hysteresis) advance_hysteresis;
+    decltype(&host::break_away) break_away;
+    decltype(&host::step_once) step_once;
+    decltype(&host::rates) rates;
+    decltype(&host::observe) observe;
     decltype(&host::simulate) simulate;
     decltype(&host::simulate_adaptively) simulate_adaptively;
     decltype(&host::simulate_many) simulate_many;
-    decltype(&host::observe) observe;
     decltype(&host::differentiate) differentiate;
-    decltype(&host::differentiate_flow) differentiate_flow;
+    decltype(&host::differentiate_rates) differentiate_rates;
     decltype(&host::differentiate_loop) differentiate_loop;
     decltype(&host::differentiate_steady) differentiate_steady;
 };

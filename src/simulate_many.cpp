@@ -48,6 +48,7 @@ public:
         for (std::size_t c = 0; c < recorded.size(); ++c) write(values[recorded[c]], &held[(c * stretch + gathered) * width]);
         if (++gathered == stretch) flush();
     }
+    bool empty() const { return written == 0; }
     void flush() {
         for (std::size_t c = 0; c < recorded.size(); ++c)
             for (std::size_t i = 0; i < count; ++i) {
@@ -137,32 +138,27 @@ private:
 
     template <class S>
     void run_members(std::size_t first, std::size_t count) {
-        const auto drive = assembled_from<S>(first, count);
-        const S at_rest = drive.fastest(S(0.0)), on_bristles = drive.bristle_vibration();
-        const auto too_fast = at_rest > S(fastest);
-        const auto tell = [&](const S& twist, const S& own, const S& sound) {
-            for (std::size_t i = 0; i < count; ++i)
-                verdicts[first + i] = {
-                    lane_of(twist, i), lane_of(own, i), lane_of(on_bristles, i), lane_of(sound, i) > 0.0, {}, {}};
-        };
-        if (all(too_fast)) {
-            clear(first, count);
-            return tell(S(0.0), at_rest, S(0.0));
-        }
         Rows<S> rows(recorded, out + first * samples, variation.members, samples, count);
-        S twist{0.0}, sound{1.0};
-        const auto record = [&](const Output<S>& output) {
-            rows.add(flattened<S>(output));
-            sound = min(sound, soundness(output));
-            twist = max(twist, abs(output.twist));
-        };
-        const Input<S> at_start = interval<S>(course.inputs).start;
-        record(drive.output(drive.evaluate(drive.rest(), at_start), at_start));
-        run<S>(drive, drive.rest(), course, record, [this](std::size_t) {
+        const auto record = [&](const Output<S>& output) { rows.add(flattened<S>(output)); };
+        const auto pause = [this](std::size_t) {
             if (stopping) throw Stopped{};
-        });
+        };
+        const Tally<S> tally = [&] {
+            const auto drive = assembled_from<S>(first, count);
+            if constexpr (std::is_same_v<S, double>)
+                return simulate_member(drive, course, fastest, record, pause);
+            else
+                return run_from_rest<S>(drive, course, fastest, record, pause);
+        }();
         rows.flush();
-        tell(select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.fastest(twist)), sound);
+        if (rows.empty()) clear(first, count);
+        for (std::size_t i = 0; i < count; ++i)
+            verdicts[first + i] = {lane_of(tally.twist, i),
+                                   lane_of(tally.max_rate, i),
+                                   lane_of(tally.bristle_vibration, i),
+                                   lane_of(tally.sound, i) > 0.0,
+                                   {},
+                                   {}};
     }
 
     /// Leaves not-a-number in the rows of members.

@@ -17,32 +17,24 @@ struct Writer {
     }
 };
 
-/// Runs a drive with an own way to take a step: advance(drive, state, inputs, dt).
-template <class Advance>
-Drive::State run_by(const Drive& drive, const Drive::State& start, const Course& course, Writer& record, const Pause& pause,
-                    const Advance& advance) {
-    const auto runner = [&]<bool, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        return run_compiled<double>(compiled, from, course, record, pause, advance);
-    };
-    return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
-}
-
 }  // namespace
 
 Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
                       std::size_t samples, const Pause& pause) {
     Writer record{out, samples};
-    if (method == Method::moreau_jean)
-        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& at, const auto& u, double dt) {
-            return moved.evaluate(integrate::moreau_jean_step(moved, at, u, dt), u.end);
-        });
-    if (method == Method::rosenbrock)
-        return run_by(drive, start, course, record, pause, [](const auto& moved, const auto& at, const auto& u, double dt) {
-            return step(moved, at, u, dt, [](const auto& m, const auto& from, const auto& over, double h) {
-                return m.evaluate(integrate::rosenbrock_step(m, from, over, h), over.end);
-            });
-        });
-    return run<double>(drive, start, course, record, pause);
+    const auto compiled = drive.compile();
+    if (method == Method::exponential) return run<double>(compiled, start, course, record, pause);
+    return run_specialised<double>(compiled, start, [&](const auto& special, const auto& from) {
+        if (method == Method::rosenbrock)
+            return run_stepwise<double>(special, from, course, record, pause,
+                                        [](const auto& moved, const auto& at, const auto& u, double dt) {
+                                            return moved.evaluate(integrate::rosenbrock_step(moved, at, u, dt), u.end);
+                                        });
+        return run_compiled<double>(special, from, course, record, pause,
+                                    [](const auto& moved, const auto& at, const auto& u, double dt) {
+                                        return moved.evaluate(integrate::moreau_jean_step(moved, at, u, dt), u.end);
+                                    });
+    });
 }
 
 namespace {
@@ -56,7 +48,7 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
     const auto smooth = called_step<double, Compiled>;
-    integrate::Adaptive<double, Compiled, decltype(smooth), Unbroken> adaptive(drive, smooth, tolerance,
+    integrate::Adaptive<double, Compiled, decltype(smooth), Unbroken> adaptive(drive, x, smooth, tolerance,
                                                                                1e-2 * (ends.at[1] - ends.at[0]));
     long taken = 0;
     Pauses pauses(pause);
@@ -88,14 +80,14 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
                                  const integrate::Tolerance& tolerance, long most, const Instants& wanted, double* out,
                                  std::size_t samples, Steps& steps, const Pause& pause) {
     Writer record{out, samples};
-    const auto runner = [&]<bool, class Compiled>(const Compiled& compiled, const typename Compiled::State& from) {
-        return run_adaptively(compiled, from, signals, ends, tolerance, most, wanted, record, steps, pause);
-    };
-    return run_among<double>(drive, start, runner, static_cast<Small*>(nullptr));
+    return run_specialised<double>(drive.compile(), start, [&](const auto& special, const auto& from) {
+        return run_adaptively(special, from, signals, ends, tolerance, most, wanted, record, steps, pause);
+    });
 }
 
-void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
-    Writer{out, 1}(drive.output(drive.evaluate(x, u), u));
+Tally<double> simulate_member(const Drive& drive, const Course& course, double max_rate,
+                              const std::function<void(const Output<double>&)>& record, const Pause& pause) {
+    return run_from_rest<double>(drive, course, max_rate, record, pause);
 }
 
 }  // namespace strainwave::host

@@ -52,15 +52,10 @@ inline std::pair<Values, double*> like(const Argument& model) {
 
 /// A function of one number, for a number or an array of any shape.
 template <class M, class F>
-void function(nb::class_<M>& c, const char* name, const char* argument, const char* doc, F f) {
-    c.def(
-        name,
-        [f, argument](const M& self, double x) {
-            check_finite(x, argument);
-            return f(self, x);
-        },
-        nb::arg(argument).noconvert(), nb::sig(kept(std::string("def ") + name + "(self, " + argument + ": float) -> float")), doc);
-    verb(c, name, {{argument, SW_NUMBERS}}, SW_ARRAY, doc, [f, argument](const M& self, const Call& call) -> nb::object {
+void function(const Bound<M>& bound, const char* name, const char* argument, const char* doc, F f) {
+    define_function(bound.type, bound.description, name, {{argument, "float"}}, doc,
+                    [f](const void* model, const double* x) { return f(*static_cast<const M*>(model), *x); });
+    verb(bound, name, {{argument, SW_NUMBERS}}, SW_ARRAY, doc, [f, argument](const M& self, const Call& call) -> nb::object {
         const auto x = numbers(call[argument], argument);
         const auto law = compiled(self);
         if (x.ndim() == 0) return nb::float_(f(law, *x.data()));
@@ -88,7 +83,7 @@ inline void check_domain(const char* law, const Domain<double>& domain) {
 }
 
 template <class M>
-void stiffness_verbs(nb::class_<M>& c) {
+void stiffness_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) {
                       m.torque(1.0);
                       m.tangent(1.0);
@@ -135,7 +130,7 @@ kinematic_error::Fourier<double> harmonics_of(const M& m, int highest) {
 }
 
 template <class M>
-void error_verbs(nb::class_<M>& c) {
+void error_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.at(strainwave::Angle<double>{}); }) {
         function(c, "error", "angle", "Kinematic error [rad] at input `angle` [rad].",
                  [](const auto& m, double x) { return m.at(turned(x)).value; });
@@ -163,25 +158,18 @@ void error_verbs(nb::class_<M>& c) {
              });
         verb(c, "leading", {}, python_type<kinematic_error::Fourier<double>>(false),
              "The harmonics to leading order, in closed form: a Fourier law.", [](const M& m, const Call&) { return m.leading(); });
-        c.def_prop_ro(
-            "eccentricity", [](const M& m) { return nb::make_tuple(m.eccentricity().x, m.eccentricity().y); },
-            nb::sig("def eccentricity(self) -> tuple[float, float]"), "What harmonics can tell: the vector m, x and y [m].");
+        property(c, "eccentricity", "tuple[float, float]", "What harmonics can tell: the vector m, x and y [m].",
+                 [](const M& m) { return nb::make_tuple(m.eccentricity().x, m.eccentricity().y); });
     }
 }
 
 /// What is taken of a random error, for an angle or an array of any shape.
 template <class M, class F>
-void noise_verb(nb::class_<M>& c, const char* name, const char* doc, F what) {
-    c.def(
-        name,
-        [what](const M& m, double angle, double torque, double speed) {
-            check_finite(angle, "angle");
-            check_finite(torque, "torque");
-            check_finite(speed, "speed");
-            return what(compiled(m).at(turned(angle), torque, speed));
-        },
-        nb::arg("angle").noconvert(), nb::arg("torque") = 0.0, nb::arg("speed") = 0.0,
-        nb::sig(kept(std::string("def ") + name + "(self, angle: float, torque: float = 0.0, speed: float = 0.0) -> float")), doc);
+void noise_verb(const Bound<M>& c, const char* name, const char* doc, F what) {
+    define_function(c.type, c.description, name, {{"angle", "float"}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, doc,
+                    [what](const void* model, const double* x) {
+                        return what(compiled(*static_cast<const M*>(model)).at(turned(x[0]), x[1], x[2]));
+                    });
     verb(c, name, {{"angle", SW_NUMBERS}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, SW_ARRAY, doc,
          [what](const M& m, const Call& call) -> nb::object {
              const auto x = numbers(call["angle"], "angle");
@@ -198,21 +186,21 @@ void noise_verb(nb::class_<M>& c, const char* name, const char* doc, F what) {
 }
 
 template <class M>
-void noise_verbs(nb::class_<M>& c) {
+void noise_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.at(strainwave::Angle<double>{}, 0.0, 0.0); }) {
         noise_verb(c, "error",
                    "Random kinematic error [rad] at input `angle` [rad], under `torque` [N.m] at `speed` [rad/s] of the input.",
                    [](const auto& error) { return error.value; });
         noise_verb(c, "slope", "Its derivative [rad/rad] by the input angle, at constant amplitude.",
                    [](const auto& error) { return error.slope; });
-        c.def_prop_ro("active", [](const M& m) { return m.active(); }, "Whether there is any.");
+        property(c, "active", "bool", "Whether there is any.", [](const M& m) { return m.active(); });
     }
 }
 
 template <class M>
-void kinematics_verbs(nb::class_<M>& c) {
+void kinematics_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.ratio(); })
-        c.def_prop_ro("ratio", [](const M& m) { return m.ratio(); }, "Input angle over output angle, signed.");
+        property(c, "ratio", "float", "Input angle over output angle, signed.", [](const M& m) { return m.ratio(); });
 }
 
 /// Calls visit(state, increment, i) along a path, the state brought up to date after each step.
@@ -246,17 +234,17 @@ typename M::State end_of_path(const M& m, const Call& call, const char* name, co
 
 /// The state of a model as its member class; laws over others share the state of any.
 template <class M>
-void bind_state(nb::class_<M>& c) {
+void bind_state(const Bound<M>& c) {
     using State = typename M::State;
     if (const nb::handle known = nb::type<State>(); known.is_valid())
-        c.attr("State") = known;
+        c.type.attr("State") = known;
     else
-        bind<State>(c, "State", std::string(M::name) + ".state");
+        host::bind<State>(c.type, "State", std::string(M::name) + ".state");  // not std::bind
 }
 
 /// A hysteresis that has an exact inverse, and that inverse: torque in, twist out.
 template <class M>
-void inverse_verbs(nb::class_<M>& c) {
+void inverse_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.inverse(1.0); })
         verb(c, "inverse", {{"spring", "float"}}, python_type<decltype(std::declval<const M&>().inverse(1.0))>(false),
              "What undoes this hysteresis beside a linear `spring` [N.m/rad]: twist over torque, exact, its history included.",
@@ -283,7 +271,7 @@ void inverse_verbs(nb::class_<M>& c) {
 }
 
 template <class M>
-void hysteresis_verbs(nb::class_<M>& c) {
+void hysteresis_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m, const typename M::State& x) { m.work(x, 1.0); }) {
         const std::vector<Accepted> path{{"twist", SW_NUMBERS}, {"state", "State", "..."}};
         bind_state<M>(c);
@@ -339,7 +327,7 @@ inline std::vector<Accepted> contacted(const Accepted& first) {
 
 /// A function f(law, contact, x) of one number and the contact, for numbers or arrays that broadcast.
 template <class M, class F>
-void over_contacts(nb::class_<M>& c, const char* name, const char* argument, const char* otherwise, const char* doc, F f) {
+void over_contacts(const Bound<M>& c, const char* name, const char* argument, const char* otherwise, const char* doc, F f) {
     const auto at = [f](const auto& law, double x, double angle, double load, double temperature) {
         const friction::Contact<double> contact{0.0, 1.0, turned(angle), load, temperature};
         check_domain(M::name, domain<double>(law, contact));
@@ -347,21 +335,8 @@ void over_contacts(nb::class_<M>& c, const char* name, const char* argument, con
     };
     const std::vector<Accepted> one = contacted({argument, "float", otherwise}),
                                 any = contacted({argument, SW_NUMBER_OR, otherwise});
-    const auto scalar = [at, argument](const M& m, double x, double angle, double load, double temperature) {
-        check_finite(x, argument);
-        check_finite(angle, "angle");
-        check_finite(load, "load");
-        check_finite(temperature, "temperature");
-        return at(m, x, angle, load, temperature);
-    };
-    auto first = nb::arg(argument).noconvert();
-    if (*otherwise) {
-        c.def(name, scalar, first = std::stod(otherwise), nb::arg("angle") = 0.0, nb::arg("load") = 0.0,
-              nb::arg("temperature") = friction::room_temperature, nb::sig(signature(name, one, "float")), doc);
-    } else {
-        c.def(name, scalar, first, nb::arg("angle") = 0.0, nb::arg("load") = 0.0,
-              nb::arg("temperature") = friction::room_temperature, nb::sig(signature(name, one, "float")), doc);
-    }
+    define_function(c.type, c.description, name, one, doc,
+                    [at](const void* model, const double* x) { return at(*static_cast<const M*>(model), x[0], x[1], x[2], x[3]); });
     // a number where all are numbers, else an array
     verb(c, name, any, "typing.Any", doc, [at, argument](const M& m, const Call& call) -> nb::object {
         nb::list given;
@@ -441,7 +416,7 @@ Values friction_quasistatic(const M& m, const Call& call) {
 }
 
 template <class M>
-void friction_verbs(nb::class_<M>& c) {
+void friction_verbs(const Bound<M>& c) {
     using Contact = friction::Contact<double>;
     if constexpr (friction::Modulation<M> || requires(const M& m, const typename M::State& x) { m.torque(x, Contact{}); }) {
         using State = typename M::State;
@@ -451,7 +426,7 @@ void friction_verbs(nb::class_<M>& c) {
                       "The largest torque [N.m] it balances at rest, pushed towards `sense`, " SW_CONTACT_DOC
                       "\n\nZero for a law that does not stick.",
                       [](const auto& law, const Contact& at, double s) { return friction::hold(law, at.pushed(sign(s))); });
-        c.def_prop_ro("set_valued", [](const M& m) { return friction::set_valued(m); }, "Whether it can hold at rest.");
+        property(c, "set_valued", "bool", "Whether it can hold at rest.", [](const M& m) { return friction::set_valued(m); });
         const Accepted angle{"angle", "float", "0.0"}, load{"load", SW_NUMBER_OR, "0.0"},
             temperature{"temperature", SW_NUMBER_OR, "293.15"};
         std::vector<Accepted> traced{{"time", SW_NUMBERS}, {"speed", SW_NUMBERS}, angle, load, temperature};
@@ -482,15 +457,15 @@ void friction_verbs(nb::class_<M>& c) {
         if constexpr (requires(const M& m) { m.passivity(); })
             verb(c, "check", {}, "None",
                  "Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.",
-                 [](const M& m, const Call&) { check_passivity(m); });
+                 [](const M& m, const Call&) { check_passivity(m.passivity(), M::name); });
     }
 }
 
 /// What a law claims of itself beyond its family, for tests and docs to go by.
 template <class M>
-void claims(nb::class_<M>& c) {
+void claims(const Bound<M>& c) {
 #define SW_CLAIM(claim) \
-    if constexpr (requires { M::claim; }) c.attr(#claim) = M::claim;
+    if constexpr (requires { M::claim; }) c.type.attr(#claim) = M::claim;
     SW_CLAIM(odd)
     SW_CLAIM(return_point_memory)
     SW_CLAIM(congruent)
@@ -501,7 +476,7 @@ void claims(nb::class_<M>& c) {
 /// A model with every verb it has.
 template <class M>
 void bind_model(nb::handle scope, const char* python_name) {
-    auto c = bind<M>(scope, python_name, M::name);
+    const Bound<M> c{bind<M>(scope, python_name, M::name), description_of<M>(python_name, M::name)};
     kinematics_verbs(c);
     stiffness_verbs(c);
     if constexpr (requires { typename M::State; }) {
@@ -512,7 +487,7 @@ void bind_model(nb::handle scope, const char* python_name) {
     error_verbs(c);
     noise_verbs(c);
     claims(c);
-    if constexpr (requires { M::command_unit; }) c.attr("command_unit") = M::command_unit;
+    if constexpr (requires { M::command_unit; }) c.type.attr("command_unit") = M::command_unit;
 }
 
 }  // namespace strainwave::host

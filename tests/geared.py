@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import strainwave as sw
 from strainwave import _core
+from strainwave.state import State
 
 K, RATIO = 1e4, 20.0
 MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.12, inertia=1e-4)
@@ -17,8 +18,8 @@ def geared(load: object = ARM, control: object = None, motor: sw.motor.DC = MOTO
     return sw.drives.PositionDrive(gear=gear.replace(**parts), motor=motor, control=control or sw.control.OpenLoop(), load=load)
 
 
-def outputs(drive: sw.drives.PositionDrive, state: _core.State, *inputs: float) -> dict[str, float]:
+def outputs(drive: sw.drives.PositionDrive, state: State, *inputs: float) -> dict[str, float]:
     """The outputs in a state under command, load torque and temperature."""
     command, load_torque, temperature = (*inputs, *(0.0, 0.0, 293.15)[len(inputs) :])
-    values = _core.now(drive, state, np.array([command, 0.0, load_torque, temperature]))[:, 0]
+    values = _core.now(drive, state.numbers, np.array([command, 0.0, load_torque, temperature]))[:, 0]
     return {name: float(value) for (name, _, _), value in zip(_core.outputs, values, strict=True)}

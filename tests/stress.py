@@ -157,26 +157,18 @@ def words(run: Callable[[], object]) -> str:
 
 def check(drive: sw.drives.PositionDrive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
     """Raises AssertionError if a run that ended under these inputs says what cannot be."""
-    assert np.isfinite(held(run.end)).all(), SILENT
+    assert np.isfinite(run.end.numbers).all(), SILENT
     check_end(drive, run, inputs)
     check_angles(drive, run)
     check_friction(drive.gear, run)
-
-
-def held(value: Any) -> list[float]:
-    """All that a state holds."""
-    if isinstance(value, float):
-        return [value]
-    parts = value if isinstance(value, tuple) else [getattr(value, field["name"]) for field in value.fields]
-    return [each for part in parts for each in held(part)]
 
 
 def check_end(drive: sw.drives.PositionDrive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
     """What was recorded last is what the state at the end makes of the inputs; what sticks there stands still."""
     for side in ("input", "output"):
         sticks = getattr(run.end, f"{side}_slip_direction") == 0.0
-        assert not sticks or getattr(run.end.continuous, f"{side}_speed") == 0.0, f"{WRONG}the {side} sticks and moves"
-    for name, now in zip(OUTPUTS, _core.now(drive, run.end, inputs)[:, 0], strict=True):
+        assert not sticks or getattr(run.end, f"{side}_speed") == 0.0, f"{WRONG}the {side} sticks and moves"
+    for name, now in zip(OUTPUTS, _core.now(drive, run.end.numbers, inputs)[:, 0], strict=True):
         assert abs(now - run[name][-1]) <= 1e-9 * np.abs(run[name]).max(), f"{WRONG}{name} at the end is not that of the state"
 
 

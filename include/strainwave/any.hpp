@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <tuple>
 #include <type_traits>
 #include <variant>
 
@@ -11,16 +13,22 @@
 /// the models, not with their product.
 namespace strainwave {
 
-/// The state of whichever model was chosen.
+/// The state of whichever model was chosen, of at most n numbers. A few are all carried along; of more, those that it has.
 template <class S, int n>
 struct Slots {
-    Array<S, (n > 0 ? n : 1)> slot{};
+    static constexpr int few = 4;
+    std::conditional_t<(n <= few), Array<S, (n > 0 ? n : 1)>, Counted<S, n>> slot{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, slot, "1", "State of the model chosen, in the order it lists it"));
     }
 };
+
+template <class T>
+inline constexpr bool is_slots = false;
+template <class S, int n>
+inline constexpr bool is_slots<Slots<S, n>> = true;
 
 template <class S, class... Law>
 struct Choice;
@@ -34,6 +42,63 @@ constexpr int state_size() {
     else
         return 0;
 }
+
+}  // namespace detail
+
+/// A law chosen at run time under all that may modulate its contact, the outermost last: so that what modulates multiplies
+/// neither the models to choose from nor the code.
+template <class S, class Law_, class... Modulator>
+struct Layers {
+    Law_ law{};
+    std::tuple<std::optional<Modulator>...> modulators{};
+
+    using State = typename Law_::State;
+
+    constexpr bool modulates() const {
+        return std::apply([](const auto&... modulator) { return (modulator.has_value() || ...); }, modulators);
+    }
+    /// The contact as the law sees it. Factors alone are multiplied, by 1 where nothing modulates, so that no contact is copied.
+    constexpr friction::Contact<S> modulated(const friction::Contact<S>& contact) const {
+        friction::Factors<S> product;
+        multiply<sizeof...(Modulator)>(contact, product);
+        return contact.scaled(product);
+    }
+
+private:
+    template <int i>
+    constexpr void multiply(const friction::Contact<S>& contact, friction::Factors<S>& product) const {
+        if constexpr (i > 0) {
+            if (const auto& outer = std::get<i - 1>(modulators)) {
+                const friction::Factors<S> by = outer->factors(contact);
+                product = {product.dry * by.dry, product.dry_most * by.dry_most, product.viscous * by.viscous};
+            }
+            multiply<i - 1>(contact, product);
+        }
+    }
+};
+
+namespace detail {
+
+/// The layers that hold each of some laws: the plain ones as a choice, and the others by what they modulate.
+template <class S, class Laws, class Modulators, class... Law>
+struct Sorted;
+template <class S, class... Law, class... Outer>
+struct Sorted<S, std::tuple<Law...>, std::tuple<Outer...>> {
+    using type = Layers<S, Choice<S, Law...>, Outer...>;
+};
+template <class S, class... Law, class... Outer, class First, class... Rest>
+struct Sorted<S, std::tuple<Law...>, std::tuple<Outer...>, First, Rest...> {
+    static constexpr auto next() {
+        if constexpr (friction::Modulation<First>)
+            return Sorted<S, std::tuple<Law...>, std::tuple<Outer..., typename First::Modulator>, Rest...>{};
+        else
+            return Sorted<S, std::tuple<Law..., decltype(compiled(First{}))>, std::tuple<Outer...>, Rest...>{};
+    }
+    using type = typename decltype(next())::type;
+};
+
+template <class S, class... Law>
+using LayersOf = Sorted<S, std::tuple<>, std::tuple<>, Law...>;
 
 }  // namespace detail
 
@@ -55,6 +120,13 @@ struct Choice {
     }
 
     /// The same choice, of laws rearranged for speed; no choice any more where all come out alike.
+    constexpr auto compile() const
+        requires(friction::Modulation<Law> || ...)
+    {
+        typename detail::LayersOf<S, Law...>::type layers{};
+        add_to(layers);
+        return layers;
+    }
     constexpr auto compile() const {
         using First = decltype(compiled(std::get<0>(model)));
         if constexpr (!requires { typename First::State; } &&
@@ -62,6 +134,19 @@ struct Choice {
             return visit([](const auto& law) { return compiled(law); });
         else
             return visit([](const auto& law) { return Choice<S, decltype(compiled(std::declval<Law>()))...>{compiled(law)}; });
+    }
+
+    /// Adds the model chosen, and what modulates it, to layers that hold any.
+    template <class Layers>
+    constexpr void add_to(Layers& layers) const {
+        visit([&]<class Chosen>(const Chosen& law) {
+            if constexpr (friction::Modulation<Chosen>) {
+                std::get<std::optional<typename Chosen::Modulator>>(layers.modulators) = law.modulator();
+                law.law.add_to(layers);
+            } else {
+                layers.law.model = compiled(law);
+            }
+        });
     }
 
 // Calls the verb of the model chosen, with its own state in place of the slots.
@@ -136,27 +221,42 @@ struct Choice {
         return visit([](const auto& law) { return law.active(); });
     }
 
+    /// The state of the model chosen, without a history.
+    constexpr State initial_state() const {
+        return visit([](const auto& law) { return stored(law, strainwave::initial_state(law)); });
+    }
+
 private:
-    // A state is nothing but scalars, so it fits the slots as it lies in memory.
+    // A state is nothing but scalars, so it fits the slots as it lies in memory. Slots that hold none stand for no history.
     template <class Model, class T>
     static auto own(const Model&, const T& argument) {
         if constexpr (std::is_same_v<T, State>) {
-            typename Model::State x{};
-            static_assert(sizeof x == detail::state_size<S, Model>() * sizeof(S) || std::is_empty_v<typename Model::State>);
-            if constexpr (!std::is_empty_v<typename Model::State>) std::memcpy(static_cast<void*>(&x), &argument, sizeof x);
-            return x;
+            if constexpr (std::is_same_v<typename Model::State, State>) {  // a law that varies another has its state
+                return argument;
+            } else {
+                typename Model::State x{};
+                if constexpr (size_of<S, typename Model::State> > 0) {
+                    static_assert(sizeof x == size_of<S, typename Model::State> * sizeof(S));
+                    if (argument.slot.size() >= size_of<S, typename Model::State>)
+                        std::memcpy(static_cast<void*>(&x), argument.slot.item, sizeof x);
+                }
+                return x;
+            }
         } else {
             return argument;
         }
     }
     template <class Model, class Result>
     static auto stored(const Model&, const Result& result) {
-        if constexpr (requires { requires std::is_same_v<Result, typename Model::State>; }) {
-            State x{};
-            if constexpr (!std::is_empty_v<Result>) std::memcpy(static_cast<void*>(&x), &result, sizeof result);
-            return x;
-        } else {
+        if constexpr (std::is_same_v<Result, State> || !requires { requires std::is_same_v<Result, typename Model::State>; }) {
             return result;
+        } else {
+            State x{};
+            if constexpr (size_of<S, Result> > 0) {
+                if constexpr (requires { x.slot.count; }) x.slot.count = size_of<S, Result>;
+                std::memcpy(static_cast<void*>(x.slot.item), &result, sizeof result);
+            }
+            return x;
         }
     }
 };

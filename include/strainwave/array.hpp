@@ -24,6 +24,41 @@ struct Sequence {
     constexpr int size() const { return count; }
 };
 
+/// As many elements as a model chosen at run time has, of at most `capacity`: neither made nor copied beyond those.
+template <class T, int capacity_>
+struct Counted {
+    static constexpr int capacity = capacity_;
+    union {
+        T item[capacity];
+    };
+    int count;
+
+    constexpr explicit Counted(int n = 0) : count(n) {}
+    constexpr Counted(const Counted& other) : count(other.count) { copy(other); }
+    constexpr Counted& operator=(const Counted& other) {
+        count = other.count;
+        copy(other);
+        return *this;
+    }
+
+    constexpr T& operator[](int i) { return item[i]; }
+    constexpr const T& operator[](int i) const { return item[i]; }
+    constexpr int size() const { return count; }
+
+private:
+    constexpr void copy(const Counted& other) {
+        for (int i = 0; i < count; ++i) item[i] = other.item[i];
+    }
+};
+
+/// Gives others as many elements as one has; what they are is yet to be set.
+template <class T, int n, class... Others>
+constexpr void size_like(const Array<T, n>&, Others&...) {}
+template <class T, int capacity, class... Others>
+constexpr void size_like(const Counted<T, capacity>& elements, Others&... others) {
+    ((others.count = elements.count), ...);
+}
+
 /// f(0), ..., f(n - 1); written out where they are few. A short loop would become one of vectors, whose loads wait for the numbers
 /// just stored one by one.
 template <int n, int i = 0, class F>
@@ -34,6 +69,16 @@ constexpr void for_each_of(const F& f) {
         f(i);
         for_each_of<n, i + 1>(f);
     }
+}
+
+/// f(i) for the index of each element.
+template <class T, int n, class F>
+constexpr void for_each_index(const Array<T, n>&, const F& f) {
+    for_each_of<n>(f);
+}
+template <class T, int capacity, class F>
+constexpr void for_each_index(const Counted<T, capacity>& elements, const F& f) {
+    for (int i = 0; i < elements.count; ++i) f(i);
 }
 
 }  // namespace strainwave

@@ -208,9 +208,32 @@ struct PositionDrive {
         Derivatives derivatives;
     };
 
+    /// Calls visit(name in the state, part) for each part that has a state.
+    template <class Visit>
+    constexpr void stateful_parts(Visit&& visit) const {
+        visit("motor", motor);
+        visit("control", control);
+        visit("hysteresis", gear.hysteresis);
+        visit("friction_input", gear.friction_input);
+        visit("friction_mesh", gear.friction_mesh);
+        visit("friction_output", gear.friction_output);
+    }
+
+    /// All parts without history, and angles, speeds and twist zero.
+    constexpr State initial_state() const {
+        State x{};
+        x.hysteresis = strainwave::initial_state(gear.hysteresis);
+        x.continuous.motor = strainwave::initial_state(motor);
+        x.continuous.control = strainwave::initial_state(control);
+        x.continuous.friction_input = strainwave::initial_state(gear.friction_input);
+        x.continuous.friction_mesh = strainwave::initial_state(gear.friction_mesh);
+        x.continuous.friction_output = strainwave::initial_state(gear.friction_output);
+        return x;
+    }
+
     /// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
     constexpr State rest() const {
-        State x{};
+        State x = initial_state();
         // Once is enough without noise; with noise, whose amplitude follows the torque, a few rounds bring the twist to zero.
         for (int i = 0; i < 8; ++i)
             x.continuous.transmission_error = gear.geometry({}, S(0.0), x.continuous.transmission_error, S(0.0)).error;
@@ -263,7 +286,7 @@ struct PositionDrive {
     }
 
     constexpr Continuous relaxation_rate(const Continuous& y, const Derivatives& now) const {
-        Continuous rates{};
+        Continuous rates = zeroed<S>(y);
         rates.motor = motor.relaxation_rate();
         rates.friction_input = friction::relaxation_rate(gear.friction_input, y.friction_input, now.contacts.input);
         rates.friction_mesh = friction::relaxation_rate(gear.friction_mesh, y.friction_mesh, now.contacts.mesh);
@@ -403,7 +426,7 @@ struct PositionDrive {
         return x;
     }
     constexpr Continuous speeds(const Continuous& y) const {
-        Continuous only{};
+        Continuous only = zeroed<S>(y);
         only.input_speed = y.input_speed;
         only.output_speed = y.output_speed;
         return only;

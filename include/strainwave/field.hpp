@@ -98,20 +98,34 @@ inline constexpr bool fully_described = detail::visited<T>() == detail::members<
 
 namespace detail {
 
-/// Counts scalars, elements of arrays included.
+/// Counts scalars, elements of arrays included; of what is counted at run time the most there can be.
 template <class S>
 struct Counter {
     int count = 0;
+    bool fixed = true;
     constexpr void operator()(const S&, const Field&) { ++count; }
     template <int n>
     constexpr void operator()(const Array<S, n>&, const Field&) {
         count += n;
+    }
+    template <int capacity>
+    constexpr void operator()(const Counted<S, capacity>&, const Field&) {
+        count += capacity;
+        fixed = false;
     }
     template <Described T>
     constexpr void operator()(const T& part, const Field&) {
         T::fields(part, *this);
     }
 };
+
+template <class S, class X>
+inline constexpr Counter<S> counter_of = [] {
+    X state{};
+    Counter<S> counter;
+    X::fields(state, counter);
+    return counter;
+}();
 
 /// Copies scalars one after the other: out of a state, or into one.
 template <class S>
@@ -123,7 +137,7 @@ struct Read {
         if constexpr (Described<T>)
             T::fields(member, *this);
         else if constexpr (requires { member.item; })
-            for (const auto& x : member.item) target[count++] = x;
+            for (int i = 0; i < member.size(); ++i) target[count++] = member[i];
         else
             target[count++] = member;
     }
@@ -137,38 +151,73 @@ struct Write {
         if constexpr (Described<T>)
             T::fields(member, *this);
         else if constexpr (requires { member.item; })
-            for (auto& x : member.item) x = source[count++];
+            for (int i = 0; i < member.size(); ++i) member[i] = source[count++];
         else
             member = source[count++];
     }
 };
 
+template <class S>
+struct Clear {
+    template <class T>
+    constexpr void operator()(T& member, const Field&) const {
+        if constexpr (Described<T>)
+            T::fields(member, *this);
+        else if constexpr (requires { member.item; })
+            for (int i = 0; i < member.size(); ++i) member[i] = S(0.0);
+        else
+            member = S(0.0);
+    }
+};
+
+/// The scalars of a state, side by side.
+template <class S, class X, bool fixed = counter_of<S, X>.fixed>
+struct Flat {
+    using type = Array<S, counter_of<S, X>.count>;
+};
+template <class S, class X>
+struct Flat<S, X, false> {
+    using type = Counted<S, counter_of<S, X>.count>;
+};
+
 }  // namespace detail
 
-/// How many scalars a described state holds.
+/// How many scalars a described state holds, at most.
 template <class S, Described X>
-inline constexpr int size_of = [] {
-    X state{};
-    detail::Counter<S> counter;
-    X::fields(state, counter);
-    return counter.count;
-}();
+inline constexpr int size_of = detail::counter_of<S, X>.count;
+
+template <class S, Described X>
+using Flat = typename detail::Flat<S, X>::type;
 
 /// The scalars of a described state, in the order it lists them.
 template <class S, Described X>
-constexpr Array<S, size_of<S, X>> flattened(const X& state) {
-    Array<S, size_of<S, X>> scalars;
+constexpr Flat<S, X> flattened(const X& state) {
+    Flat<S, X> scalars;
     detail::Read<S> read{scalars.item};
     X::fields(state, read);
+    if constexpr (requires { scalars.count; }) scalars.count = read.count;
     return scalars;
+}
+
+/// Puts scalars in place of those of a state.
+template <Described X, class Scalars>
+constexpr void refill(X& state, const Scalars& scalars) {
+    detail::Write write{scalars.item};
+    X::fields(state, write);
+}
+/// The same state with these scalars in place of its own.
+template <Described X, class Scalars>
+constexpr X refilled(const X& state, const Scalars& scalars) {
+    X other = state;
+    refill(other, scalars);
+    return other;
 }
 
 /// The state that has these scalars.
 template <Described X, class S>
 constexpr X shaped(const Array<S, size_of<S, X>>& scalars) {
     X state{};
-    detail::Write<S> write{scalars.item};
-    X::fields(state, write);
+    refill(state, scalars);
     return state;
 }
 
@@ -178,7 +227,26 @@ constexpr X chosen(const Mask& mask, const X& first, const X& second) {
     auto scalars = flattened<S>(second);
     const auto others = flattened<S>(first);
     for (int i = 0; i < scalars.size(); ++i) scalars[i] = select(mask, others[i], scalars[i]);
-    return shaped<X>(scalars);
+    return refilled(second, scalars);
+}
+
+/// A state of the same shape whose scalars are zero.
+template <class S, Described X>
+constexpr X zeroed(const X& state) {
+    X zero = state;
+    X::fields(zero, detail::Clear<S>{});
+    return zero;
+}
+
+/// The state of a law that has no history.
+template <class Law>
+constexpr typename Law::State initial_state(const Law& law) {
+    if constexpr (requires { law.initial_state(); })
+        return law.initial_state();
+    else if constexpr (requires { law.law; })  // it varies another, whose state it has
+        return initial_state(law.law);
+    else
+        return {};
 }
 
 /// A state without members.

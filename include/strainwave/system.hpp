@@ -25,13 +25,13 @@
 namespace strainwave::system {
 
 /// How fast each number forgets itself [1/s]: what an explicit method could not follow is stepped exactly. Without: none does.
-template <class System>
+template <class S, class System>
 constexpr typename System::Continuous relaxation_rate(const System& system, const typename System::Continuous& y,
                                                       const typename System::Derivatives& now) {
     if constexpr (requires { system.relaxation_rate(y, now); })
         return system.relaxation_rate(y, now);
     else
-        return {};
+        return zeroed<S>(y);
 }
 
 /// The numbers within what they can ever reach, also where the stage of a step would leave it. `now` is an instant close by.
@@ -233,12 +233,12 @@ constexpr S watched(const System& system, const typename System::Evaluation& at)
 }
 
 /// The numbers whose rate jumps where a force does, the others zero: their rates must agree with the way they took.
-template <class System>
+template <class S, class System>
 constexpr typename System::Continuous speeds(const System& system, const typename System::Continuous& y) {
     if constexpr (requires { system.speeds(y); })
         return system.speeds(y);
     else
-        return {};
+        return zeroed<S>(y);
 }
 
 }  // namespace strainwave::system

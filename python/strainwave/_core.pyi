@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 import enum
 import pathlib
-from typing import Any, overload
+from typing import Any
 
 import numpy
 import numpy.typing
@@ -109,8 +109,10 @@ class Gear:
 
     def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ...) -> None: ...
 
-    def replace(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ...) -> Gear:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ...) -> Gear:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def kinematics(self) -> strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio:
@@ -185,156 +187,7 @@ class Gear:
         Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of `trace`, to rounding, for every spring and hysteresis.
         """
 
-class ContinuousState:
-    """
-    Parameters
-    ----------
-    motor: State of the motor; default (0.0,)
-    control: State of the controller; default (0.0,)
-    input_angle: Input angle within the turn, in [-pi, pi] [rad]; default 0.0
-    input_speed: Input speed [rad/s]; default 0.0
-    transmission_error: theta_in / i - theta_out [rad]; default 0.0
-    output_speed: Output speed [rad/s]; default 0.0
-    friction_input: State of the friction at the input; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    friction_mesh: State of the friction of the mesh; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    friction_output: State of the friction at the output; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-    Raises
-    ------
-    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
-    ValueError: a number that is not finite or out of its range
-    """
-
-    def __init__(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_mesh: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> None: ...
-
-    def replace(self, *, motor: Sequence[float] = ..., control: Sequence[float] = ..., input_angle: float = ..., input_speed: float = ..., transmission_error: float = ..., output_speed: float = ..., friction_input: Sequence[float] = ..., friction_mesh: Sequence[float] = ..., friction_output: Sequence[float] = ...) -> ContinuousState:
-        """The same with the named parameters changed."""
-
-    @property
-    def motor(self) -> tuple[float, ...]:
-        """State of the motor"""
-
-    @property
-    def control(self) -> tuple[float, ...]:
-        """State of the controller"""
-
-    @property
-    def input_angle(self) -> float:
-        """Input angle within the turn, in [-pi, pi] [rad]"""
-
-    @property
-    def input_speed(self) -> float:
-        """Input speed [rad/s]"""
-
-    @property
-    def transmission_error(self) -> float:
-        """theta_in / i - theta_out [rad]"""
-
-    @property
-    def output_speed(self) -> float:
-        """Output speed [rad/s]"""
-
-    @property
-    def friction_input(self) -> tuple[float, ...]:
-        """State of the friction at the input"""
-
-    @property
-    def friction_mesh(self) -> tuple[float, ...]:
-        """State of the friction of the mesh"""
-
-    @property
-    def friction_output(self) -> tuple[float, ...]:
-        """State of the friction at the output"""
-
-    def __repr__(self) -> str: ...
-
-    def __eq__(self, other: object, /) -> bool: ...
-
-    def __hash__(self) -> int: ...
-
-    def __getstate__(self) -> dict[str, object]: ...
-
-    def __setstate__(self, state: dict[str, object], /) -> None: ...
-
-    def __reduce__(self) -> tuple[Any, ...]: ...
-
-    name: str = 'continuous'
-
-    fields: tuple[dict[str, Any], ...]
-
-class State:
-    """
-    Parameters
-    ----------
-    continuous: What changes continuously; default ContinuousState(motor=(0.0,), control=(0.0,), input_angle=0.0, input_speed=0.0, transmission_error=0.0, output_speed=0.0, friction_input=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_mesh=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), friction_output=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    hysteresis: Memory of the hysteresis; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    held_twist: Twist at which the hysteresis was last brought up to date [rad]; default 0.0
-    held_rate: Rate of the twist there [rad/s]; default 0.0
-    elapsed: Time since [s]; default 0.0
-    turns: Whole revolutions of the input; default 0.0
-    input_slip_direction: Slip direction of the input shaft, 0 while it sticks; default 1.0
-    output_slip_direction: Slip direction of the output shaft, 0 while it sticks; default 1.0
-
-    Raises
-    ------
-    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
-    ValueError: a number that is not finite or out of its range
-    """
-
-    def __init__(self, *, continuous: ContinuousState = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., input_slip_direction: float = ..., output_slip_direction: float = ...) -> None: ...
-
-    def replace(self, *, continuous: ContinuousState = ..., hysteresis: Sequence[float] = ..., held_twist: float = ..., held_rate: float = ..., elapsed: float = ..., turns: float = ..., input_slip_direction: float = ..., output_slip_direction: float = ...) -> State:
-        """The same with the named parameters changed."""
-
-    @property
-    def continuous(self) -> ContinuousState:
-        """What changes continuously"""
-
-    @property
-    def hysteresis(self) -> tuple[float, ...]:
-        """Memory of the hysteresis"""
-
-    @property
-    def held_twist(self) -> float:
-        """Twist at which the hysteresis was last brought up to date [rad]"""
-
-    @property
-    def held_rate(self) -> float:
-        """Rate of the twist there [rad/s]"""
-
-    @property
-    def elapsed(self) -> float:
-        """Time since [s]"""
-
-    @property
-    def turns(self) -> float:
-        """Whole revolutions of the input"""
-
-    @property
-    def input_slip_direction(self) -> float:
-        """Slip direction of the input shaft, 0 while it sticks"""
-
-    @property
-    def output_slip_direction(self) -> float:
-        """Slip direction of the output shaft, 0 while it sticks"""
-
-    def __repr__(self) -> str: ...
-
-    def __eq__(self, other: object, /) -> bool: ...
-
-    def __hash__(self) -> int: ...
-
-    def __getstate__(self) -> dict[str, object]: ...
-
-    def __setstate__(self, state: dict[str, object], /) -> None: ...
-
-    def __reduce__(self) -> tuple[Any, ...]: ...
-
-    name: str = 'state'
-
-    fields: tuple[dict[str, Any], ...]
-
-lanes: int = 8
+max_lanes: int = 8
 
 largest: float = 1000000000000000.0
 
@@ -349,12 +202,12 @@ class Method(enum.Enum):
 
     rosenbrock = 2
 
-def simulate(drive: strainwave.drives.PositionDrive, start: State, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: Method, out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> State:
+def simulate(drive: strainwave.drives.PositionDrive, start: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: Method, out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> numpy.typing.NDArray[numpy.float64]:
     """
     The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on.
     """
 
-def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: State, command: Signal, load_torque: Signal, temperature: Signal, ends: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[State, int, int]:
+def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: numpy.typing.NDArray[numpy.float64], command: Signal, load_torque: Signal, temperature: Signal, ends: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], int, int]:
     """
     The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.
     """
@@ -387,35 +240,40 @@ def differentiate(drive: strainwave.drives.PositionDrive, instants: numpy.typing
     Outputs from rest, shape (channels, 1 + kept), and derivatives, shape (parameters, channels, 1 + kept).
     """
 
-def now(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def now(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """Outputs in `state`, shape (channels, 1)."""
 
-def differentiate_flow(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+def differentiate_rates(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
-    Rates of the n numbers of the motion, then outputs, shape (n + channels,), in `state`, and derivatives by the motion and the inputs, shape (n + 4, n + channels).
-    """
-
-def motion(drive: strainwave.drives.PositionDrive) -> list[tuple[int, str, str]]:
-    """
-    Place, name and unit of the numbers of the motion that the models of a drive have.
+    Rates of the n continuous numbers, then outputs, shape (n + channels,), in `state`, and derivatives by those numbers and the inputs, shape (n + 4, n + channels).
     """
 
-def aged(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64], dt: float) -> State:
+def state(drive: strainwave.drives.PositionDrive) -> tuple[list[tuple[str, str, str]], int]:
+    """
+    Name, unit and part of each number of a drive's state, and how many of them are continuous; those come first.
+    """
+
+def shape(drive: strainwave.drives.PositionDrive) -> dict[str, tuple[str, str]]:
+    """
+    Of each part that has a state, the name of its model and the counts that say which number means what.
+    """
+
+def aged(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], dt: float) -> numpy.typing.NDArray[numpy.float64]:
     """
     `state` with what friction remembers after `dt` [s] at constant speeds.
     """
 
-def advance_hysteresis(drive: strainwave.drives.PositionDrive, state: State, twist: float) -> State:
+def advance_hysteresis(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], twist: float) -> numpy.typing.NDArray[numpy.float64]:
     """`state` with its hysteresis brought up to date at `twist` [rad]."""
 
-def consistent(drive: strainwave.drives.PositionDrive, state: State) -> State:
+def consistent(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """
     `state` with the slip direction of each shaft as its speed and its law have it.
     """
 
-def break_away(drive: strainwave.drives.PositionDrive, state: State, inputs: numpy.typing.NDArray[numpy.float64]) -> State:
+def break_away(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """
-    `state` with those shafts slipping that stick and are driven beyond what their friction holds.
+    `state` with those shafts slipping that stick and are driven beyond what holds them.
     """
 
 def differentiate_loop(gear: Gear, twist: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -428,156 +286,10 @@ def differentiate_steady(gear: Gear, speed: numpy.typing.NDArray[numpy.float64],
     Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).
     """
 
-@overload
-def parameters(model: Gear) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.drives.PositionDrive) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.Viscous) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.Coulomb) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.Stribeck) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.PositionDependent) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.LuGre) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.MaxwellSlipFriction) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.LoadDependent) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.TorqueEfficiency) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.Cyclic) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.friction.Thermal) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.stiffness.Linear) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.stiffness.Piecewise) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.stiffness.ThreeSegment) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.stiffness.Cubic) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.stiffness.MultiCompliance) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.hysteresis.MaxwellSlip) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.hysteresis.FadingMemory) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.hysteresis.BoucWen) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.hysteresis.Preisach) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.hysteresis.Regimes) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.kinematic_error.Fourier) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.kinematic_error.Misalignment) -> list[tuple[str, float, str, str, float, float]]: ...
-
-@overload
-def parameters(model: strainwave.kinematic_error.Stochastic) -> list[tuple[str, float, str, str, float, float]]:
+def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]:
     """
     Every number of a set of parameters: path, value, unit, doc, lower and upper limit.
     """
 
-@overload
-def with_numbers(model: Gear, numbers: Sequence[float]) -> Gear: ...
-
-@overload
-def with_numbers(model: strainwave.drives.PositionDrive, numbers: Sequence[float]) -> strainwave.drives.PositionDrive: ...
-
-@overload
-def with_numbers(model: strainwave.friction.Viscous, numbers: Sequence[float]) -> strainwave.friction.Viscous: ...
-
-@overload
-def with_numbers(model: strainwave.friction.Coulomb, numbers: Sequence[float]) -> strainwave.friction.Coulomb: ...
-
-@overload
-def with_numbers(model: strainwave.friction.Stribeck, numbers: Sequence[float]) -> strainwave.friction.Stribeck: ...
-
-@overload
-def with_numbers(model: strainwave.friction.PositionDependent, numbers: Sequence[float]) -> strainwave.friction.PositionDependent: ...
-
-@overload
-def with_numbers(model: strainwave.friction.LuGre, numbers: Sequence[float]) -> strainwave.friction.LuGre: ...
-
-@overload
-def with_numbers(model: strainwave.friction.MaxwellSlipFriction, numbers: Sequence[float]) -> strainwave.friction.MaxwellSlipFriction: ...
-
-@overload
-def with_numbers(model: strainwave.friction.LoadDependent, numbers: Sequence[float]) -> strainwave.friction.LoadDependent: ...
-
-@overload
-def with_numbers(model: strainwave.friction.TorqueEfficiency, numbers: Sequence[float]) -> strainwave.friction.TorqueEfficiency: ...
-
-@overload
-def with_numbers(model: strainwave.friction.Cyclic, numbers: Sequence[float]) -> strainwave.friction.Cyclic: ...
-
-@overload
-def with_numbers(model: strainwave.friction.Thermal, numbers: Sequence[float]) -> strainwave.friction.Thermal: ...
-
-@overload
-def with_numbers(model: strainwave.stiffness.Linear, numbers: Sequence[float]) -> strainwave.stiffness.Linear: ...
-
-@overload
-def with_numbers(model: strainwave.stiffness.Piecewise, numbers: Sequence[float]) -> strainwave.stiffness.Piecewise: ...
-
-@overload
-def with_numbers(model: strainwave.stiffness.ThreeSegment, numbers: Sequence[float]) -> strainwave.stiffness.ThreeSegment: ...
-
-@overload
-def with_numbers(model: strainwave.stiffness.Cubic, numbers: Sequence[float]) -> strainwave.stiffness.Cubic: ...
-
-@overload
-def with_numbers(model: strainwave.stiffness.MultiCompliance, numbers: Sequence[float]) -> strainwave.stiffness.MultiCompliance: ...
-
-@overload
-def with_numbers(model: strainwave.hysteresis.MaxwellSlip, numbers: Sequence[float]) -> strainwave.hysteresis.MaxwellSlip: ...
-
-@overload
-def with_numbers(model: strainwave.hysteresis.FadingMemory, numbers: Sequence[float]) -> strainwave.hysteresis.FadingMemory: ...
-
-@overload
-def with_numbers(model: strainwave.hysteresis.BoucWen, numbers: Sequence[float]) -> strainwave.hysteresis.BoucWen: ...
-
-@overload
-def with_numbers(model: strainwave.hysteresis.Preisach, numbers: Sequence[float]) -> strainwave.hysteresis.Preisach: ...
-
-@overload
-def with_numbers(model: strainwave.hysteresis.Regimes, numbers: Sequence[float]) -> strainwave.hysteresis.Regimes: ...
-
-@overload
-def with_numbers(model: strainwave.kinematic_error.Fourier, numbers: Sequence[float]) -> strainwave.kinematic_error.Fourier: ...
-
-@overload
-def with_numbers(model: strainwave.kinematic_error.Misalignment, numbers: Sequence[float]) -> strainwave.kinematic_error.Misalignment: ...
-
-@overload
-def with_numbers(model: strainwave.kinematic_error.Stochastic, numbers: Sequence[float]) -> strainwave.kinematic_error.Stochastic:
+def with_numbers(model: Any, numbers: Sequence[float]) -> Any:
     """The same models with other numbers, in the order of `parameters`."""

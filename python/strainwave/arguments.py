@@ -117,12 +117,3 @@ def gear(value: object) -> _core.Gear:
     if not isinstance(value, _core.Gear):
         raise TypeError(f"gear = {shortened(value)} must be a gear, as sw.Gear(...) makes one")
     return value
-
-
-def state(name: str, value: object) -> _core.State:
-    """A state of a drive."""
-    if not isinstance(value, _core.State):
-        raise TypeError(
-            f"{name} = {shortened(value)} must be a state of a drive, as `end` of a run or sw.equilibrium(...) is one"
-        )
-    return value

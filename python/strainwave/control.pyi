@@ -31,8 +31,10 @@ class OpenLoop:
 
     def __init__(self, *, gain: float = ...) -> None: ...
 
-    def replace(self, *, gain: float = ...) -> OpenLoop:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ...) -> OpenLoop:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def gain(self) -> float:
@@ -92,8 +94,10 @@ class PID:
 
     def __init__(self, *, proportional: float = ..., integral: float = ..., derivative: float = ..., limit: float = ...) -> None: ...
 
-    def replace(self, *, proportional: float = ..., integral: float = ..., derivative: float = ..., limit: float = ...) -> PID:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, proportional: float = ..., integral: float = ..., derivative: float = ..., limit: float = ...) -> PID:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def proportional(self) -> float:

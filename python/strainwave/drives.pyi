@@ -6,6 +6,7 @@ import strainwave._core
 import strainwave.control
 import strainwave.loads
 import strainwave.motor
+import strainwave.state
 
 
 class PositionDrive:
@@ -44,8 +45,10 @@ class PositionDrive:
 
     def __init__(self, *, gear: strainwave._core.Gear = ..., motor: strainwave.motor.DC = ..., control: strainwave.control.OpenLoop | strainwave.control.PID = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum = ...) -> None: ...
 
-    def replace(self, *, gear: strainwave._core.Gear = ..., motor: strainwave.motor.DC = ..., control: strainwave.control.OpenLoop | strainwave.control.PID = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum = ...) -> PositionDrive:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, gear: strainwave._core.Gear = ..., motor: strainwave.motor.DC = ..., control: strainwave.control.OpenLoop | strainwave.control.PID = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum = ...) -> PositionDrive:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def gear(self) -> strainwave._core.Gear:
@@ -81,10 +84,10 @@ class PositionDrive:
 
     fields: tuple[dict[str, Any], ...]
 
-    def rest(self) -> strainwave._core.State:
+    def rest(self) -> strainwave.state.State:
         """The state at rest, untwisted and without history, input angle 0."""
 
-    def step(self, state: strainwave._core.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave._core.State:
+    def step(self, state: strainwave.state.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave.state.State:
         """
-        The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
+        The state `dt` [s] later, the command moving at `command_rate`. `ValueError` for a state of another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
         """

@@ -419,7 +419,7 @@ def _limits(low: float, high: float) -> str:
 def _part_size(plan: _Plan) -> int:
     """Members of a part, whose outputs fit into memory: whole packs for every thread."""
     size = PART // (8 * len(plan.recorded) * len(plan.time))
-    pack = _core.lanes * plan.threads
+    pack = _core.max_lanes * plan.threads
     return max(pack, size - size % pack)
 
 

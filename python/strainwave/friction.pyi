@@ -35,8 +35,10 @@ class Viscous:
 
     def __init__(self, *, viscous: float = ...) -> None: ...
 
-    def replace(self, *, viscous: float = ...) -> Viscous:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, viscous: float = ...) -> Viscous:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def viscous(self) -> float:
@@ -130,8 +132,10 @@ class Coulomb:
 
     def __init__(self, *, coulomb: float = ..., breakaway: float = ..., viscous: float = ...) -> None: ...
 
-    def replace(self, *, coulomb: float = ..., breakaway: float = ..., viscous: float = ...) -> Coulomb:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, coulomb: float = ..., breakaway: float = ..., viscous: float = ...) -> Coulomb:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def coulomb(self) -> float:
@@ -234,8 +238,10 @@ class Stribeck:
 
     def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, viscous: float = ...) -> None: ...
 
-    def replace(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous: float = ...) -> Stribeck:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous: float = ...) -> Stribeck:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def coulomb(self) -> float:
@@ -366,8 +372,10 @@ class PositionDependent:
 
     def __init__(self, *, quadratic: float = ..., linear: float = ..., constant: float, cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float, domain_end: float, outside: str = ...) -> None: ...
 
-    def replace(self, *, quadratic: float = ..., linear: float = ..., constant: float = ..., cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float = ..., domain_end: float = ..., outside: str = ...) -> PositionDependent:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, quadratic: float = ..., linear: float = ..., constant: float = ..., cosine: float | Sequence[float] = ..., sine: float | Sequence[float] = ..., static_ratio: float = ..., speed_factor: float = ..., reference_speed: float = ..., viscous: float = ..., domain_start: float = ..., domain_end: float = ..., outside: str = ...) -> PositionDependent:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def quadratic(self) -> float:
@@ -521,8 +529,10 @@ class LuGre:
 
     def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, bristle_stiffness: float, bristle_damping: float, viscous: float = ..., damping_fading: float = ...) -> None: ...
 
-    def replace(self, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ..., damping_fading: float = ...) -> LuGre:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., bristle_stiffness: float = ..., bristle_damping: float = ..., viscous: float = ..., damping_fading: float = ...) -> LuGre:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def coulomb(self) -> float:
@@ -610,8 +620,10 @@ class LuGre:
 
         def __init__(self, *, deflection: float = ...) -> None: ...
 
-        def replace(self, *, deflection: float = ...) -> LuGre.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, deflection: float = ...) -> LuGre.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def deflection(self) -> float:
@@ -701,8 +713,10 @@ class MaxwellSlipFriction:
 
     def __init__(self, *, stiffness: float | Sequence[float], share: float | Sequence[float], coulomb: float, breakaway: float = ..., stribeck_speed: float, attraction: float, viscous: float = ...) -> None: ...
 
-    def replace(self, *, stiffness: float | Sequence[float] = ..., share: float | Sequence[float] = ..., coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., attraction: float = ..., viscous: float = ...) -> MaxwellSlipFriction:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, stiffness: float | Sequence[float] = ..., share: float | Sequence[float] = ..., coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., attraction: float = ..., viscous: float = ...) -> MaxwellSlipFriction:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def stiffness(self) -> tuple[float, ...]:
@@ -793,8 +807,10 @@ class MaxwellSlipFriction:
 
         def __init__(self, *, torque: Sequence[float] = ..., slipping: Sequence[float] = ...) -> None: ...
 
-        def replace(self, *, torque: Sequence[float] = ..., slipping: Sequence[float] = ...) -> MaxwellSlipFriction.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, torque: Sequence[float] = ..., slipping: Sequence[float] = ...) -> MaxwellSlipFriction.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def torque(self) -> tuple[float, ...]:
@@ -882,8 +898,10 @@ class LoadDependent:
 
     def __init__(self, *, driving_forward: float = ..., driving_reverse: float = ..., backdriving_forward: float = ..., backdriving_reverse: float = ...) -> None: ...
 
-    def replace(self, *, driving_forward: float = ..., driving_reverse: float = ..., backdriving_forward: float = ..., backdriving_reverse: float = ...) -> LoadDependent:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, driving_forward: float = ..., driving_reverse: float = ..., backdriving_forward: float = ..., backdriving_reverse: float = ...) -> LoadDependent:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def driving_forward(self) -> float:
@@ -999,8 +1017,10 @@ class TorqueEfficiency:
 
     def __init__(self, *, average_loss: float, difference_loss: float = ..., presliding: float, viscous: float = ...) -> None: ...
 
-    def replace(self, *, average_loss: float = ..., difference_loss: float = ..., presliding: float = ..., viscous: float = ...) -> TorqueEfficiency:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, average_loss: float = ..., difference_loss: float = ..., presliding: float = ..., viscous: float = ...) -> TorqueEfficiency:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def average_loss(self) -> float:
@@ -1076,8 +1096,10 @@ class TorqueEfficiency:
 
         def __init__(self, *, engagement: float = ...) -> None: ...
 
-        def replace(self, *, engagement: float = ...) -> TorqueEfficiency.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, engagement: float = ...) -> TorqueEfficiency.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def engagement(self) -> float:
@@ -1152,8 +1174,10 @@ class Cyclic:
 
     def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Cyclic:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Cyclic:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency:
@@ -1217,7 +1241,7 @@ class Cyclic:
         """
         Parameters
         ----------
-        slot: State of the model chosen, in the order it lists it; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        slot: State of the model chosen, in the order it lists it; default ()
 
         Raises
         ------
@@ -1225,10 +1249,12 @@ class Cyclic:
         ValueError: a number that is not finite or out of its range
         """
 
-        def __init__(self, *, slot: Sequence[float] = ...) -> None: ...
+        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
 
-        def replace(self, *, slot: Sequence[float] = ...) -> tuple[float, ...]:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Cyclic.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def slot(self) -> tuple[float, ...]:
@@ -1299,8 +1325,10 @@ class Thermal:
 
     def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> None: ...
 
-    def replace(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> Thermal:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> Thermal:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic:
@@ -1364,7 +1392,7 @@ class Thermal:
         """
         Parameters
         ----------
-        slot: State of the model chosen, in the order it lists it; default (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        slot: State of the model chosen, in the order it lists it; default ()
 
         Raises
         ------
@@ -1372,10 +1400,12 @@ class Thermal:
         ValueError: a number that is not finite or out of its range
         """
 
-        def __init__(self, *, slot: Sequence[float] = ...) -> None: ...
+        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
 
-        def replace(self, *, slot: Sequence[float] = ...) -> tuple[float, ...]:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Cyclic.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def slot(self) -> tuple[float, ...]:

@@ -42,8 +42,10 @@ class PrandtlIshlinskii:
 
     def __init__(self, *, threshold: float | Sequence[float] = ..., weight: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, threshold: float | Sequence[float] = ..., weight: float | Sequence[float] = ...) -> PrandtlIshlinskii:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, threshold: float | Sequence[float] = ..., weight: float | Sequence[float] = ...) -> PrandtlIshlinskii:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def threshold(self) -> tuple[float, ...]:
@@ -86,8 +88,10 @@ class PrandtlIshlinskii:
 
         def __init__(self, *, torque: float = ..., play: Sequence[float] = ...) -> None: ...
 
-        def replace(self, *, torque: float = ..., play: Sequence[float] = ...) -> PrandtlIshlinskii.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, torque: float = ..., play: Sequence[float] = ...) -> PrandtlIshlinskii.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def torque(self) -> float:
@@ -156,8 +160,10 @@ class PowerDensity:
 
     def __init__(self, *, limit: float, saturation: float, exponent: float = ...) -> None: ...
 
-    def replace(self, *, limit: float = ..., saturation: float = ..., exponent: float = ...) -> PowerDensity:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, limit: float = ..., saturation: float = ..., exponent: float = ...) -> PowerDensity:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def limit(self) -> float:
@@ -226,8 +232,10 @@ class GridDensity:
 
     def __init__(self, *, limit: float, weight: float | Sequence[float]) -> None: ...
 
-    def replace(self, *, limit: float = ..., weight: float | Sequence[float] = ...) -> GridDensity:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, limit: float = ..., weight: float | Sequence[float] = ...) -> GridDensity:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def limit(self) -> float:
@@ -290,8 +298,10 @@ class MaxwellSlip:
 
     def __init__(self, *, stiffness: float | Sequence[float] = ..., breakaway: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, stiffness: float | Sequence[float] = ..., breakaway: float | Sequence[float] = ...) -> MaxwellSlip:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, stiffness: float | Sequence[float] = ..., breakaway: float | Sequence[float] = ...) -> MaxwellSlip:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def stiffness(self) -> tuple[float, ...]:
@@ -333,8 +343,10 @@ class MaxwellSlip:
 
         def __init__(self, *, torque: Sequence[float] = ...) -> None: ...
 
-        def replace(self, *, torque: Sequence[float] = ...) -> MaxwellSlip.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, torque: Sequence[float] = ...) -> MaxwellSlip.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def torque(self) -> tuple[float, ...]:
@@ -425,8 +437,10 @@ class FadingMemory:
 
     def __init__(self, *, stiffness: float | Sequence[float] = ..., forgetting: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, stiffness: float | Sequence[float] = ..., forgetting: float | Sequence[float] = ...) -> FadingMemory:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, stiffness: float | Sequence[float] = ..., forgetting: float | Sequence[float] = ...) -> FadingMemory:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def stiffness(self) -> tuple[float, ...]:
@@ -470,8 +484,10 @@ class FadingMemory:
 
         def __init__(self, *, held: Sequence[float] = ...) -> None: ...
 
-        def replace(self, *, held: Sequence[float] = ...) -> FadingMemory.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, held: Sequence[float] = ...) -> FadingMemory.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def held(self) -> tuple[float, ...]:
@@ -560,8 +576,10 @@ class BoucWen:
 
     def __init__(self, *, stiffness: float, saturation: float, sharpness: float = ..., shape: float = ...) -> None: ...
 
-    def replace(self, *, stiffness: float = ..., saturation: float = ..., sharpness: float = ..., shape: float = ...) -> BoucWen:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, stiffness: float = ..., saturation: float = ..., sharpness: float = ..., shape: float = ...) -> BoucWen:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def stiffness(self) -> float:
@@ -613,8 +631,10 @@ class BoucWen:
 
         def __init__(self, *, held: float = ...) -> None: ...
 
-        def replace(self, *, held: float = ...) -> BoucWen.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, held: float = ...) -> BoucWen.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def held(self) -> float:
@@ -709,8 +729,10 @@ class Preisach:
 
     def __init__(self, *, density: PowerDensity | GridDensity = ...) -> None: ...
 
-    def replace(self, *, density: PowerDensity | GridDensity = ...) -> Preisach:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, density: PowerDensity | GridDensity = ...) -> Preisach:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def density(self) -> PowerDensity | GridDensity:
@@ -750,8 +772,10 @@ class Preisach:
 
         def __init__(self, *, maximum: Sequence[float] = ..., minimum: Sequence[float] = ..., twist: float = ...) -> None: ...
 
-        def replace(self, *, maximum: Sequence[float] = ..., minimum: Sequence[float] = ..., twist: float = ...) -> Preisach.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, maximum: Sequence[float] = ..., minimum: Sequence[float] = ..., twist: float = ...) -> Preisach.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def maximum(self) -> tuple[float, ...]:
@@ -853,8 +877,10 @@ class Regimes:
 
     def __init__(self, *, positive_unloading: float, negative_loading: float, negative_unloading: float, positive_loading: float, onset: float, lost_motion: float) -> None: ...
 
-    def replace(self, *, positive_unloading: float = ..., negative_loading: float = ..., negative_unloading: float = ..., positive_loading: float = ..., onset: float = ..., lost_motion: float = ...) -> Regimes:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, positive_unloading: float = ..., negative_loading: float = ..., negative_unloading: float = ..., positive_loading: float = ..., onset: float = ..., lost_motion: float = ...) -> Regimes:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def positive_unloading(self) -> float:
@@ -915,8 +941,10 @@ class Regimes:
 
         def __init__(self, *, twist: float = ..., plastic: float = ...) -> None: ...
 
-        def replace(self, *, twist: float = ..., plastic: float = ...) -> Regimes.State:
-            """The same with the named parameters changed."""
+        def replace(self, changes: dict[str, Any] = ..., /, *, twist: float = ..., plastic: float = ...) -> Regimes.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
 
         @property
         def twist(self) -> float:

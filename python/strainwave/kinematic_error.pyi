@@ -38,8 +38,10 @@ class Fourier:
 
     def __init__(self, *, order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, *, order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Fourier:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Fourier:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def order(self) -> tuple[float, ...]:
@@ -164,8 +166,10 @@ class Misalignment:
 
     def __init__(self, *, major_radius: float, minor_radius: float, pitch_radius: float, pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> None: ...
 
-    def replace(self, *, major_radius: float = ..., minor_radius: float = ..., pitch_radius: float = ..., pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> Misalignment:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, major_radius: float = ..., minor_radius: float = ..., pitch_radius: float = ..., pressure_angle: float = ..., offset: float = ..., housing_eccentricity: float = ..., housing_direction: float = ..., housing_tilt_x: float = ..., housing_tilt_y: float = ..., generator_eccentricity: float = ..., generator_direction: float = ..., generator_tilt_x: float = ..., generator_tilt_y: float = ..., combine: str = ...) -> Misalignment:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def major_radius(self) -> float:
@@ -325,8 +329,10 @@ class Stochastic:
 
     def __init__(self, *, amplitude: float = ..., lowest_order: float = ..., highest_order: float = ..., seed: float = ..., load_sensitivity: float = ..., speed_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> None: ...
 
-    def replace(self, *, amplitude: float = ..., lowest_order: float = ..., highest_order: float = ..., seed: float = ..., load_sensitivity: float = ..., speed_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> Stochastic:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, amplitude: float = ..., lowest_order: float = ..., highest_order: float = ..., seed: float = ..., load_sensitivity: float = ..., speed_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> Stochastic:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def amplitude(self) -> float:

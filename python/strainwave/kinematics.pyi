@@ -37,8 +37,10 @@ class StrainWave:
 
     def __init__(self, *, flexspline_teeth: int = ..., circular_spline_teeth: int = ..., fixed: str = ...) -> None: ...
 
-    def replace(self, *, flexspline_teeth: int = ..., circular_spline_teeth: int = ..., fixed: str = ...) -> StrainWave:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, flexspline_teeth: int = ..., circular_spline_teeth: int = ..., fixed: str = ...) -> StrainWave:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def flexspline_teeth(self) -> int:
@@ -102,8 +104,10 @@ class PlainRatio:
 
     def __init__(self, *, reduction: float = ...) -> None: ...
 
-    def replace(self, *, reduction: float = ...) -> PlainRatio:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, reduction: float = ...) -> PlainRatio:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def reduction(self) -> float:

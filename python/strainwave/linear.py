@@ -20,7 +20,8 @@ from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.memory import room_for
 from strainwave.simulation import ROOM_TEMPERATURE, output_units
-from strainwave.steady import N_MOTION, OVERFLOW, PLACE, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
+from strainwave.state import Layout, State, start_of
+from strainwave.steady import OUTPUTS, OVERFLOW, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -129,7 +130,7 @@ class LinearView(ComparedByFields):
 
 def linearise(
     drive: PositionDrive,
-    state: _core.State | None = None,
+    state: State | None = None,
     *,
     command: float = 0.0,
     command_rate: float = 0.0,
@@ -174,71 +175,76 @@ def linearise(
     inputs = constant_inputs(command, load_torque, temperature, command_rate)
     if state is None:
         state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
-    state = _core.consistent(drive, arguments.state("state", state))
-    if state.continuous.input_speed != 0.0:
+    given = start_of(drive, state, "state").numbers
+    state = State.of(drive, _core.consistent(drive, given))
+    if state.input_speed != 0.0:
         drive = averaged(drive)
-    slopes = [_core.differentiate_flow(drive, _vibrating(drive, state, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
+    slopes = [_core.differentiate_rates(drive, _vibrating(state, drive, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
     if not all(np.isfinite(each).all() for each in slopes):
         raise ValueError(f"the drive cannot be linearised: {OVERFLOW}")
-    by_motion, by_inputs = np.split(0.5 * slopes[0].T + 0.5 * slopes[1].T, [N_MOTION], axis=1)
-    names = {place: name for place, name, _ in _core.motion(drive)}
-    kept = _moving(state, names)
-    by_motion = by_motion @ _tied(drive, state)
-    while dead := [place for place in kept if not _matters(place, by_motion, kept)]:
+    layout = Layout(drive)
+    count = layout.count
+    by_numbers, by_inputs = np.split(0.5 * slopes[0].T + 0.5 * slopes[1].T, [count], axis=1)
+    kept = _moving(state, layout)
+    by_numbers = by_numbers @ _tied(state, layout)
+    while dead := [place for place in kept if not _matters(place, by_numbers, kept)]:
         kept = [place for place in kept if place not in dead]
-    (a, c), (b, d) = np.split(by_motion[:, kept], [N_MOTION]), np.split(by_inputs, [N_MOTION])
-    units = {name: unit for _, name, unit in _core.motion(drive)} | output_units(drive) | _input_units(drive)
-    outputs = tuple(name for name, _, _ in _core.outputs)
-    states = tuple(names[place] for place in kept)
-    chosen = {name: units[name] for name in (*states, *INPUTS, *outputs)}
-    return LinearView(a[kept], b[kept], c, d, states, INPUTS, outputs, chosen)
+    (a, c), (b, d) = np.split(by_numbers[:, kept], [count]), np.split(by_inputs, [count])
+    units = layout.units | output_units(drive) | _input_units(drive)
+    states = tuple(layout.names[place] for place in kept)
+    chosen = {name: units[name] for name in (*states, *INPUTS, *OUTPUTS)}
+    return LinearView(a[kept], b[kept], c, d, states, INPUTS, tuple(OUTPUTS), chosen)
 
 
-def _vibrating(drive: PositionDrive, state: _core.State, inputs: Array, sense: float) -> _core.State:
+def _vibrating(state: State, drive: PositionDrive, inputs: Array, sense: float) -> Array:
     """`state` as a vibration finds it that is too small to change it and just passes in one `sense`, not for the first time."""
-    twist = _core.now(drive, state, inputs)[TWIST].item()
+    twist = _core.now(drive, state.numbers, inputs)[TWIST].item()
     little, ratio = 1e-12 * max(abs(twist), 1e-3), abs(drive.gear.kinematics.ratio)
-    at_rest = state.continuous.input_speed == state.continuous.output_speed == 0.0
+    at_rest = state.input_speed == state.output_speed == 0.0
 
-    def passing(way: float) -> _core.ContinuousState:
-        """The motion with the speeds of what rests but does not stick, `way` times a little within `SLOWLY`."""
+    def passing(numbers: Array, way: float) -> Array:
+        """The same with the speeds of what rests but does not stick, `way` times a little within `SLOWLY`."""
         speed = way * little / SLOWLY
-        return found.continuous.replace(
-            input_speed=state.continuous.input_speed or (ratio * speed if state.input_slip_direction else 0.0),
-            output_speed=state.continuous.output_speed or (speed if state.output_slip_direction else 0.0),
+        return (
+            State.of(drive, numbers)
+            .replace(
+                input_speed=state.input_speed or (ratio * speed if state.input_slip_direction else 0.0),
+                output_speed=state.output_speed or (speed if state.output_slip_direction else 0.0),
+            )
+            .numbers
         )
 
-    found = state
+    found = state.numbers
     for way in (1.0, -2.0, 1.0):
         twist += way * little
         found = _core.advance_hysteresis(drive, found, twist)
         if at_rest:
-            found = _core.aged(drive, found.replace(continuous=passing(way)), inputs, SLOWLY)
-    return _core.advance_hysteresis(drive, found, twist - 0.5 * sense * little).replace(continuous=passing(sense))
+            found = _core.aged(drive, passing(found, way), inputs, SLOWLY)
+    return passing(_core.advance_hysteresis(drive, found, twist - 0.5 * sense * little), sense)
 
 
-def _moving(state: _core.State, names: dict[int, str]) -> list[int]:
-    """The places of what moves: all but the states of a side that sticks."""
+def _moving(state: State, layout: Layout) -> list[int]:
+    """The places of what moves: all but the numbers of a shaft that sticks."""
     stuck = set[str]()
     if state.input_slip_direction == 0.0:
         stuck |= {"input_angle", "input_speed", "friction_input", "friction_mesh"}
     if state.output_slip_direction == 0.0:
         stuck |= {"output_speed", "friction_output", "transmission_error"}
-    return [place for place, name in names.items() if name.partition(".")[0] not in stuck]
+    return [place for place, name in enumerate(layout.names[: layout.count]) if name.partition(".")[0] not in stuck]
 
 
-def _tied(drive: PositionDrive, state: _core.State) -> Array:
-    """The motion by its members, columns: while the output sticks, the transmission error goes with the input."""
-    moved = np.eye(N_MOTION)
+def _tied(state: State, layout: Layout) -> Array:
+    """The numbers by those that move, columns: while the output sticks, the transmission error goes with the input."""
+    moved = np.eye(layout.count)
     if state.output_slip_direction == 0.0:
-        moved[PLACE["transmission_error"], PLACE["input_angle"]] = 1.0 / drive.gear.kinematics.ratio
+        moved[layout.places["transmission_error"], layout.places["input_angle"]] = 1.0 / state.drive.gear.kinematics.ratio
     return moved
 
 
-def _matters(place: int, by_motion: Array, kept: list[int]) -> bool:
-    """Whether another state or an output depends on a state."""
+def _matters(place: int, by_numbers: Array, kept: list[int]) -> bool:
+    """Whether another number or an output depends on a number."""
     others = [row for row in kept if row != place]
-    return bool(by_motion[others, place].any() or by_motion[N_MOTION:, place].any())
+    return bool(by_numbers[others, place].any() or by_numbers[by_numbers.shape[1] :, place].any())
 
 
 def _input_units(drive: PositionDrive) -> dict[str, str]:

@@ -31,8 +31,10 @@ class Inertia:
 
     def __init__(self, *, inertia: float = ...) -> None: ...
 
-    def replace(self, *, inertia: float = ...) -> Inertia:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ...) -> Inertia:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def inertia(self) -> float:
@@ -85,8 +87,10 @@ class Pendulum:
 
     def __init__(self, *, inertia: float = ..., gravity_torque: float = ...) -> None: ...
 
-    def replace(self, *, inertia: float = ..., gravity_torque: float = ...) -> Pendulum:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ..., gravity_torque: float = ...) -> Pendulum:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def inertia(self) -> float:

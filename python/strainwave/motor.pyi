@@ -38,8 +38,10 @@ class DC:
 
     def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ...) -> None: ...
 
-    def replace(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ...) -> DC:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ...) -> DC:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def resistance(self) -> float:

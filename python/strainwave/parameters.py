@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from typing import Any
 
 from strainwave import Gear, _core, arguments
 from strainwave.drives import PositionDrive
@@ -51,3 +52,36 @@ def parameters(name: str, model: Gear | PositionDrive, paths: Sequence[str]) -> 
         if path not in found:
             raise unknown(path, known)
     return chosen
+
+
+def replaced(model: Any, changes: Mapping[str, Any]) -> Any:
+    """A model with other numbers or parts, by their paths; what its `replace` does with a mapping.
+
+    >>> gear = Gear()
+    >>> replaced(gear, {"damping": 3.0, "friction_input.viscous": 1e-4}).friction_input.viscous
+    0.0001
+
+    Raises:
+        TypeError, ValueError: a path that the model does not have, or a value that does not fit
+    """
+    direct: dict[str, Any] = {}
+    deeper: dict[str, dict[str, Any]] = {}
+    for path, value in changes.items():
+        head, _, rest = arguments.text("the path of a parameter", path).partition(".")
+        if rest:
+            deeper.setdefault(head, {})[rest] = value
+        else:
+            direct[head] = value
+    for head, inner in deeper.items():
+        part = direct.get(head, getattr(model, head, None))
+        if not hasattr(part, "fields"):
+            raise unknown(f"{head}.{next(iter(inner))}", every(model))
+        direct[head] = replaced(part, inner)
+    for head in [each for each in direct if each.endswith("]")]:
+        name, _, place = head[:-1].partition("[")
+        elements = list(direct.get(name, getattr(model, name, ())))
+        if not (place.isdecimal() and int(place) < len(elements)):
+            raise unknown(head, every(model))
+        elements[int(place)] = direct.pop(head)
+        direct[name] = elements
+    return model.replace(**direct)

@@ -17,6 +17,7 @@ from strainwave.memory import check_instants
 from strainwave.messages import listed, quoted
 from strainwave.scenario import SHORTEST, Scenario, constant, sine
 from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, check_resolution, recording, warn_of_bristles
+from strainwave.state import State, start_of
 from strainwave.steady import averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
@@ -67,7 +68,7 @@ def frequency_response(
     command: float = 0.0,
     load_torque: float = 0.0,
     temperature: float = ROOM_TEMPERATURE,
-    start: _core.State | None = None,
+    start: State | None = None,
     dt: float = 2e-4,
     tolerance: float = 1e-6,
     most_periods: int = 1000,
@@ -122,11 +123,11 @@ def frequency_response(
     most_periods = arguments.whole("most_periods", most_periods, 2)
     if start is None:
         start = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
-    arguments.state("start", start)
-    if start.continuous.input_speed != 0.0:
+    start = start_of(drive, start)
+    if start.input_speed != 0.0:
         drive = averaged(drive)
     warn_of_bristles(drive, max(_step(1.0 / f, dt) for f in frequencies.tolist()))
-    sines = _Sines(drive, start, temperature, dt)
+    sines = _Sines(drive, start.numbers, temperature, dt)
     found = []
     for f in frequencies.tolist():
         levels = {"command": constant(command, 1.0 / f), "load_torque": constant(load_torque, 1.0 / f)}
@@ -160,7 +161,7 @@ class _Sines:
     """Runs from one start, period by period."""
 
     drive: PositionDrive
-    start: _core.State
+    start: Array
     temperature: float
     dt: float
 

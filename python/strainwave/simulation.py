@@ -22,6 +22,7 @@ from strainwave.messages import shortened
 from strainwave.ratings import drive_of, warn_of_ratings
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
+from strainwave.state import State, start_of
 
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of a drive's own motion
@@ -154,15 +155,15 @@ class Run(Recording):
         method: how steps were taken, in words
     """
 
-    end: _core.State
+    end: State
     method: str
 
-    def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str], end: _core.State, method: str) -> None:
+    def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str], end: State, method: str) -> None:
         super().__init__(columns, units, title=_title(method))
         self._came_about(end, method)
 
     @classmethod
-    def _made(cls, drive: PositionDrive, time: Array, outputs: Array, end: _core.State, method: str) -> Run:
+    def _made(cls, drive: PositionDrive, time: Array, outputs: Array, end: State, method: str) -> Run:
         """Of outputs, shape (channels, samples), that mean something: to check them as any others takes a quarter of a call."""
         run = object.__new__(cls)
         run._hold(_columns(time, outputs), output_units(drive), _title(method))
@@ -172,7 +173,7 @@ class Run(Recording):
     def __reduce__(self) -> tuple[Any, ...]:
         return Run, (dict(self.columns), dict(self.units), self.end, self.method)
 
-    def _came_about(self, end: _core.State, method: str) -> None:
+    def _came_about(self, end: State, method: str) -> None:
         object.__setattr__(self, "end", end)
         object.__setattr__(self, "method", method)
 
@@ -189,7 +190,7 @@ def simulate(
     sample: float | None = None,
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
-    start: _core.State | None = None,
+    start: State | None = None,
     method: Method | None = None,
     progress: bool = False,
 ) -> Run:
@@ -206,8 +207,7 @@ def simulate(
         sample: distance of samples in the recording [s]; `dt` if not given
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K], for friction that depends on it
-        start: where the drive starts, as `end` of another run of a drive with the same models, for a state says nothing of what
-            its numbers belong to; at rest, untwisted, if not given
+        start: where the drive starts, as `end` of another run of a drive with the same models; at rest, untwisted, if not given
         method: "exponential", a Runge-Kutta method of fourth order that lets bristles relax exactly; "rosenbrock", a W-method
             of third order for shafts that rest on stiff bristles without turning round; "moreau_jean", time-stepping of second
             order that looks for no events, however many there are. If not given it is the first, unless a shaft vibrates on
@@ -247,7 +247,7 @@ def simulate(
     model, drive = drive, drive_of(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    state = drive.rest() if start is None else arguments.state("start", start)
+    state = (drive.rest() if start is None else start_of(drive, start)).numbers
     excitation = Excitation(command, load_torque, temperature)
     course = excitation.course(dt, interval)
     if method is None and course.longest * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
@@ -278,12 +278,12 @@ def simulate(
     if method != "rosenbrock":
         check_resolution(drive, course.longest, _largest_twist(outputs))
     warn_of_bristles(drive, course.longest)
-    run = Run._made(drive, time, outputs, state, f"{_named(taken, drive)}, steps of {course.longest:g} s")
+    run = Run._made(drive, time, outputs, State.of(drive, state), f"{_named(taken, drive)}, steps of {course.longest:g} s")
     warn_of_ratings(model, run)
     return run
 
 
-def beginning(drive: PositionDrive, state: _core.State, excitation: Excitation, samples: int) -> Array:
+def beginning(drive: PositionDrive, state: Array, excitation: Excitation, samples: int) -> Array:
     """Room for the outputs of a run, shape (channels, samples), that of the start filled in.
 
     There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from.
@@ -317,7 +317,7 @@ def simulate_adaptively(
     sample: float = 1e-3,
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
-    start: _core.State | None = None,
+    start: State | None = None,
     most_steps: int = 10_000_000,
     progress: bool = False,
 ) -> Run:
@@ -359,7 +359,7 @@ def simulate_adaptively(
     atol = arguments.number("atol", atol, low=0.0)
     sample = arguments.seconds("sample", sample)
     most_steps = arguments.whole("most_steps", most_steps, 1)
-    state = drive.rest() if start is None else arguments.state("start", start)
+    state = (drive.rest() if start is None else start_of(drive, start)).numbers
     excitation = Excitation(command, load_torque, temperature)
     samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
     ends = excitation.ends()
@@ -371,7 +371,7 @@ def simulate_adaptively(
         )
     _check_meaning(samples, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
-    run = Run._made(drive, samples, outputs, state, f"{_named('exponential', drive)}, {kept}")
+    run = Run._made(drive, samples, outputs, State.of(drive, state), f"{_named('exponential', drive)}, {kept}")
     warn_of_ratings(model, run)
     return run
 

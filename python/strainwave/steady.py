@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import tau
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from strainwave import _core, arguments, kinematic_error
 from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.simulation import ROOM_TEMPERATURE, check_temperature
+from strainwave.state import Layout, State, start_of
 
 Array = NDArray[np.float64]
 SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
@@ -27,8 +28,8 @@ def equilibrium(
     command: float = 0.0,
     load_torque: float = 0.0,
     temperature: float = ROOM_TEMPERATURE,
-    start: _core.State | None = None,
-) -> _core.State:
+    start: State | None = None,
+) -> State:
     """The state in which nothing accelerates under constant inputs: at rest if there is one, else in steady running.
 
     Friction and hysteresis hold a drive in many states at rest. The one returned is reached from `start` by a slow motion of
@@ -57,16 +58,16 @@ def equilibrium(
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> held = sw.equilibrium(sw.drives.PositionDrive(load=arm), command=0.5)
-    >>> held.continuous.input_speed, held.continuous.output_speed
+    >>> held.input_speed, held.output_speed
     (0.0, 0.0)
     """
     arguments.drive(drive)
     inputs = constant_inputs(command, load_torque, temperature)
-    begin = _at_rest(drive, drive.rest() if start is None else arguments.state("start", start))
-    found = _resting(drive, begin, inputs) or _running(averaged(drive), begin, inputs)
-    turns = round(found.continuous.input_angle / tau)
-    motion = found.continuous.replace(input_angle=found.continuous.input_angle - tau * turns)
-    return found.replace(continuous=motion, turns=found.turns + turns)
+    begin = _at_rest(drive, (drive.rest() if start is None else start_of(drive, start)).numbers)
+    resting = _resting(drive, begin, inputs)
+    found = State.of(drive, _running(averaged(drive), begin, inputs) if resting is None else resting)
+    turns = round(found.input_angle / tau)
+    return found.replace(input_angle=found.input_angle - tau * turns, turns=found.turns + turns)
 
 
 def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:
@@ -87,55 +88,40 @@ def averaged(drive: PositionDrive) -> PositionDrive:
     return drive.replace(gear=gear)
 
 
-# The motion as an array: what a solver moves
-
-
-_MOTION = {field["name"]: np.shape(getattr(_core.ContinuousState(), field["name"])) for field in _core.ContinuousState.fields}
-_ENDS = np.cumsum([int(np.prod(shape)) for shape in _MOTION.values()])
-PLACE = {name: slice(end - int(np.prod(_MOTION[name])), end) for name, end in zip(_MOTION, _ENDS.tolist(), strict=True)}
-N_MOTION = int(_ENDS[-1])
-
-
-def numbers_of(state: _core.State) -> Array:
-    """The numbers of the motion, shape (N_MOTION,), each member in its `PLACE`."""
-    return np.concatenate([np.atleast_1d(getattr(state.continuous, name)) for name in PLACE])
-
-
-def with_numbers(state: _core.State, numbers: Array) -> _core.State:
-    """`state` with this motion."""
-    members: dict[str, Any] = {
-        name: numbers[place].tolist() if _MOTION[name] else numbers[place].item() for name, place in PLACE.items()
-    }
-    return state.replace(continuous=_core.ContinuousState(**members))
-
-
-TWIST = [name for name, _, _ in _core.outputs].index("twist")
-_FRICTION = np.zeros((N_MOTION, 1))
-for _place in ("friction_input", "friction_mesh", "friction_output"):
-    _FRICTION[PLACE[_place]] = 1.0
+OUTPUTS = [name for name, _, _ in _core.outputs]
+TWIST, _VOLTAGE = OUTPUTS.index("twist"), OUTPUTS.index("voltage")
 
 
 @dataclass(frozen=True, eq=False)
-class Flow(ComparedByFields):
-    """Rates of the motion, their derivatives, and the size of the terms that each rate is the sum of, to first order."""
+class Rates(ComparedByFields):
+    """Rates of the n continuous numbers, what they and the outputs depend on, and the size of the terms a rate is the sum of.
+
+    All to first order: of `by_numbers`, shape (n + outputs, n), and `by_inputs` the first n rows are those of the rates.
+    """
 
     rate: Array
-    by_motion: Array
+    by_numbers: Array
     by_inputs: Array
     size: Array
 
     @classmethod
     @np.errstate(over="ignore", invalid="ignore")
-    def of(cls, drive: PositionDrive, state: _core.State, inputs: Array) -> Flow:
-        values, slopes = _core.differentiate_flow(drive, state, inputs)
-        by_motion, by_inputs = np.split(slopes[:, :N_MOTION].T, [N_MOTION], axis=1)
-        size = np.abs(by_motion) @ np.abs(numbers_of(state)) + np.abs(by_inputs) @ np.abs(inputs)
-        return cls(values[:N_MOTION], by_motion, by_inputs, size + _NOTHING)
+    def of(cls, drive: PositionDrive, state: Array, inputs: Array) -> Rates:
+        values, slopes = _core.differentiate_rates(drive, state, inputs)
+        count = len(values) - len(OUTPUTS)
+        by_numbers, by_inputs = np.split(slopes.T, [count], axis=1)
+        size = np.abs(by_numbers[:count]) @ np.abs(state[:count]) + np.abs(by_inputs[:count]) @ np.abs(inputs)
+        return cls(values[:count], by_numbers, by_inputs, size + _NOTHING)
+
+    @property
+    def output(self) -> Array:
+        """How outputs depend on the numbers, shape (outputs, n)."""
+        return self.by_numbers[len(self.rate) :]
 
     @property
     def finite(self) -> bool:
         """Whether all of its numbers are: no torque is larger than a number can be."""
-        return all(bool(np.isfinite(each).all()) for each in (self.rate, self.by_motion, self.by_inputs, self.size))
+        return all(bool(np.isfinite(each).all()) for each in (self.rate, self.by_numbers, self.by_inputs, self.size))
 
     def vanishes(self, rows: list[int], share: float) -> bool:
         """Whether these rates are less than a share of what they add up from."""
@@ -145,95 +131,106 @@ class Flow(ComparedByFields):
 # At rest
 
 
-def _at_rest(drive: PositionDrive, state: _core.State) -> _core.State:
-    """`state` without its speeds, every side that can stick sticking."""
-    motion = state.continuous.replace(input_speed=0.0, output_speed=0.0)
-    return _core.consistent(drive, state.replace(continuous=motion, input_slip_direction=0.0, output_slip_direction=0.0))
+def _at_rest(drive: PositionDrive, state: Array) -> Array:
+    """`state` without its speeds, every shaft that can stick sticking."""
+    still = state.copy()
+    places = Layout(drive).places
+    for name in ("input_speed", "output_speed", "input_slip_direction", "output_slip_direction"):
+        still[places[name]] = 0.0
+    return _core.consistent(drive, still)
 
 
-def _resting(drive: PositionDrive, start: _core.State, inputs: Array) -> _core.State | None:
-    """The equilibrium at rest, if there is one: sides that stick are let go until those that still do hold."""
+def _resting(drive: PositionDrive, start: Array, inputs: Array) -> Array | None:
+    """The equilibrium at rest, if there is one: shafts that stick are let go until those that still do hold."""
     sliding = start
     while True:
         slow = _Slow(drive, sliding, inputs)
         found = _balance(slow, slow.guess())
         last = slow.moved(slow.guess() if found is None else found)
-        freed = _core.break_away(drive, last, inputs)
-        integral = Flow.of(drive, last, inputs).rate[PLACE["control"]].item()
-        if found is None and freed.input_slip_direction == 0.0:  # the integral grows until the input gives way
-            freed = freed.replace(input_slip_direction=float(np.sign(integral)))
-        if (freed.input_slip_direction, freed.output_slip_direction) == (
-            sliding.input_slip_direction,
-            sliding.output_slip_direction,
-        ):
+        freed, place = _core.break_away(drive, last, inputs), slow.layout.places
+        if found is None and freed[place["input_slip_direction"]] == 0.0:  # an integral grows until the input gives way
+            rates, control = Rates.of(drive, last, inputs), place["control"]
+            freed[place["input_slip_direction"]] = np.sign(rates.output[_VOLTAGE, control] @ rates.rate[control])
+        directions = [place["input_slip_direction"].start, place["output_slip_direction"].start]
+        if (freed[directions] == sliding[directions]).all():
             break
-        sliding = sliding.replace(
-            input_slip_direction=freed.input_slip_direction, output_slip_direction=freed.output_slip_direction
-        )
+        sliding = sliding.copy()
+        sliding[directions] = freed[directions]
     if found is None:
         return None
     stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST].item()))
-    return stopped if Flow.of(drive, stopped, inputs).vanishes(slow.rows, 1e-9) else None  # a way without end is none
+    rates = Rates.of(drive, stopped, inputs)
+    return stopped if rates.vanishes(slow.rows(rates), 1e-9) else None  # a way without end is none
 
 
 @dataclass(frozen=True, eq=False)
 class _Slow(ComparedByFields):
-    """Slow motions from `start`, sides that stick left where they are."""
+    """Slow motions from `start`, shafts that stick left where they are."""
 
     drive: PositionDrive
-    start: _core.State
+    start: Array
     inputs: Array
+
+    @cached_property
+    def layout(self) -> Layout:
+        return Layout(self.drive)
 
     @property
     def free(self) -> tuple[bool, bool]:
         """Whether input and output may move."""
-        return self.start.input_slip_direction != 0.0, self.start.output_slip_direction != 0.0
+        places = self.layout.places
+        return bool(self.start[places["input_slip_direction"]]), bool(self.start[places["output_slip_direction"]])
 
-    @property
-    def rows(self) -> list[int]:
-        """The rates that must vanish: not that of an integral which nobody asks for."""
-        integrates = getattr(self.drive.control, "integral", 0.0) > 0.0
-        wanted = {"motor": True, "control": integrates, "input_speed": self.free[0], "output_speed": self.free[1]}
-        return [PLACE[name].start for name, want in wanted.items() if want]
+    def rows(self, rates: Rates) -> list[int]:
+        """The rates that must vanish: of the controller only those of numbers that something else depends on."""
+        places = self.layout.places
+        others = np.delete(rates.by_numbers, places["control"], axis=0)
+        wanted = [i for i in range(self.layout.count)[places["control"]] if others[:, i].any()]
+        wanted += range(self.layout.count)[places["motor"]]
+        return wanted + [places[f"{end}_speed"].start for end, free in zip(("input", "output"), self.free, strict=True) if free]
 
     def guess(self) -> Array:
         """Where to begin: where the controller wants the input, if it may move; else here."""
-        numbers = numbers_of(self.start)
+        numbers, places = self.start[: self.layout.count].copy(), self.layout.places
         if self.free[0] and _controls_position(self.drive):
             ratio = self.drive.gear.kinematics.ratio
-            turned = self.inputs[0] * ratio - tau * self.start.turns - self.start.continuous.input_angle
-            numbers[PLACE["input_angle"]] += turned
-            numbers[PLACE["transmission_error"]] += 0.0 if self.free[1] else turned / ratio
+            at = self.start[places["input_angle"]] + tau * self.start[places["turns"]]
+            turned = self.inputs[0] * ratio - at
+            numbers[places["input_angle"]] += turned
+            numbers[places["transmission_error"]] += 0.0 if self.free[1] else turned / ratio
         return numbers
 
-    def moved(self, numbers: Array) -> _core.State:
+    def moved(self, numbers: Array) -> Array:
         """Friction has followed the angles; what is left of their speeds tells which way."""
-        origin = numbers_of(self.start)
-        turned, wound = ((numbers - origin)[PLACE[name]].item() for name in ("input_angle", "transmission_error"))
-        moving = np.where(_FRICTION[:, 0] > 0.0, origin, numbers)
-        moving[PLACE["input_speed"]] = turned / SLOWLY
-        moving[PLACE["output_speed"]] = (turned / self.drive.gear.kinematics.ratio - wound) / SLOWLY if self.free[1] else 0.0
-        return _core.aged(self.drive, with_numbers(self.start, moving), self.inputs, SLOWLY)
+        places, count, friction = self.layout.places, self.layout.count, self.layout.friction()[:, 0]
+        turned, wound = ((numbers - self.start[:count])[places[name]].item() for name in ("input_angle", "transmission_error"))
+        moving = self.start.copy()
+        moving[:count] = np.where(friction > 0.0, self.start[:count], numbers)
+        moving[places["input_speed"]] = turned / SLOWLY
+        moving[places["output_speed"]] = (turned / self.drive.gear.kinematics.ratio - wound) / SLOWLY if self.free[1] else 0.0
+        return _core.aged(self.drive, moving, self.inputs, SLOWLY)
 
-    def directions(self, flow: Flow) -> Array:
+    def directions(self, rates: Rates) -> Array:
         """What may move, in columns; the states of friction go with the angles of their shafts."""
-        everything, inverse = np.eye(N_MOTION), 1.0 / self.drive.gear.kinematics.ratio
-        by_input, by_output = (_FRICTION * flow.by_motion[:, PLACE[name]] for name in ("input_speed", "output_speed"))
-        turn = everything[:, PLACE["input_angle"]] + by_input + inverse * by_output
-        wind = everything[:, PLACE["transmission_error"]] - by_output
+        places, count, friction = self.layout.places, self.layout.count, self.layout.friction()
+        everything, inverse = np.eye(count), 1.0 / self.drive.gear.kinematics.ratio
+        of_friction = friction * rates.by_numbers[:count]
+        by_input, by_output = (of_friction[:, places[name]] for name in ("input_speed", "output_speed"))
+        turn = everything[:, places["input_angle"]] + by_input + inverse * by_output
+        wind = everything[:, places["transmission_error"]] - by_output
         angles = {
             (True, True): [turn, wind],
             (True, False): [turn + inverse * wind],
             (False, True): [wind],
             (False, False): [],
         }[self.free]
-        return np.hstack([everything[:, PLACE["motor"]], everything[:, PLACE["control"]], *angles])
+        return np.hstack([everything[:, places["motor"]], everything[:, places["control"]], *angles])
 
 
 # Running
 
 
-def _running(drive: PositionDrive, start: _core.State, inputs: Array) -> _core.State:
+def _running(drive: PositionDrive, start: Array, inputs: Array) -> Array:
     """The steady running of a drive without kinematic error."""
     if _controls_position(drive):
         raise ValueError(
@@ -241,13 +238,14 @@ def _running(drive: PositionDrive, start: _core.State, inputs: Array) -> _core.S
             "motor, spring and friction together cannot hold the load at any angle near it"
         )
     steady = _Steady(drive, start, inputs)
-    found = _balance(steady, numbers_of(steady.at(steady.guess())))
+    found = _balance(steady, steady.at(steady.guess())[: steady.layout.count])
     if found is None:
         raise ValueError(_unsteady(inputs, "the torques do not balance at any speed"))
     state = steady.moved(found)
-    motion = state.continuous
-    elsewhere = Flow.of(drive, state.replace(continuous=motion.replace(input_angle=motion.input_angle + 1.0)), inputs)
-    if not elsewhere.vanishes(steady.rows, 1e-9):
+    elsewhere = state.copy()
+    elsewhere[steady.layout.places["input_angle"]] += 1.0
+    rates = Rates.of(drive, elsewhere, inputs)
+    if not rates.vanishes(steady.rows(rates), 1e-9):
         raise ValueError(_unsteady(inputs, "load or friction depends on the angle that the drive turns through"))
     return _core.advance_hysteresis(drive, state, _core.now(drive, state, inputs)[TWIST].item())
 
@@ -261,30 +259,38 @@ class _Steady(ComparedByFields):
     """Running at constant speed, from the angles of `start`."""
 
     drive: PositionDrive
-    start: _core.State
+    start: Array
     inputs: Array
 
-    @property
-    def rows(self) -> list[int]:
-        """The rates that must vanish; that of friction has."""
-        return [PLACE[name].start for name in ("motor", "input_speed", "output_speed")]
+    @cached_property
+    def layout(self) -> Layout:
+        return Layout(self.drive)
 
-    def at(self, speed: float) -> _core.State:
+    def rows(self, rates: Rates) -> list[int]:
+        """The rates that must vanish; that of friction has."""
+        places = self.layout.places
+        return [*range(self.layout.count)[places["motor"]], places["input_speed"].start, places["output_speed"].start]
+
+    def at(self, speed: float) -> Array:
         """Running at an input speed [rad/s]."""
-        numbers = numbers_of(self.start)
-        numbers[PLACE["input_speed"]] = speed
-        numbers[PLACE["output_speed"]] = speed / self.drive.gear.kinematics.ratio
+        numbers, places = self.start[: self.layout.count].copy(), self.layout.places
+        numbers[places["input_speed"]] = speed
+        numbers[places["output_speed"]] = speed / self.drive.gear.kinematics.ratio
         return self.moved(numbers)
 
     def surplus(self, speed: float) -> float:
-        """What is left to accelerate the whole drive at a speed, referred to the input [N.m]: spring and current settled."""
-        drive = self.drive.replace(motor=self.drive.motor.replace(inductance=0.0))
-        flow = Flow.of(drive, self.at(speed), self.inputs)
-        if not flow.finite:
+        """What is left to accelerate the whole drive at a speed, referred to the input [N.m]: spring and motor settled."""
+        drive, places, state = self.drive, self.layout.places, self.at(speed)
+        motor = places["motor"]
+        rates = Rates.of(drive, state, self.inputs)
+        if rates.finite and rates.rate[motor].any():  # a motor's rates are linear in its numbers
+            state[motor] += _least(rates.by_numbers[motor, motor], -rates.rate[motor])
+            rates = Rates.of(drive, state, self.inputs)
+        if not rates.finite:
             raise ValueError(_unsteady(self.inputs, OVERFLOW))
-        rate = flow.rate
         inertia = drive.motor.inertia + drive.gear.input_inertia, drive.load.inertia / drive.gear.kinematics.ratio
-        return float(inertia[0] * rate[PLACE["input_speed"]].item() + inertia[1] * rate[PLACE["output_speed"]].item())
+        of_input, of_output = (rates.rate[places[name]].item() for name in ("input_speed", "output_speed"))
+        return float(inertia[0] * of_input + inertia[1] * of_output)
 
     def guess(self) -> float:
         """The lowest speed at which the whole drive does not accelerate."""
@@ -300,16 +306,20 @@ class _Steady(ComparedByFields):
                 raise ValueError(_unsteady(self.inputs, "nothing limits its speed"))
         return float(brentq(self.surplus, low, high))
 
-    def moved(self, numbers: Array) -> _core.State:
+    def moved(self, numbers: Array) -> Array:
         """All transients of friction gone."""
-        return _core.aged(self.drive, _core.consistent(self.drive, with_numbers(self.start, numbers)), self.inputs, SLOWLY)
+        state = self.start.copy()
+        state[: self.layout.count] = numbers
+        return _core.aged(self.drive, _core.consistent(self.drive, state), self.inputs, SLOWLY)
 
-    def directions(self, flow: Flow) -> Array:
+    def directions(self, rates: Rates) -> Array:
         """What may move, in columns; friction so that its rate stays as it is."""
-        everything, friction = np.eye(N_MOTION), np.flatnonzero(_FRICTION)
-        run = everything[:, PLACE["input_speed"]] + everything[:, PLACE["output_speed"]] / self.drive.gear.kinematics.ratio
-        moves = np.hstack([everything[:, PLACE["motor"]], everything[:, PLACE["transmission_error"]], run])
-        by_friction, by_moves = flow.by_motion[friction][:, friction], (flow.by_motion @ moves)[friction]
+        places, count = self.layout.places, self.layout.count
+        everything, friction = np.eye(count), np.flatnonzero(self.layout.friction())
+        run = everything[:, places["input_speed"]] + everything[:, places["output_speed"]] / self.drive.gear.kinematics.ratio
+        moves = np.hstack([everything[:, places["motor"]], everything[:, places["transmission_error"]], run])
+        by_numbers = rates.by_numbers[:count]
+        by_friction, by_moves = by_numbers[friction][:, friction], (by_numbers @ moves)[friction]
         for column, right in enumerate(by_moves.T):
             moves[friction, column] = _least(by_friction, -right)
         return moves
@@ -324,24 +334,25 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
 
     Newton's method, each step shortened until it comes closer. Directions that change nothing are not taken.
     """
-    numbers, rows = guess, path.rows
-    flow = Flow.of(path.drive, path.moved(numbers), path.inputs)
-    if not flow.finite:
+    numbers = guess
+    rates = Rates.of(path.drive, path.moved(numbers), path.inputs)
+    if not rates.finite:
         raise ValueError(f"no equilibrium can be found: {OVERFLOW}")
     for _ in range(100):
-        if flow.vanishes(rows, 1e-15):
+        rows = path.rows(rates)
+        if rates.vanishes(rows, 1e-15):
             break
-        directions = path.directions(flow)
-        step = directions @ _least(flow.by_motion[rows] @ directions, -flow.rate[rows])
+        directions = path.directions(rates)
+        step = directions @ _least(rates.by_numbers[rows] @ directions, -rates.rate[rows])
         for share in 0.5 ** np.arange(40):
-            trial = Flow.of(path.drive, path.moved(numbers + share * step), path.inputs)
-            scale = np.maximum(flow.size, trial.size)
-            if trial.finite and np.linalg.norm((trial.rate / scale)[rows]) < np.linalg.norm((flow.rate / scale)[rows]):
+            trial = Rates.of(path.drive, path.moved(numbers + share * step), path.inputs)
+            scale = np.maximum(rates.size, trial.size)
+            if trial.finite and np.linalg.norm((trial.rate / scale)[rows]) < np.linalg.norm((rates.rate / scale)[rows]):
                 break
         else:
             break
-        numbers, flow = numbers + share * step, trial
-    return numbers if flow.vanishes(rows, 1e-10) else None
+        numbers, rates = numbers + share * step, trial
+    return numbers if rates.vanishes(path.rows(rates), 1e-10) else None
 
 
 def _least(matrix: Array, right: Array) -> Array:

@@ -35,8 +35,10 @@ class Linear:
 
     def __init__(self, *, k: float) -> None: ...
 
-    def replace(self, *, k: float = ...) -> Linear:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, k: float = ...) -> Linear:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def k(self) -> float:
@@ -121,8 +123,10 @@ class Piecewise:
 
     def __init__(self, *, k1: float, k2: float, knee: float) -> None: ...
 
-    def replace(self, *, k1: float = ..., k2: float = ..., knee: float = ...) -> Piecewise:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, k1: float = ..., k2: float = ..., knee: float = ...) -> Piecewise:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def k1(self) -> float:
@@ -218,8 +222,10 @@ class ThreeSegment:
 
     def __init__(self, *, k1: float, k2: float, k3: float, t1: float, t2: float) -> None: ...
 
-    def replace(self, *, k1: float = ..., k2: float = ..., k3: float = ..., t1: float = ..., t2: float = ...) -> ThreeSegment:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, k1: float = ..., k2: float = ..., k3: float = ..., t1: float = ..., t2: float = ...) -> ThreeSegment:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def k1(self) -> float:
@@ -318,8 +324,10 @@ class Cubic:
 
     def __init__(self, *, a1: float, a3: float = ...) -> None: ...
 
-    def replace(self, *, a1: float = ..., a3: float = ...) -> Cubic:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, a1: float = ..., a3: float = ...) -> Cubic:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def a1(self) -> float:
@@ -419,8 +427,10 @@ class MultiCompliance:
 
     def __init__(self, *, flexspline_stiffness: float, flexspline_hardening: float, wave_generator_stiffness: float, wave_generator_hardening: float, reduction: float) -> None: ...
 
-    def replace(self, *, flexspline_stiffness: float = ..., flexspline_hardening: float = ..., wave_generator_stiffness: float = ..., wave_generator_hardening: float = ..., reduction: float = ...) -> MultiCompliance:
-        """The same with the named parameters changed."""
+    def replace(self, changes: dict[str, Any] = ..., /, *, flexspline_stiffness: float = ..., flexspline_hardening: float = ..., wave_generator_stiffness: float = ..., wave_generator_hardening: float = ..., reduction: float = ...) -> MultiCompliance:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
 
     @property
     def flexspline_stiffness(self) -> float:

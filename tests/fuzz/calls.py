@@ -141,7 +141,7 @@ def instances() -> tuple[Any, ...]:
     loop = TorsionLoop(np.array([0.0, 1e-3, -1e-3, 0.0]), np.array([0.0, 1.0, -1.0, 0.0]))
     models = [usual_of(kind) for family in families().values() for kind in family.values()]
     return (
-        *models, drive, drive.gear, drive.rest(), drive.rest().continuous, command, run,
+        *models, drive, drive.gear, drive.rest(), command, run,
         valid()["recording"], sw.linearise(drive),
         sw.simulate_many(drive, command, {"load.inertia": [0.1, 0.2]}, 1e-3),
         sw.derivatives(drive, command, ["load.inertia"], 1e-3), sw.frequency_response(drive, 50.0, 0.5),

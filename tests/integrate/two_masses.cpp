@@ -44,7 +44,7 @@ auto time_stepped(const TwoMasses<S>& system) {
 auto adaptive() {
     using System = TwoMasses<double>;
     const System system{};
-    integrate::Adaptive<double, System, decltype(exponential)> steps(system, exponential, {1e-9, 1e-12}, 1e-3);
+    integrate::Adaptive<double, System, decltype(exponential)> steps(system, twisted<double>(), exponential, {1e-9, 1e-12}, 1e-3);
     const Interval<System::Input> torque{{0.3}, {0.3}, {0.3}};
     const auto ignore = [](double, double, const auto&, const auto&) {};
     return flattened<double>(

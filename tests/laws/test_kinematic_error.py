@@ -69,12 +69,12 @@ def test_an_error_is_as_exact_after_many_turns_as_its_orders_are(error: Fourier,
     """The reference counts the fraction of a turn that each order has advanced in exact fractions."""
     drive = sw.drives.PositionDrive(gear=sw.Gear(kinematic_error=error))
     state = drive.rest()
-    turned = state.replace(turns=float(turns), continuous=state.continuous.replace(input_angle=angle))
+    turned = state.replace(turns=float(turns), input_angle=angle)
     column = [name for name, *_ in _core.outputs].index("kinematic_error")
     expected = rounding = 0.0
     for order, amplitude, phase in zip(error.order, error.amplitude, error.phase, strict=True):
         share = float(Fraction(order) * turns % 1)
         expected += amplitude * math.sin(order * angle + phase + 2.0 * math.pi * share)
         rounding += amplitude * (1e-13 + (0.0 if order.is_integer() else 2.0 * math.pi * math.ulp(order * turns)))
-    found = _core.now(drive, turned, np.array([0.0, 0.0, 0.0, 293.15]))[column, 0]
+    found = _core.now(drive, turned.numbers, np.array([0.0, 0.0, 0.0, 293.15]))[column, 0]
     assert found == pytest.approx(expected, rel=0.0, abs=rounding)

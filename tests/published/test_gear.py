@@ -33,7 +33,7 @@ ENERGY = 0.19375  # J
 def coasting(dt: float) -> sw.Recording:
     """From an untwisted gear that turns at 50 rad/s, and its output the other way at 0.5 rad/s."""
     rest = DRIVE.rest()
-    start = rest.replace(continuous=rest.continuous.replace(input_speed=50.0, output_speed=-0.5))
+    start = rest.replace(input_speed=50.0, output_speed=-0.5)
     return sw.simulate(DRIVE, sw.scenario.constant(0.0, DURATION), dt, start=start)
 
 

@@ -52,7 +52,7 @@ def propagator(drive: sw.drives.PositionDrive, dt: float) -> np.ndarray:
     """The matrix of one step of a linear drive, over input angle, input speed, transmission error, output speed."""
     names = ("input_angle", "input_speed", "transmission_error", "output_speed")
     rest = drive.rest()
-    after = [drive.step(rest.replace(continuous=rest.continuous.replace(**{name: 1.0})), dt=dt).continuous for name in names]
+    after = [drive.step(rest.replace(**{name: 1.0}), dt=dt) for name in names]
     return np.array([[getattr(motion, name) for motion in after] for name in names])
 
 
@@ -145,7 +145,7 @@ def coasting(duration: float) -> sw.Recording:
     """From 100 rad/s with the circuit open; the gear so soft that the load stays out of it."""
     drive = DRIVE.replace(gear=GEAR.replace(stiffness=sw.stiffness.Linear(k=1e-30)), motor=OPEN_CIRCUIT)
     rest = drive.rest()
-    start = rest.replace(continuous=rest.continuous.replace(input_speed=100.0), input_slip_direction=1.0)
+    start = rest.replace(input_speed=100.0, input_slip_direction=1.0)
     return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, start=start)
 
 
@@ -168,7 +168,7 @@ def test_the_coulomb_oscillator_turns_at_its_peaks_and_sticks() -> None:
         load=sw.loads.Inertia(inertia=1e30),
     )
     rest = oscillator.rest()
-    start = rest.replace(continuous=rest.continuous.replace(input_angle=1.0, transmission_error=1.0))
+    start = rest.replace(input_angle=1.0, transmission_error=1.0)
 
     def after(duration: float) -> sw.Recording:
         return sw.simulate(oscillator, sw.scenario.constant(0.0, duration), dt=1e-4, sample=duration, start=start)
@@ -208,7 +208,7 @@ class Slider:
             load=sw.loads.Inertia(inertia=self.inertia),
         )
         rest = drive.rest()
-        start = rest.replace(continuous=rest.continuous.replace(input_speed=100.0 * self.speed))
+        start = rest.replace(input_speed=100.0 * self.speed)
         still = sw.scenario.constant(0.0, duration)
         if method == "adaptive":
             return sw.simulate_adaptively(drive, still, rtol=1e-10, sample=duration, start=start)
@@ -335,8 +335,12 @@ def test_pairs_of_events_in_a_pack_have_their_closed_forms() -> None:
 def test_two_sides_that_coast_down_together_stop_at_one_instant(ratio: float, side: str) -> None:
     pair, speed = Twins(ratio), 20.0
     rest = pair.drive.rest()
-    moving = rest.continuous.replace(input_speed=speed, output_speed=speed / ratio)
-    start = rest.replace(continuous=moving, input_slip_direction=1.0, output_slip_direction=math.copysign(1.0, ratio))
+    start = rest.replace(
+        input_speed=speed,
+        output_speed=speed / ratio,
+        input_slip_direction=1.0,
+        output_slip_direction=math.copysign(1.0, ratio),
+    )
 
     def after(duration: float) -> sw.Recording:
         return sw.simulate(pair.drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, start=start)

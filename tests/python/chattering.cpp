@@ -109,7 +109,7 @@ void run_adaptively(double wall) {
     const auto drive = made<double>(wall);
     using Chatters = std::remove_cv_t<decltype(drive)>;
     const auto smooth = smooth_step<Chatters>;
-    integrate::Adaptive<double, Chatters, decltype(smooth)> adaptive(drive, smooth, {1e-6, 1e-12}, 1e-5);
+    integrate::Adaptive<double, Chatters, decltype(smooth)> adaptive(drive, drive.rest(), smooth, {1e-6, 1e-12}, 1e-5);
     int late = 0;
     auto x = drive.rest();
     const int intervals = 1000;
@@ -145,7 +145,7 @@ int late_after_settling() {
     const auto smooth = smooth_step<Settling>;
     int late = 0;
     for (int k = 0; k < 400; ++k) {
-        integrate::Adaptive<double, Settling, decltype(smooth)> adaptive(drive, smooth, {1e-6, 1e-12}, 1e-4);
+        integrate::Adaptive<double, Settling, decltype(smooth)> adaptive(drive, drive.rest(), smooth, {1e-6, 1e-12}, 1e-4);
         const auto within = [&](double, double, const typename Settling::Evaluation& end, const auto&) {
             late += system::event_function<double>(drive, end) < -1e-9;
         };

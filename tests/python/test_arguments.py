@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import arguments
+from strainwave.state import start_of
 
 DRIVE = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
 COMMAND = sw.scenario.step(0.1, 0.01)
@@ -134,7 +135,8 @@ def test_a_longer_float_may_become_infinite() -> None:
 
 
 def test_what_is_shown_of_a_wrong_argument_is_short() -> None:
-    for refuse in (arguments.drive, lambda value: arguments.number("dt", value), lambda value: arguments.state("start", value)):
+    drive = sw.drives.PositionDrive()
+    for refuse in (arguments.drive, lambda value: arguments.number("dt", value), lambda value: start_of(drive, value)):
         with pytest.raises(TypeError) as told:
             refuse(1000 * "no drive ")
         assert len(str(told.value)) < 150

@@ -19,7 +19,7 @@ from strainwave import _core
 from strainwave.equality import ComparedByFields, equal
 from strainwave.report.experiment import Experiment, Figure
 from strainwave.simulation import Excitation
-from strainwave.steady import Flow
+from strainwave.steady import Rates
 
 from tests.strategies import made as usual
 
@@ -38,12 +38,11 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "Derivatives": lambda: sw.derivatives(DRIVE, COMMAND, ["load.inertia"]),
     "LinearView": lambda: sw.linearise(DRIVE),
     "FrequencyResponse": lambda: sw.frequency_response(DRIVE, [20.0], 0.01),
-    "Flow": lambda: Flow.of(DRIVE, DRIVE.rest(), np.zeros(4)),
+    "Rates": lambda: Rates.of(DRIVE, DRIVE.rest().numbers, np.zeros(4)),
     "GearSet": lambda: sw.GearSet.read("hfuc-25-100"),
     "Experiment": lambda: Experiment("step", (("twin", RUN),), (Figure("error", "rad", (0.1,), 0.2),)),
     "drive": lambda: DRIVE,
     "state": lambda: RUN.end,
-    "motion": lambda: RUN.end.continuous,
 } | {name: partial(usual, kind) for family in _core.families.values() for name, kind in family.items()}
 
 made = cache(lambda name: MAKERS[name]())

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 from strainwave import _core
-from strainwave.steady import N_MOTION, PLACE, numbers_of, with_numbers
+from strainwave.state import Layout
 
 from tests.geared import MOTOR, RATIO, K, geared, outputs
 from tests.reference_drive import DRIVE
@@ -69,7 +69,7 @@ def test_gravity_adds_to_the_spring_while_the_input_sticks() -> None:
     """J w^2 = k + m g l cos theta_out, and the states of the input are gone."""
     drive = geared(damping=0.0, friction_input=sw.friction.Coulomb(coulomb=5.0))
     start = drive.rest()
-    state = sw.equilibrium(drive, start=start.replace(continuous=start.continuous.replace(input_angle=2.0)))
+    state = sw.equilibrium(drive, start=start.replace(input_angle=2.0))
     linear = sw.linearise(drive, state)
     assert linear.states == ("motor.current", "transmission_error", "output_speed")
     stiffness = K + 15.0 * np.cos(outputs(drive, state)["output_angle"])
@@ -198,26 +198,28 @@ def test_derivatives_are_those_of_differences(place: str, model: object, data: s
     elements = turning.gear.hysteresis  # each has two slopes where it begins to slip
     assume(all(abs(error - f / k) > 1e-7 for k, f in zip(elements.stiffness, elements.breakaway, strict=True)))
     at = drive.rest()
-    motion = at.continuous.replace(
-        motor=(0.3,),
-        control=(0.01,),
+    given = {"motor.current": 0.3, "control.error_integral": 0.01}
+    moving = at.replace(
+        {name: value for name, value in given.items() if name in at},
         input_angle=0.4,
         input_speed=sense * speed,
-        transmission_error=at.continuous.transmission_error - error,
+        transmission_error=at.transmission_error - error,
         output_speed=sense * 0.02,
     )
     inputs = np.array([0.001, 0.02, 0.7, 300.0])
-    state = _core.aged(drive, _core.consistent(drive, at.replace(continuous=motion)), inputs, 1e-4)
-    values, slopes = _core.differentiate_flow(drive, state, inputs)
-    size = np.abs(values) + np.abs([*numbers_of(state), *inputs]) @ np.abs(slopes)
+    state = _core.aged(drive, _core.consistent(drive, moving.numbers), inputs, 1e-4)
+    values, slopes = _core.differentiate_rates(drive, state, inputs)
+    layout = Layout(drive)
+    count = layout.count
+    size = np.abs(values) + np.abs([*state[:count], *inputs]) @ np.abs(slopes)
 
     def shifted(column: int, by: float) -> NDArray[np.float64]:
-        motion, acting = np.split(np.append(numbers_of(state), inputs) + by * (np.arange(len(slopes)) == column), [N_MOTION])
-        return _core.differentiate_flow(drive, with_numbers(state, motion), acting)[0]
+        numbers, acting = np.split(np.append(state[:count], inputs) + by * (np.arange(len(slopes)) == column), [count])
+        return _core.differentiate_rates(drive, np.append(numbers, state[count:]), acting)[0]
 
     sound = 0
     for column, slope in enumerate(slopes):
-        h = {PLACE["transmission_error"].start: 1e-8}.get(column, 1e-5)
+        h = {layout.places["transmission_error"].start: 1e-8}.get(column, 1e-5)
         ahead, behind = (shifted(column, h) - values) / h, (values - shifted(column, -h)) / h
         wide, narrow = 0.5 * (ahead + behind), (shifted(column, 0.37 * h) - shifted(column, -0.37 * h)) / (0.74 * h)
         rounding = 1e-14 * size / h
@@ -304,7 +306,7 @@ def test_warmth_is_an_input() -> None:
     law = sw.friction.Thermal(law=sw.friction.Viscous(viscous=2e-3), viscous_fall=0.025)
     drive = geared(DISC, friction_input=law)
     linear = sw.linearise(drive, command=12.0)
-    speed = sw.equilibrium(drive, command=12.0).continuous.input_speed
+    speed = sw.equilibrium(drive, command=12.0).input_speed
     slower = 0.025 * 2e-3 * speed / (2e-3 + 0.1 * 0.12 / 0.5)
     assert linear.response(1e-6, "input_speed", "temperature").real == pytest.approx(slower, rel=1e-6)
 

@@ -156,11 +156,11 @@ def test_a_step_by_hand_is_refused_where_a_run_is() -> None:
     narrow = sw.friction.PositionDependent(constant=0.072, domain_start=-10.0, domain_end=9.3)
     bounded = DRIVE.replace(gear=DRIVE.gear.replace(friction_input=narrow))
     rest = bounded.rest()
-    turned = rest.replace(continuous=rest.continuous.replace(input_speed=1e3), turns=2.0)
+    turned = rest.replace(input_speed=1e3, turns=2.0)
     with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = .* outside of \[-10, 9\.3\]"):
         bounded.step(turned, dt=1e-4)
     with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = .* first at t = 0\.0001 s"):
-        bounded.step(turned.replace(turns=1.0, continuous=turned.continuous.replace(input_angle=3.0)), dt=1e-4)
+        bounded.step(turned.replace(turns=1.0, input_angle=3.0), dt=1e-4)
     with pytest.raises(FloatingPointError, match=r"^the step diverged; take a smaller dt"):
         DRIVE.step(DRIVE.rest(), command=1e308, dt=1e308)
 
@@ -257,7 +257,7 @@ def test_steps_by_hand_are_the_steps_of_a_run() -> None:
     state = STICKING.rest()
     for _ in range(200):
         state = STICKING.step(state, command=0.02, dt=DT)
-    by_hand = _core.now(STICKING, state, Excitation(HELD).first())[:, 0]
+    by_hand = _core.now(STICKING, state.numbers, Excitation(HELD).first())[:, 0]
     run = sw.simulate(STICKING, sw.scenario.constant(0.02, 200 * DT), DT)
     assert by_hand == pytest.approx([run[name][-1] for name in COLUMNS], rel=1e-12)
 
@@ -435,7 +435,7 @@ def test_a_run_that_has_diverged_goes_no_further() -> None:
     course = excitation.course(5e-4, None)
     outputs = np.empty((len(COLUMNS), len(course.times)))
     course_of = (course.instants, excitation.over(course), course.samples[1:])
-    _core.simulate(drive, drive.rest(), *course_of, _core.Method.exponential, outputs, 1)
+    _core.simulate(drive, drive.rest().numbers, *course_of, _core.Method.exponential, outputs, 1)
     sound = (np.abs(outputs[:, 1:]) <= simulation.LARGEST).all(axis=0)
     lost = int(np.argmin(sound))
     assert not sound[lost:].any()
@@ -451,7 +451,7 @@ def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
     course = excitation.course(DT, 1.0)
     outputs = np.empty((len(COLUMNS), len(course.times)))
     course_of = (course.instants, excitation.over(course), course.samples[1:])
-    arguments = (DRIVE, DRIVE.rest(), *course_of, _core.Method.exponential, outputs, 1)
+    arguments = (DRIVE, DRIVE.rest().numbers, *course_of, _core.Method.exponential, outputs, 1)
     counted: list[int] = []
     _core.simulate(*arguments, counted.append)
     assert counted == sorted(set(counted))
@@ -469,7 +469,8 @@ def test_progress_counts_the_steps_and_can_stop_the_run() -> None:
 def test_outputs_are_written_within_the_array_given_only(channels: int, samples: int, first: int) -> None:
     excitation = Excitation(command(0.01))
     course = excitation.course(1e-3, None)
-    arguments = (DRIVE, DRIVE.rest(), course.instants, excitation.over(course), course.samples[1:], _core.Method.exponential)
+    steps = (course.instants, excitation.over(course), course.samples[1:])
+    arguments = (DRIVE, DRIVE.rest().numbers, *steps, _core.Method.exponential)
     with pytest.raises(ValueError, match="are written within"):
         _core.simulate(*arguments, np.empty((channels, samples)), first)
     with pytest.raises(TypeError, match="incompatible"):
@@ -496,7 +497,7 @@ def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
         key.start()
         with pytest.raises(KeyboardInterrupt):
             _core.simulate(
-                DRIVE, DRIVE.rest(), course.instants, inputs, course.samples[1:], _core.Method.exponential, outputs, 1
+                DRIVE, DRIVE.rest().numbers, course.instants, inputs, course.samples[1:], _core.Method.exponential, outputs, 1
             )
         assert time.monotonic() - pressed[0] < 1.0
     finally:
@@ -556,7 +557,7 @@ def test_an_hour_of_steps_loses_no_angle_speed_or_twist() -> None:
     assert run["input_angle"][-1] == pytest.approx(w * (3600.0 - lag), rel=1e-12)
     assert abs(run["twist"][-1]) < 1e-12
     assert run.end.turns > HOUR
-    assert abs(run.end.continuous.input_angle) <= math.pi
+    assert abs(run.end.input_angle) <= math.pi
 
 
 # What a run may start from, and at which steps
@@ -567,12 +568,21 @@ def test_the_first_sample_of_a_run_from_the_end_of_another_drive_is_that_of_its_
     simulate: Callable[..., sw.Run],
 ) -> None:
     running = DRIVE.replace(control=sw.control.OpenLoop())
-    smooth = running.replace(gear=DRIVE.gear.replace(friction_input=sw.friction.Viscous(viscous=1e-4)))
-    sticking = running.replace(gear=DRIVE.gear.replace(friction_input=sw.friction.Coulomb(coulomb=0.02)))
+    slow, fast = (running.replace({"gear.friction_input": sw.friction.Coulomb(coulomb=coulomb)}) for coulomb in (0.01, 0.02))
     backwards = sw.scenario.constant(-20.0, 0.1)
-    run = simulate(sticking, backwards, start=sw.simulate(smooth, backwards).end)
+    run = simulate(fast, backwards, start=sw.simulate(slow, backwards).end)
     assert run["input_speed"][0] < 0.0
     assert run["friction_input"][0] == run["friction_input"][1] == -0.02
+
+
+@pytest.mark.parametrize("simulate", [sw.simulate, sw.simulate_adaptively])
+def test_a_start_of_a_drive_with_other_models_is_refused(simulate: Callable[..., sw.Run]) -> None:
+    other = DRIVE.replace({"gear.friction_input": sw.friction.Viscous(viscous=1e-4)})
+    with pytest.raises(ValueError, match="start is a state of another drive: its friction_input is lugre, here it is viscous"):
+        simulate(other, HELD, start=DRIVE.rest())
+    elements = DRIVE.replace({"gear.hysteresis": sw.hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[1.0])})
+    with pytest.raises(ValueError, match="its hysteresis is maxwell_slip with other numbers of elements"):
+        simulate(elements, HELD, start=DRIVE.rest())
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda run: pickle.loads(pickle.dumps(run))])
@@ -592,7 +602,7 @@ def test_a_start_in_motion_slides_whatever_the_state_says_of_sliding() -> None:
     )
     rest = drive.rest()
     for speed in (5.0, -5.0):
-        start = rest.replace(continuous=rest.continuous.replace(input_speed=speed))
+        start = rest.replace(input_speed=speed)
         run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), start=start)
         assert run["input_speed"][-1] == pytest.approx(np.sign(speed) * (5.0 - 0.01 * 0.2 / 1e-3), rel=1e-12)
         assert np.sign(run["friction_input"][-1]) == np.sign(speed)

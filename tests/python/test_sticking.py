@@ -101,7 +101,7 @@ def test_a_twist_that_is_held_stays_to_the_last_bit(place: str, law: Any) -> Non
     """The wound-up gear drives both sides; what it bears is what a load-dependent law holds with."""
     drive = held(place, law)
     rest = drive.rest()
-    start = rest.replace(continuous=rest.continuous.replace(transmission_error=rest.continuous.transmission_error + 2e-4))
+    start = rest.replace(transmission_error=rest.transmission_error + 2e-4)
     runs = by_every_method(drive, sw.scenario.constant(0.05, 0.1), start=start, load_torque=2.0)
     check_constant(runs)
     for run in runs.values():

@@ -8,6 +8,12 @@ namespace strainwave::friction {
 
 inline constexpr double room_temperature = 293.15;  // K
 
+/// What a modulation multiplies friction by.
+template <class S>
+struct Factors {
+    S dry{1.0}, dry_most{1.0}, viscous{1.0};  ///< of dry friction, of the largest that can become, and of viscous friction
+};
+
 /// How the two surfaces of a place move against each other, and under what.
 template <class S>
 struct Contact {
@@ -21,12 +27,8 @@ struct Contact {
     S viscous{1.0};                   ///< Factor on viscous friction
 
     /// The same with dry and viscous friction multiplied.
-    constexpr Contact scaled(const S& dry_factor, const S& dry_factor_at_most, const S& viscous_factor) const {
-        Contact contact = *this;
-        contact.dry = dry * dry_factor;
-        contact.dry_most = dry_most * dry_factor_at_most;
-        contact.viscous = viscous * viscous_factor;
-        return contact;
+    constexpr Contact scaled(const Factors<S>& by) const {
+        return {speed, sliding, angle, load, temperature, dry * by.dry, dry_most * by.dry_most, viscous * by.viscous};
     }
     constexpr Contact moving(const S& at_speed) const {
         Contact contact = *this;
@@ -56,6 +58,17 @@ template <class Law>
 concept Modulation = requires(const Law& law) {
     law.law;
     law.modulated({});
+};
+
+/// A law and what modulates its contact, rearranged for speed.
+template <class S, class Law, class Modulator>
+struct Modulated {
+    Modulator modulator;
+    Law law;
+
+    using State = typename Law::State;
+
+    constexpr Contact<S> modulated(const Contact<S>& contact) const { return contact.scaled(modulator.factors(contact)); }
 };
 
 // The verbs of friction, for plain laws and modulated ones, with or without memory.

@@ -50,28 +50,25 @@ struct Cyclic {
 
     using State = typename Law::State;
 
-    template <class Inner>
-    struct Compiled {
-        Inner law;
+    /// What friction is multiplied by at its angle.
+    struct Modulator {
         Harmonics<S, capacity> sum;
         S most;
 
-        using State = typename Inner::State;
-
-        /// The contact as the law that varies sees it.
-        constexpr Contact<S> modulated(const Contact<S>& contact) const {
+        constexpr Factors<S> factors(const Contact<S>& contact) const {
             const S factor = max(S(1.0) + sum.at(contact.angle).value, S(0.0));
-            return contact.scaled(factor, most, factor);
+            return {factor, most, factor};
         }
     };
-
-    constexpr auto compile() const {
+    constexpr Modulator modulator() const {
         S most{1.0};
         for (int h = 0; h < amplitude.count; ++h) most = most + amplitude[h];
-        return Compiled<decltype(compiled(law))>{compiled(law), Harmonics<S, capacity>::of(order, amplitude, phase), most};
+        return {Harmonics<S, capacity>::of(order, amplitude, phase), most};
     }
 
-    constexpr Contact<S> modulated(const Contact<S>& contact) const { return compile().modulated(contact); }
+    constexpr auto compile() const { return Modulated<S, decltype(compiled(law)), Modulator>{modulator(), compiled(law)}; }
+
+    constexpr Contact<S> modulated(const Contact<S>& contact) const { return contact.scaled(modulator().factors(contact)); }
 };
 
 }  // namespace strainwave::friction

@@ -40,29 +40,24 @@ struct Thermal {
 
     using State = typename Law::State;
 
-    template <class Inner>
-    struct Compiled {
-        Inner law;
+    /// What friction is multiplied by at its temperature.
+    struct Modulator {
         S dry_fall, viscous_fall, reference_temperature;
 
-        using State = typename Inner::State;
-
-        /// The contact as the law sees it at its temperature.
-        constexpr Contact<S> modulated(const Contact<S>& contact) const {
+        constexpr Factors<S> factors(const Contact<S>& contact) const {
             const S warmer = contact.temperature - reference_temperature;
             const S dry = fallen(dry_fall * warmer);
-            return contact.scaled(dry, dry, fallen(viscous_fall * warmer));
+            return {dry, dry, fallen(viscous_fall * warmer)};
         }
 
     private:
         static constexpr S fallen(const S& exponent) { return exp(clip(-exponent, S(-beyond_digits), S(beyond_digits))); }
     };
+    constexpr Modulator modulator() const { return {dry_fall, viscous_fall, reference_temperature}; }
 
-    constexpr auto compile() const {
-        return Compiled<decltype(compiled(law))>{compiled(law), dry_fall, viscous_fall, reference_temperature};
-    }
+    constexpr auto compile() const { return Modulated<S, decltype(compiled(law)), Modulator>{modulator(), compiled(law)}; }
 
-    constexpr Contact<S> modulated(const Contact<S>& contact) const { return compile().modulated(contact); }
+    constexpr Contact<S> modulated(const Contact<S>& contact) const { return contact.scaled(modulator().factors(contact)); }
 };
 
 }  // namespace strainwave::friction

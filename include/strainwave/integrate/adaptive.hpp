@@ -19,13 +19,16 @@ class Adaptive {
     using Evaluation = typename System::Evaluation;
     using Continuous = typename System::Continuous;
     using Input = typename System::Input;
-    static constexpr int n = size_of<S, Continuous> + 1;
-    using Measured = Array<S, n>;
+    /// Numbers that are held to the tolerance: the continuous ones, and the watched one.
+    struct Measured {
+        Flat<S, Continuous> continuous;
+        S watched;
+    };
 
     const System& system;
     const Smooth& smooth;
     const Tolerance tolerance;
-    Measured largest{};
+    Measured largest;
     S next;  ///< length of the next step, s
 
 public:
@@ -34,8 +37,14 @@ public:
     /// Whether one of the shortest steps after the other missed the tolerance, where `through` ended.
     constexpr bool gave_up() const { return missed > max_missed; }
 
-    constexpr Adaptive(const System& system_, const Smooth& smooth_, const Tolerance& tolerance_, const S& first)
-        : system(system_), smooth(smooth_), tolerance(tolerance_), next(first) {}
+    /// `like` is a state of the system, `first` the length of the first step [s].
+    constexpr Adaptive(const System& system_, const typename System::State& like, const Smooth& smooth_,
+                       const Tolerance& tolerance_, const S& first)
+        : system(system_),
+          smooth(smooth_),
+          tolerance(tolerance_),
+          largest{flattened<S>(zeroed<S>(like.continuous)), S(0.0)},
+          next(first) {}
 
     /// The evaluation after the interval `u` of `dt` [s]. Calls within(done, to, end, at) for each step taken: between which
     /// fractions of the interval, the evaluation at its end, and a function that gives it at any fraction in between.
@@ -169,13 +178,8 @@ private:
     }
     constexpr S event_function(const Evaluation& at) const { return system::event_function<S>(system, at); }
 
-    /// What is held to the tolerance.
     constexpr Measured measured(const typename System::State& x, const Evaluation& at) const {
-        const auto y = flattened<S>(x.continuous);
-        Measured found{};
-        for (int i = 0; i < y.size(); ++i) found[i] = y[i];
-        found[n - 1] = system::watched<S>(system, at);
-        return found;
+        return {flattened<S>(x.continuous), system::watched<S>(system, at)};
     }
     /// The error of a step of some `length` [s] in units of what is tolerated, the largest of all: that of the two halves, by
     /// how far the whole is off, in proportion to the step; and what contradicts it, however short the step.
@@ -188,19 +192,21 @@ private:
         const auto note = [&](const S& off) {
             if (!(off <= worst) && worst == worst) worst = off;  // what is not a number stays
         };
-        for (int i = 0; i < n; ++i) {
-            const S tolerated = S(tolerance.absolute) + S(tolerance.relative) * max(largest[i], abs(b[i]));
-            note(abs(a[i] - b[i]) * share / tolerated);
-            if (i < against.size()) note(abs(against[i]) / tolerated);
+        const auto tolerated = [&](const S& size) { return S(tolerance.absolute) + S(tolerance.relative) * size; };
+        for (int i = 0; i < against.size(); ++i) {
+            const S most = tolerated(max(largest.continuous[i], abs(b.continuous[i])));
+            note(abs(a.continuous[i] - b.continuous[i]) * share / most);
+            note(abs(against[i]) / most);
         }
+        note(abs(a.watched - b.watched) * share / tolerated(max(largest.watched, abs(b.watched))));
         return worst;
     }
     /// By how much the speeds miss Simpson's rule over the two halves: of the same order and size as what the whole is off, but
     /// where a force kinks on the way, and whole and halves happen to agree, it does not vanish.
-    constexpr Array<S, n - 1> contradiction(const Evaluation& from, const Trial& tried, const S& length) const {
-        Array<S, n - 1> missed{};
+    constexpr Flat<S, Continuous> contradiction(const Evaluation& from, const Trial& tried, const S& length) const {
+        auto missed = flattened<S>(zeroed<S>(from.state.continuous));
         if (chatters()) return missed;
-        const auto speeds = [&](const Continuous& y) { return flattened<S>(system::speeds(system, y)); };
+        const auto speeds = [&](const Continuous& y) { return flattened<S>(system::speeds<S>(system, y)); };
         const auto begin = speeds(from.derivatives.rate), middle = speeds(tried.half.derivatives.rate),
                    end = speeds(tried.end.derivatives.rate);
         const auto y = speeds(from.state.continuous), z = speeds(tried.end.state.continuous);
@@ -209,8 +215,9 @@ private:
         return missed;
     }
     constexpr void note(const Evaluation& at) {
-        const Measured y = measured(at.state, at);
-        for (int i = 0; i < n; ++i) largest[i] = max(largest[i], abs(y[i]));
+        const Measured now = measured(at.state, at);
+        for (int i = 0; i < now.continuous.size(); ++i) largest.continuous[i] = max(largest.continuous[i], abs(now.continuous[i]));
+        largest.watched = max(largest.watched, abs(now.watched));
     }
 };
 

@@ -30,12 +30,10 @@ constexpr S crossing(const Margin& margin, const S& from, const S& at_start, con
         a = select(sought & before, guess, a);
         b = select(sought & !before, guess, b);
     }
-    S x = b;
-    if constexpr (differentiates<S>) {  // the moment moves with the parameters: implicit function theorem
-        const S now = margin(x), slope = derivative(margin, x, now);
-        x = select(crosses & (abs(slope) > S(smallest)), x - (now - detached(now)) / slope, x);
-    }
-    return x;
+    if constexpr (differentiates<S>)  // the moment moves with the parameters
+        return select(crosses, moving_root(margin, b), b);
+    else
+        return b;
 }
 
 /// How many events a step may hold before they count as chattering.

@@ -45,41 +45,44 @@ private:
 /// start. Where that is zero this is the classical Runge-Kutta scheme.
 template <class S, class X>
 class Relaxation {
-    static constexpr int n = size_of<S, X>;
-    using Scalars = Array<S, n>;
-    Scalars relaxation, half, full, stage, first, middle, last;  // the last four times the step
+    using Scalars = Flat<S, X>;
+    Scalars relaxation, half, full;
+    Scalars stage, first, middle, last;  ///< times the step
 
 public:
     constexpr Relaxation(const X& rates, const S& dt) : relaxation(flattened<S>(rates)) {
-        for_each_of<n>(
-            [&](int i) { set(i, any(relaxation[i] > S(0.0)) ? Exponential<S>::of(relaxation[i] * dt) : Exponential<S>{}, dt); });
+        size_like(relaxation, half, full, stage, first, middle, last);
+        for_each_index(relaxation, [&](int i) {
+            set(i, any(relaxation[i] > S(0.0)) ? Exponential<S>::of(relaxation[i] * dt) : Exponential<S>{}, dt);
+        });
     }
     constexpr Scalars forcing(const X& rate, const X& at) const {
         Scalars force = flattened<S>(rate);
         const Scalars y = flattened<S>(at);
-        for_each_of<n>([&](int i) { force[i] = force[i] + relaxation[i] * y[i]; });
+        for_each_index(force, [&](int i) { force[i] = force[i] + relaxation[i] * y[i]; });
         return force;
     }
     constexpr X halfway(const X& from, const Scalars& force) const {
         Scalars y = flattened<S>(from);
-        for_each_of<n>([&](int i) { y[i] = half[i] * y[i] + stage[i] * force[i]; });
-        return shaped<X>(y);
+        for_each_index(y, [&](int i) { y[i] = half[i] * y[i] + stage[i] * force[i]; });
+        return refilled(from, y);
     }
     constexpr X onward(const X& halfway, const Scalars& force, const Scalars& at_start) const {
         Scalars y = flattened<S>(halfway);
-        for_each_of<n>([&](int i) { y[i] = half[i] * y[i] + stage[i] * (S(2.0) * force[i] - at_start[i]); });
-        return shaped<X>(y);
+        for_each_index(y, [&](int i) { y[i] = half[i] * y[i] + stage[i] * (S(2.0) * force[i] - at_start[i]); });
+        return refilled(halfway, y);
     }
     /// Exponential Euler over the whole step.
     constexpr X across(const X& from, const Scalars& force) const {
         Scalars y = flattened<S>(from);
-        for_each_of<n>([&](int i) { y[i] = full[i] * y[i] + stage[i] * (S(1.0) + half[i]) * force[i]; });
-        return shaped<X>(y);
+        for_each_index(y, [&](int i) { y[i] = full[i] * y[i] + stage[i] * (S(1.0) + half[i]) * force[i]; });
+        return refilled(from, y);
     }
     constexpr X complete(const X& from, const Scalars& n1, const Scalars& n2, const Scalars& n3, const Scalars& n4) const {
         Scalars y = flattened<S>(from);
-        for_each_of<n>([&](int i) { y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]); });
-        return shaped<X>(y);
+        for_each_index(y,
+                       [&](int i) { y[i] = full[i] * y[i] + (first[i] * n1[i] + middle[i] * (n2[i] + n3[i]) + last[i] * n4[i]); });
+        return refilled(from, y);
     }
 
 private:
@@ -104,7 +107,7 @@ constexpr typename System::State exponential_step(const System& system, const ty
     const auto& now = from.derivatives;
     const auto rate = [&](const Continuous& y, const auto& input) { return system.derivatives(x, y, input).rate; };
     const auto clamped = [&](const Continuous& y) { return system::clamped(system, y, now); };
-    const Relaxation<S, Continuous> scheme(system::relaxation_rate(system, y1, now), dt);
+    const Relaxation<S, Continuous> scheme(system::relaxation_rate<S>(system, y1, now), dt);
     const auto n1 = scheme.forcing(now.rate, y1);
     const auto y2 = clamped(scheme.halfway(y1, n1));
     const auto n2 = scheme.forcing(rate(y2, u.middle), y2);

@@ -14,7 +14,7 @@ constexpr typename System::State moreau_jean_step(const System& system, const ty
     const Continuous& y = from.state.continuous;
     const auto& now = from.derivatives;
     const auto clamped = [&](const Continuous& at) { return system::clamped(system, at, now); };
-    const Relaxation<S, Continuous> scheme(system::relaxation_rate(system, y, now), dt);
+    const Relaxation<S, Continuous> scheme(system::relaxation_rate<S>(system, y, now), dt);
     const S half = S(0.5) * dt;
     const Continuous middle =
         clamped(system::impulse_step(system, x, scheme.halfway(y, scheme.forcing(now.rate, y)), now, half).continuous);

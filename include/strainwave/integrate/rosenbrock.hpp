@@ -3,16 +3,49 @@
 
 namespace strainwave::integrate {
 
-/// A square matrix in its factors, to solve equations with.
+namespace detail {
+template <class Vector>
+struct RowsOf;
 template <class S, int n>
+struct RowsOf<Array<S, n>> {
+    using Scalar = S;
+    using type = Array<Array<S, n>, n>;
+    using Order = Array<int, n>;
+};
+template <class S, int capacity>
+struct RowsOf<Counted<S, capacity>> {
+    using Scalar = S;
+    using type = Counted<Counted<S, capacity>, capacity>;
+    using Order = Array<int, capacity>;
+};
+}  // namespace detail
+
+/// A square matrix, by its rows: as many as a row has elements.
+template <class Vector>
+using Matrix = typename detail::RowsOf<Vector>::type;
+
+/// A matrix of zeros whose rows are as long as `row`.
+template <class Vector>
+constexpr Matrix<Vector> zero_matrix(Vector row) {
+    Matrix<Vector> matrix;
+    if constexpr (requires { matrix.count; }) matrix.count = row.size();
+    for (int j = 0; j < row.size(); ++j) row[j] = typename detail::RowsOf<Vector>::Scalar(0.0);
+    for (int i = 0; i < row.size(); ++i) matrix[i] = row;
+    return matrix;
+}
+
+/// A square matrix in its factors, to solve equations with.
+template <class Vector>
 class Factored {
-    Array<Array<S, n>, n> rows;
-    Array<int, n> order;
+    Matrix<Vector> rows;
+    typename detail::RowsOf<Vector>::Order order;
+    using S = typename detail::RowsOf<Vector>::Scalar;
 
 public:
     /// Gauss's elimination; in each column the largest pivot left, but a row that holds nothing else comes first: what it says is
     /// then solved to the last bit, as a shaft that sticks does not move.
-    constexpr explicit Factored(const Array<Array<S, n>, n>& matrix) : rows(matrix), order{} {
+    constexpr explicit Factored(const Matrix<Vector>& matrix) : rows(matrix), order{} {
+        const int n = rows.size();
         for (int i = 0; i < n; ++i) order[i] = i;
         for (int k = 0; k < n; ++k) {
             int pivot = k;
@@ -24,7 +57,7 @@ public:
             order[pivot] = order[k];
             order[k] = first;
             for (int i = k + 1; i < n; ++i) {
-                Array<S, n>& row = rows[order[i]];
+                Vector& row = rows[order[i]];
                 if (row[k] == S(0.0)) continue;
                 row[k] = row[k] / rows[first][k];
                 for (int j = k + 1; j < n; ++j) row[j] = row[j] - row[k] * rows[first][j];
@@ -32,13 +65,14 @@ public:
         }
     }
     /// Whether a row holds one number only, at place k.
-    static constexpr bool alone(const Array<S, n>& row, int k) {
-        for (int j = 0; j < n; ++j)
+    static constexpr bool alone(const Vector& row, int k) {
+        for (int j = 0; j < row.size(); ++j)
             if ((row[j] == S(0.0)) == (j == k)) return false;
         return true;
     }
-    constexpr Array<S, n> solve(const Array<S, n>& right) const {
-        Array<S, n> x{};
+    constexpr Vector solve(const Vector& right) const {
+        const int n = right.size();
+        Vector x = right;
         for (int i = 0; i < n; ++i) {
             x[i] = right[order[i]];
             for (int j = 0; j < i; ++j) x[i] = x[i] - rows[order[i]][j] * x[j];
@@ -74,19 +108,18 @@ struct Ros34pw2 {
 };
 
 /// What `rate` answers to each member of `y` by itself: the Jacobian, by differences towards zero, within what `clamped` allows.
-template <class S, int n, class Rate, class Clamped>
-constexpr Array<Array<S, n>, n> jacobian(const Rate& rate, const Clamped& clamped, const Array<S, n>& y, const Array<S, n>& now,
-                                         const S& dt) {
-    Array<Array<S, n>, n> matrix{};
-    for (int j = 0; j < n; ++j) {
+template <class S, class Vector, class Rate, class Clamped>
+constexpr Matrix<Vector> jacobian(const Rate& rate, const Clamped& clamped, const Vector& y, const Vector& now, const S& dt) {
+    Matrix<Vector> matrix = zero_matrix(y);
+    for (int j = 0; j < y.size(); ++j) {
         const S moved = S(1e-7) * (abs(y[j]) + dt * abs(now[j])) + S(1e-10);
-        Array<S, n> beside = y;
+        Vector beside = y;
         beside[j] = y[j] - along(y[j], moved);
         beside[j] = clamped(beside)[j];
         const S difference = beside[j] - y[j];
         if (difference == S(0.0)) continue;
-        const Array<S, n> then = rate(beside);
-        for (int i = 0; i < n; ++i) matrix[i][j] = (then[i] - now[i]) / difference;
+        const Vector then = rate(beside);
+        for (int i = 0; i < y.size(); ++i) matrix[i][j] = (then[i] - now[i]) / difference;
     }
     return matrix;
 }
@@ -100,31 +133,32 @@ constexpr typename System::State rosenbrock_step(const System& system, const typ
                                                  const Interval<typename System::Input>& u, const S& dt) {
     using Continuous = typename System::Continuous;
     using Table = detail::Ros34pw2;
-    constexpr int n = size_of<S, Continuous>;
-    using Vector = Array<S, n>;
+    using Vector = Flat<S, Continuous>;
     auto x = from.state;
     const auto& now = from.derivatives;
-    const auto clamped = [&](const Vector& at) { return system::clamped(system, shaped<Continuous>(at), now); };
-    const Vector y = flattened<S>(x.continuous);
-    const auto matrix = detail::jacobian<S, n>(
-        [&](const Vector& beside) { return flattened<S>(system.derivatives(x, shaped<Continuous>(beside), u.start).rate); },
+    const Continuous start = x.continuous;
+    const auto clamped = [&](const Vector& at) { return system::clamped(system, refilled(start, at), now); };
+    const Vector y = flattened<S>(start);
+    const int n = y.size();
+    const auto matrix = detail::jacobian<S>(
+        [&](const Vector& beside) { return flattened<S>(system.derivatives(x, refilled(start, beside), u.start).rate); },
         [&](const Vector& beside) { return flattened<S>(clamped(beside)); }, y, flattened<S>(now.rate), dt);
-    Array<Vector, n> left{};
+    Matrix<Vector> left = zero_matrix(y);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) left[i][j] = S(i == j ? 1.0 : 0.0) - dt * S(Table::gamma) * matrix[i][j];
-    const Factored<S, n> factored(left);
+    const Factored<Vector> factored(left);
 
-    Array<Vector, Table::stages> k{};
-    Vector end = y;
+    const Vector zero = flattened<S>(zeroed<S>(start));
+    Vector k[Table::stages], end = y;
     for (int stage = 0; stage < Table::stages; ++stage) {
-        Vector at = y, coupled{};
+        Vector at = y, coupled = zero;
         for (int j = 0; j < stage; ++j)
             for (int i = 0; i < n; ++i) {
                 at[i] = at[i] + S(Table::argument[stage][j]) * k[j][i];
                 coupled[i] = coupled[i] + S(Table::coupling[stage][j]) * k[j][i];
             }
         const Vector rate = flattened<S>(system.derivatives(x, clamped(at), u.at(S(Table::abscissa(stage)), dt)).rate);
-        Vector right{};
+        Vector right = zero;
         for (int i = 0; i < n; ++i) {
             right[i] = dt * rate[i];
             for (int j = 0; j < n; ++j) right[i] = right[i] + dt * matrix[i][j] * coupled[j];

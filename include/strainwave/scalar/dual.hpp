@@ -83,17 +83,21 @@ struct Dual {
     }
     friend constexpr Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
     friend constexpr Dual detached(const Dual& x) { return Dual(x.value); }
-    /// The derivative of f by its argument at x, where its value is known: what an argument with a slope of one more adds to any
-    /// derivative, least rounded in the smallest.
+    /// A root of f with the derivatives that it has because f depends on parameters: implicit function theorem. An argument with a
+    /// further slope tells f's derivative by it; one so steep that the slopes of parameters do not round it. Each lane uses its
+    /// own: no derivative depends on what others are taken together with it.
     template <class F>
-    friend constexpr Dual derivative(const F& f, const Dual& x, const Dual& f_of_x) {
-        Dual steeper = x;
-        steeper.slope += 1.0;
-        const Dual f_of_steeper = f(steeper);
-        int least = 0;
-        for (int i = 1; i < n; ++i)
-            if (!(strainwave::abs(f_of_x.slope[i]) >= strainwave::abs(f_of_x.slope[least]))) least = i;
-        return Dual(f_of_steeper.slope[least] - f_of_x.slope[least]);
+    friend constexpr Dual moving_root(const F& f, const Dual& root) {
+        constexpr double steep = 0x1p100, flat = 1e-30;
+        Dual steeper = root;
+        steeper.slope += steep;
+        const Dual at_root = f(root), beside = f(steeper);
+        Dual moving = root;
+        for (int i = 0; i < n; ++i) {
+            const double by_argument = (beside.slope[i] - at_root.slope[i]) * (1.0 / steep);
+            if (strainwave::abs(by_argument) > flat) moving.slope[i] -= at_root.slope[i] / by_argument;
+        }
+        return moving;
     }
     friend Dual rint(const Dual& x) { return Dual(strainwave::rint(x.value)); }
     friend Dual exp(const Dual& x) {

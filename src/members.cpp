@@ -1,0 +1,261 @@
+#include "members.hpp"
+
+#include <unordered_map>
+
+namespace strainwave::host {
+
+namespace {
+
+/// The names of all members, for messages.
+std::string names_of(const Description& description) {
+    std::string names;
+    for (const Member& member : description.members) names += (names.empty() ? "" : ", ") + std::string(member.field.name);
+    return names;
+}
+
+/// Sets the members that `values` names; an unknown name is refused.
+void set_members(void* model, const nb::kwargs& values, const Description& description) {
+    const Reader reader{description.name};
+    nb::dict unknown(values);
+    for (const Member& member : description.members) {
+        if (!values.contains(member.field.name)) continue;
+        member.type->read(member.in(model), values[member.field.name], reader, member.field);
+        nb::del(unknown[member.field.name]);
+    }
+    for (auto [key, value] : unknown)
+        throw nb::type_error(
+            (description.name + " has no parameter " + shortened(key) + "; it has " + names_of(description)).c_str());
+}
+
+void check_relations(const void* model, const Description& description) {
+    if (!description.problem) return;
+    if (const char* problem = description.problem(model)) throw nb::value_error((description.name + ": " + problem).c_str());
+}
+
+/// Adds the values of members that follow a given one; returns the names of those that are required and not given.
+std::string complete(nb::kwargs& values, const Description& description) {
+    std::string missing;
+    for (const auto& [field, offset, type] : description.members) {
+        if (values.contains(field.name)) continue;
+        if (field.required) missing += (missing.empty() ? "" : ", ") + std::string(field.name);
+        if (field.follows && values.contains(field.follows)) values[field.name] = values[field.follows];
+    }
+    return missing;
+}
+
+/// Refuses parameters given by place, which nobody could read.
+void check_named(const nb::args& unnamed, const Description& description) {
+    if (unnamed.size() == 0) return;
+    throw nb::type_error((description.name + " takes its parameters by name, not " + shortened(unnamed[0]) + " alone; it has " +
+                          names_of(description))
+                             .c_str());
+}
+
+/// The members as Python sees them, by name.
+nb::dict values_of(const void* model, const Description& description) {
+    nb::dict values;
+    for (const Member& member : description.members) values[member.field.name] = member.value(model);
+    return values;
+}
+
+std::string represented(const void* model, const Description& description) {
+    std::string text;
+    for (const Member& member : description.members)
+        text += (text.empty() ? "" : ", ") + std::string(member.field.name) + "=" + text_of(member.value(model));
+    return std::string(description.python_name) + "(" + text + ")";
+}
+
+bool same(const void* one, const void* other, const Description& description) {
+    for (const Member& member : description.members)
+        if (!member.type->equal(member.in(one), member.in(other))) return false;
+    return true;
+}
+
+/// "def head(self, *, name: type = ..., ...) -> result"; required members have no value by default where a model is made.
+const char* signature(const std::string& head, const std::string& result, bool makes, const Description& description) {
+    std::string text = "def " + head + (makes ? "(self, *" : "(self, changes: dict[str, typing.Any] = ..., /, *");
+    for (const Member& member : description.members)
+        text += std::string(", ") + member.field.name + ": " + member.type->python_type(true) +
+                (makes && member.field.required ? "" : " = ...");
+    return kept(text + ") -> " + result);
+}
+
+/// What is known of each member besides its value: name, unit, doc, limits (None: no limit) and whether the lower one is open, its
+/// kind, and what it may be chosen from; whether it is required, the member it follows if it is not given, and its value by
+/// default: an order of magnitude where that is not used.
+nb::tuple schema(const Description& description) {
+    nb::list list;
+    for (const Member& member : description.members) {
+        const Field& field = member.field;
+        nb::dict entry;
+        entry["name"] = field.name;
+        entry["unit"] = field.unit;
+        entry["doc"] = field.doc;
+        entry["min"] = field.min <= -unbounded ? nb::none() : nb::object(nb::float_(field.min == smallest ? 0.0 : field.min));
+        entry["max"] = field.max >= unbounded ? nb::none() : nb::object(nb::float_(field.max));
+        entry["kind"] = member.kind();
+        entry["open"] = field.min == smallest;
+        entry["options"] = member.type->options();
+        entry["required"] = field.required;
+        entry["follows"] = field.follows ? nb::object(nb::str(field.follows)) : nb::none();
+        entry["default"] = member.value(description.defaults);
+        list.append(entry);
+    }
+    return nb::tuple(list);
+}
+
+std::string qualified(nb::handle type) {
+    return nb::cast<std::string>(type.attr("__module__")) + "." + nb::cast<std::string>(type.attr("__qualname__"));
+}
+
+}  // namespace
+
+void check_passivity(const Condition<double>& rule, const char* name) {
+    if (rule.left >= rule.right) return;
+    const std::string text = std::string(name) + " can create energy: " + rule.left_name + " = " + with_unit(rule.left, rule.unit) +
+                             " must be at least " + rule.right_name + " = " + with_unit(rule.right, rule.unit);
+    if (PyErr_WarnEx(nb::module_::import_("strainwave._core").attr("PassivityWarning").ptr(), text.c_str(), 1) < 0)
+        throw nb::python_error();
+}
+
+const void* model_in(nb::handle object, const Description& description) {
+    const nb::handle type = description.python_type();
+    if (!PyObject_TypeCheck(object.ptr(), reinterpret_cast<PyTypeObject*>(type.ptr())) || !nb::inst_ready(object))
+        throw nb::type_error(("this needs a " + std::string(description.python_name) + ", not " + shortened(object)).c_str());
+    return nb::inst_ptr<void>(object);
+}
+
+std::string documentation(const Description& description) {
+    std::string text;
+    if (description.doc) text = dedented(description.doc) + "\n\n";
+    text += "Parameters\n----------\n";
+    for (const Member& member : description.members) {
+        const Field& field = member.field;
+        text += std::string(field.name) + ": " + field.doc;
+        if (member.type->numeric && std::string_view(field.unit) != "1") text += std::string(" [") + field.unit + "]";
+        if (member.type->numeric && (field.min > -unbounded || field.max < unbounded)) text += ", in " + limits(field);
+        if (member.type->listed) text += ", one of " + text_of(member.type->options());
+        text += field.required  ? "; required\n"
+                : field.follows ? std::string("; default as ") + field.follows + "\n"
+                                : "; default " + text_of(member.value(description.defaults)) + "\n";
+    }
+    text +=
+        "\nRaises\n------\nTypeError: an unknown parameter, one of the wrong kind, or none where it is required\nValueError: a "
+        "number that is not finite or "
+        "out of its range\n";
+    if (description.source) text += std::string("\nSource\n------\n") + description.source + "\n";
+    return text;
+}
+
+namespace {
+
+/// The descriptions of all structs that are bound, by their types.
+std::unordered_map<PyObject*, const Description*>& bound() {
+    static std::unordered_map<PyObject*, const Description*> all;
+    return all;
+}
+
+}  // namespace
+
+const Description& description_of(nb::handle object) {
+    const auto found = bound().find(object.type().ptr());
+    if (found == bound().end()) throw nb::type_error((shortened(object) + " is no model").c_str());
+    return *found->second;
+}
+
+namespace {
+
+/// Where the model of an object is to be made; one that is made never changes.
+void* unmade(nb::handle object, const Description& description) {
+    const nb::handle type = description.python_type();
+    if (!PyObject_TypeCheck(object.ptr(), reinterpret_cast<PyTypeObject*>(type.ptr())) || nb::inst_ready(object))
+        throw nb::type_error((std::string(description.python_name) + " cannot be made of " + shortened(object)).c_str());
+    return nb::inst_ptr<void>(object);
+}
+
+}  // namespace
+
+void define_value(nb::handle type, const Description& description) {
+    bound()[type.ptr()] = &description;
+    const Description* const of = &description;
+    const auto define = [&](const char* name, auto f, const auto&... extra) {
+        nb::cpp_function_def(f, nb::scope(type), nb::name(name), nb::is_method(), extra...);
+    };
+    define(
+        "__init__",
+        [of](nb::handle self, const nb::args& unnamed, nb::kwargs values) {
+            check_named(unnamed, *of);
+            const std::string missing = complete(values, *of);
+            void* const model = unmade(self, *of);
+            of->copy(model, of->defaults);
+            set_members(model, values, *of);
+            if (!missing.empty()) throw nb::type_error((of->name + " needs " + missing + ": no value suits most gears").c_str());
+            check_relations(model, *of);
+            if (of->check_passivity) of->check_passivity(model);
+            nb::inst_mark_ready(self);
+        },
+        nb::sig(signature("__init__", "None", true, description)));
+    define(
+        "replace",
+        [of](nb::handle self, const nb::args& unnamed, const nb::kwargs& values) {
+            const void* const from = model_in(self, *of);
+            if (unnamed.size() == 1 && PyDict_Check(unnamed[0].ptr())) {
+                const nb::object replaced = nb::module_::import_("strainwave.parameters").attr("replaced")(self, unnamed[0]);
+                return values.size() == 0 ? replaced : nb::object(replaced.attr("replace")(**values));
+            }
+            check_named(unnamed, *of);
+            nb::object other = of->cast(from);  // Python's alone until it is handed over
+            void* const model = nb::inst_ptr<void>(other);
+            set_members(model, values, *of);
+            check_relations(model, *of);
+            if (of->check_passivity) of->check_passivity(model);
+            return other;
+        },
+        nb::sig(signature("replace", qualified(type), false, description)),
+        "The same with the named parameters changed. A dictionary names them by their paths: {\"friction_input.viscous\": 1e-4}.");
+    const nb::object property = nb::module_::import_("builtins").attr("property");
+    for (const Member& member : description.members) {
+        const Field& field = member.field;
+        const std::string unit = *field.unit && std::string_view(field.unit) != "1" ? std::string(" [") + field.unit + "]" : "";
+        const nb::object getter =
+            nb::cpp_function([of, at = &member](nb::handle self) { return at->value(model_in(self, *of)); }, nb::name(field.name),
+                             nb::scope(type), nb::is_method(), nb::is_getter(),
+                             nb::sig(kept(std::string("def ") + field.name + "(self) -> " + member.type->python_type(false))),
+                             kept(field.doc + unit));
+        nb::setattr(type, field.name, property(getter));
+    }
+    define("__repr__", [of](nb::handle self) { return represented(model_in(self, *of), *of); });
+    define(
+        "__eq__",
+        [of](nb::handle self, nb::handle other) {
+            return nb::isinstance(other, of->python_type()) && nb::inst_ready(other) &&
+                   same(model_in(self, *of), model_in(other, *of), *of);
+        },
+        nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"));
+    define("__hash__", [of](nb::handle self) { return nb::hash(nb::tuple(values_of(model_in(self, *of), *of).values())); });
+    define(
+        "__getstate__", [of](nb::handle self) { return values_of(model_in(self, *of), *of); },
+        nb::sig("def __getstate__(self) -> dict[str, object]"));
+    define(
+        "__setstate__",
+        [of](nb::handle self, const nb::dict& state) {
+            void* const model = unmade(self, *of);
+            of->copy(model, of->defaults);
+            set_members(model, nb::borrow<nb::kwargs>(state), *of);
+            check_relations(model, *of);
+            nb::inst_mark_ready(self);
+        },
+        nb::sig("def __setstate__(self, state: dict[str, object], /) -> None"));
+    define(
+        "__reduce__",
+        [](nb::handle self) {  // as every protocol of pickle can write it
+            return nb::make_tuple(nb::module_::import_("copyreg").attr("__newobj__"), nb::make_tuple(self.type()),
+                                  self.attr("__getstate__")());
+        },
+        nb::sig("def __reduce__(self) -> tuple[typing.Any, ...]"));
+    type.attr("name") = description.name;
+    if (description.source) type.attr("source") = description.source;
+    type.attr("fields") = schema(description);
+}
+
+}  // namespace strainwave::host

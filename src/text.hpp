@@ -1,0 +1,29 @@
+#pragma once
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <strainwave/condition.hpp>
+#include <strainwave/field.hpp>
+
+#include <string>
+
+/// Numbers, limits and values of Python as messages and help show them.
+namespace strainwave::host {
+
+namespace nb = nanobind;
+
+/// The shortest text that is read as the same number.
+std::string shortest(double x);
+std::string with_unit(double x, const char* unit);
+/// "[0, inf)": what a field may be.
+std::string limits(const Field& field);
+/// In words and numbers, that a law is used where it is not valid.
+std::string outside(const Domain<double>& domain);
+std::string text_of(nb::handle value);
+/// The same, cut short where it is long; of a value that was never made, that.
+std::string shortened(nb::handle value);
+/// A text written in a raw string, with the indent of its source taken off.
+std::string dedented(const char* text);
+/// Keeps what nanobind only points at.
+const char* kept(std::string text);
+
+}  // namespace strainwave::host
