@@ -6,6 +6,7 @@
     python3 dev.py sanitize     run tests of the compiled core with addresses, undefined behaviour and threads checked
     python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
     python3 dev.py docs         build the documentation; it begins at out/docs/index.html
+    python3 dev.py wheel        build a wheel for every machine of this kind into dist/, and try it where no compiler is
     python3 dev.py stubs        write the type stubs of the compiled modules anew
     python3 dev.py pin          write the exact versions of all dependencies anew, the newest that pyproject.toml allows
 
@@ -54,13 +55,19 @@ def prepare(groups: Sequence[str] = (), extra: str = "") -> None:
     call(PYTHON, "-c", "import strainwave")
 
 
-def install(groups: Sequence[str], extra: str) -> None:
+def install_tools() -> tuple[str | Path, ...]:
+    """Makes the environment with the tools of the build; returns the command that installs more into it."""
     check_machine()
     if not PYTHON.exists():
         call(uv(), "venv", "--quiet", "--python", sys.executable, BIN.parent)
     pip_install = (uv(), "pip", "install", "--quiet", "--python", PYTHON, "--constraints", PINS)
     say("installing the tools of the build")
     call(*pip_install, "--group", "build")
+    return pip_install
+
+
+def install(groups: Sequence[str], extra: str) -> None:
+    pip_install = install_tools()
     say("installing strainwave and its dependencies; compiling takes some minutes the first time")
     anew = [] if STAMPS.exists() else ["--reinstall-package", "strainwave"]
     wanted = [word for group in groups for word in ("--group", group)]
@@ -203,6 +210,19 @@ def docs(options: Sequence[str]) -> int:
     return 0
 
 
+def wheel(options: Sequence[str]) -> int:
+    install_tools()
+    dist, clean = ROOT / "dist", BUILD / "clean"
+    shutil.rmtree(dist, ignore_errors=True)
+    say("compiling for all instruction sets; this takes some minutes")
+    call(uv(), "build", "--quiet", "--wheel", "--no-build-isolation", "--python", PYTHON, "--out-dir", dist, *options)
+    (made,) = dist.glob("*.whl")
+    call(uv(), "venv", "--quiet", "--clear", "--python", sys.executable, clean)
+    call(uv(), "pip", "install", "--quiet", "--python", clean / "bin" / "python", "--constraints", PINS, made)
+    say(f"trying {made.relative_to(ROOT)}, {made.stat().st_size / 1e6:.1f} MB, where no compiler is found")
+    return attempt(clean / "bin" / "python", "-I", ROOT / "tests" / "wheel.py", PATH=str(clean / "bin"))
+
+
 def stubs(options: Sequence[str]) -> int:
     prepare()
     return attempt(PYTHON, "src/stubs.py", *options)
@@ -216,7 +236,7 @@ def pin(options: Sequence[str]) -> int:
 
 
 VERBS: dict[str, Callable[[Sequence[str]], int]] = {
-    verb.__name__: verb for verb in (demo, test, lint, sanitize, bench, docs, stubs, pin)
+    verb.__name__: verb for verb in (demo, test, lint, sanitize, bench, docs, wheel, stubs, pin)
 }
 
 

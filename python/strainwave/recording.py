@@ -6,7 +6,7 @@ repaired; what is wrong is refused in one line that names the place.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, KeysView, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -23,6 +23,7 @@ from strainwave.units import check as check_unit
 from strainwave.units import convert
 
 if TYPE_CHECKING:
+    import pandas
     from matplotlib.figure import Figure
 
     from strainwave.tables import Table
@@ -96,6 +97,16 @@ class Recording:
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
 
+    def keys(self) -> KeysView[str]:
+        """Names of the columns, so that ``dict(recording)`` is a dictionary of them."""
+        return self.columns.keys()
+
+    def __iter__(self) -> Iterator[tuple[float, ...]]:
+        """The samples, one after the other, each a named tuple: what ``pandas.DataFrame(recording)`` makes rows of."""
+        sample = type("Sample", (tuple,), {"_fields": self.names})
+        for row in zip(*(values.tolist() for values in self.columns.values()), strict=True):
+            yield sample(row)
+
     def __eq__(self, other: object) -> bool:
         """Same title, columns in the same order, same units, and every value the same."""
         if not isinstance(other, Recording):
@@ -166,6 +177,20 @@ class Recording:
             if self.title:
                 file.write(f"{TITLE}{self.title}\n".encode())
             write_csv(table, file)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The columns as a table of pandas, units in its ``attrs["units"]``.
+
+        Raises:
+            ImportError: pandas is not installed
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_pandas needs pandas, which is not installed; dict(recording) needs nothing") from None
+        frame = pandas.DataFrame(dict(self.columns))
+        frame.attrs["units"] = dict(self.units)
+        return frame
 
     def to_parquet(self, path: str | Path) -> None:
         """Write a Parquet file: zstd, byte-stream-split, checksums, the unit in the metadata of each field."""

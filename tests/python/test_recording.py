@@ -445,3 +445,15 @@ def test_the_locked_torque_tables_are_refused_as_time_series_for_their_repeated_
         Recording.read(path, {"time": "time_s"}, {"time": "s"})
     with pytest.raises(ValueError, match=r'column "time_s" has no unit; write it behind the name'):
         Recording.read(path)
+
+
+def test_a_recording_is_taken_by_dict_and_pandas() -> None:
+    import pandas
+
+    run = Recording({"time": [0.0, 0.1], "motor speed": [1.0, 2.0]}, {"time": "s", "motor speed": "rad/s"})
+    assert {name: values.tolist() for name, values in dict(run).items()} == {"time": [0.0, 0.1], "motor speed": [1.0, 2.0]}
+    frame = run.to_pandas()
+    assert frame.attrs["units"] == run.units
+    pandas.testing.assert_frame_equal(pandas.DataFrame(run), frame, check_exact=True)
+    assert list(run) == [(0.0, 1.0), (0.1, 2.0)]
+    assert len(list(run)) == len(run)
