@@ -221,8 +221,6 @@ nb::list parameters_in(nb::handle model) {
 nb::object with_numbers(nb::handle model, const std::vector<double>& numbers) {
     const Description& description = description_of(model);
     const void* const from = model_in(model, description);
-    if (numbers.size() != description.parameters(from).size())
-        throw nb::value_error("as many numbers as the model has parameters are needed");
     return description.with_numbers(from, numbers);
 }
 
@@ -411,16 +409,16 @@ void bind_drives(nb::module_& core) {
         "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at "
         "rest are not run.");
     core.def(
-        "vibration", [](const Drive& drive, double twist) { return kernels().rates(drive, std::abs(twist)).vibration; },
-        nb::arg("drive"), nb::arg("twist"), nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
+        "vibration", [](const Drive& drive, double twist) { return kernels().vibration(drive, std::abs(twist)); }, nb::arg("drive"),
+        nb::arg("twist"), nb::sig("def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
         "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
     core.def(
-        "fastest", [](const Drive& drive, double twist) { return kernels().rates(drive, std::abs(twist)).fastest; },
-        nb::arg("drive"), nb::arg("twist"), nb::sig("def fastest(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
+        "fastest", [](const Drive& drive, double twist) { return kernels().fastest(drive, std::abs(twist)); }, nb::arg("drive"),
+        nb::arg("twist"), nb::sig("def fastest(drive: strainwave.drives.PositionDrive, twist: float) -> float"),
         "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's "
         "vibration, or the decay of speeds.");
     core.def(
-        "bristle_vibration", [](const Drive& drive) { return kernels().rates(drive, 0.0).on_bristles; }, nb::arg("drive"),
+        "bristle_vibration", [](const Drive& drive) { return kernels().bristle_vibration(drive); }, nb::arg("drive"),
         nb::sig("def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float"),
         "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
     core.def("instruction_set", &instruction_set, "The instruction set that the loops over time are compiled for.");

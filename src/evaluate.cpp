@@ -29,10 +29,11 @@ Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval
     return after.state;
 }
 
-Rates rates(const Drive& drive, double twist) {
-    const auto compiled = drive.compile();
-    return {compiled.vibration(twist), compiled.fastest(twist), compiled.bristle_vibration()};
-}
+double vibration(const Drive& drive, double twist) { return drive.compile().vibration(twist); }
+
+double fastest(const Drive& drive, double twist) { return drive.compile().fastest(twist); }
+
+double bristle_vibration(const Drive& drive) { return drive.compile().bristle_vibration(); }
 
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
     const auto compiled = drive.compile();

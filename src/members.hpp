@@ -269,7 +269,10 @@ const Description& description_of(const char* python_name, const std::string& na
         made.python_type = [] { return nb::type<M>(); };
         made.parameters = [](const void* model) { return parameters_of(*static_cast<const M*>(model)); };
         made.with_numbers = [](const void* model, const std::vector<double>& numbers) {
-            const M other = assembled<M, double>(parts_of(*static_cast<const M*>(model)).shape, [&](int i) { return numbers[i]; });
+            const Parts parts = parts_of(*static_cast<const M*>(model));
+            if (numbers.size() != parts.numbers.size())
+                throw nb::value_error("as many numbers as the model has parameters are needed");
+            const M other = assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
             const std::string problem = problem_of(other);
             if (!problem.empty()) throw nb::value_error(problem.c_str());
             return nb::cast(other);

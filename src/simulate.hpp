@@ -100,13 +100,14 @@ Drive::State break_away(const Drive& drive, const Drive::State& x, const Input<d
 /// After one step. Throws OutOfBounds.
 Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval<Input<double>>& u, double dt);
 
-/// How fast a drive moves by itself, as angular frequencies [rad/s], at twists up to one.
-struct Rates {
-    double vibration;  ///< of the gear on its spring
-    double fastest;    ///< that or the decay of speeds: what fixed steps must follow
-    double on_bristles;
-};
-Rates rates(const Drive& drive, double twist);
+// How fast a drive moves by itself, as angular frequencies [rad/s], at twists up to one [rad].
+
+/// Of the gear on its spring.
+double vibration(const Drive& drive, double twist);
+/// That, or the decay of speeds: what fixed steps must follow.
+double fastest(const Drive& drive, double twist);
+/// Of a shaft on its bristles.
+double bristle_vibration(const Drive& drive);
 
 /// The outputs of a drive in state `x`.
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
@@ -143,7 +144,9 @@ struct Kernels {
     decltype(&host::advance_hysteresis) advance_hysteresis;
     decltype(&host::break_away) break_away;
     decltype(&host::step_once) step_once;
-    decltype(&host::rates) rates;
+    decltype(&host::vibration) vibration;
+    decltype(&host::fastest) fastest;
+    decltype(&host::bristle_vibration) bristle_vibration;
     decltype(&host::observe) observe;
     decltype(&host::simulate) simulate;
     decltype(&host::simulate_adaptively) simulate_adaptively;
