@@ -24,7 +24,7 @@
 /// Everything else is optional. A system that leaves it out does without, as the functions below tell.
 namespace strainwave::system {
 
-/// How fast each number forgets itself [1/s]: what an explicit method could not follow is stepped exactly. Without: none does.
+/// The relaxation rate of each number [1/s]. Numbers that have one are stepped exactly, however fast they decay. Default: zero.
 template <class S, class System>
 constexpr typename System::Continuous relaxation_rate(const System& system, const typename System::Continuous& y,
                                                       const typename System::Derivatives& now) {
@@ -34,7 +34,7 @@ constexpr typename System::Continuous relaxation_rate(const System& system, cons
         return zeroed<S>(y);
 }
 
-/// The numbers within what they can ever reach, also where the stage of a step would leave it. `now` is an instant close by.
+/// The numbers, limited to what they can reach, for a stage of a step may exceed that. `now` is an instant close by.
 template <class System>
 constexpr typename System::Continuous clamped(const System& system, const typename System::Continuous& y,
                                               const typename System::Derivatives& now) {
@@ -213,7 +213,7 @@ constexpr typename System::State impulse_step(const System& system, const typena
 
 // Error control.
 
-/// A state in the turn of another, so that their numbers can be compared.
+/// The same state with its angles counted from the turn of another state, so that the numbers of both can be compared.
 template <class System>
 constexpr typename System::State aligned(const System& system, const typename System::State& x, const typename System::State& to) {
     if constexpr (requires { system.aligned(x, to); })

@@ -83,9 +83,9 @@ struct Dual {
     }
     friend constexpr Dual abs(const Dual& x) { return x.value < 0.0 ? -x : x; }
     friend constexpr Dual detached(const Dual& x) { return Dual(x.value); }
-    /// A root of f with the derivatives that it has because f depends on parameters: implicit function theorem. An argument with a
-    /// further slope tells f's derivative by it; one so steep that the slopes of parameters do not round it. Each lane uses its
-    /// own: no derivative depends on what others are taken together with it.
+    /// A root of f with its derivatives by the parameters of f (implicit function theorem). The derivative of f by its argument
+    /// follows from an argument whose slope is larger by 2^100, so that the slopes of the parameters round nothing. Each lane uses
+    /// its own: a derivative is the same whichever others are taken with it.
     template <class F>
     friend constexpr Dual moving_root(const F& f, const Dual& root) {
         constexpr double steep = 0x1p100, flat = 1e-30;
