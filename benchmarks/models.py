@@ -93,7 +93,7 @@ SUITED: dict[str, list[dict[str, Any]]] = {
     ],
 }
 
-SIMPLEST = sw.drives.PositionDrive(
+SIMPLEST = sw.Drive(
     gear=sw.Gear(
         kinematics=sw.kinematics.PlainRatio(reduction=100.0),
         stiffness=sw.stiffness.Linear(k=1.2e4),

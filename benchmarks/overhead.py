@@ -22,13 +22,14 @@ from reference_drive import DURATION, OUTPUT_INERTIA, SAMPLE
 from report import Column, figure, save, save_figure, tell, three_digits
 from rich.console import Console
 from strainwave import _core
-from strainwave.simulation import differentiate
+from strainwave.signals import outputs
+from strainwave.simulation import Excitation, differentiate
 
 STEP = 2e-4  # s
 FEW = 3  # steps
 MEMBERS = 128
 ROUNDS = 15
-OUTPUTS = [name for name, _, _ in _core.outputs]
+OUTPUTS = list(outputs(sw.Drive()))
 FREE = (
     "gear.stiffness.a1",
     "gear.stiffness.a3",
@@ -73,7 +74,7 @@ def with_derivatives(count: int) -> Extra:
     numbers = [places.index(path) for path in FREE[:count]]
     runs = {
         "without": lambda: sw.simulate(drive, command, STEP, sample=SAMPLE),
-        "with": lambda: differentiate(drive, command, numbers, STEP, SAMPLE),
+        "with": lambda: differentiate(drive, Excitation(command), numbers, STEP, SAMPLE),
     }
     return Extra(f"{count} derivatives", *shortest(runs, ROUNDS).values())
 

@@ -60,11 +60,10 @@ using S = counting::Counted;
 
 /// The reference drive of benchmarks/reference_drive.py.
 auto reference_drive() {
-    PositionDrive<
-        S,
-        Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>, stiffness::Cubic<S>,
-             hysteresis::MaxwellSlip<S>, friction::LuGre<S>, friction::Viscous<S>, friction::Viscous<S>>,
-        motor::DC<S>, control::PID<S>, load::Pendulum<S>>
+    Drive<S, control::PID<S>, motor::DC<S>,
+          Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>, stiffness::Cubic<S>,
+               hysteresis::MaxwellSlip<S>, friction::LuGre<S>, friction::Viscous<S>, friction::Viscous<S>>,
+          load::Pendulum<S>, Sensors<S, sensor::Ideal<S>>>
         drive{};
 #include "reference_drive.inc"  // its numbers, written by peak.py
     return drive.compile();

@@ -52,7 +52,7 @@ class Cost:
     scalar: float
 
 
-def drives() -> dict[str, sw.drives.PositionDrive]:
+def drives() -> dict[str, sw.Drive]:
     """The same with three frictions."""
     smooth = strainwave_drive.drive().replace(
         control=sw.control.PID(
@@ -73,11 +73,11 @@ def drives() -> dict[str, sw.drives.PositionDrive]:
     return {name: smooth.replace(gear=smooth.gear.replace(friction_input=law)) for name, law in frictions.items()}
 
 
-def simulated(drive: sw.drives.PositionDrive, step: float) -> sw.Recording:
+def simulated(drive: sw.Drive, step: float) -> sw.Recording:
     return sw.simulate(drive, COMMAND, dt=step, sample=reference.SAMPLE)
 
 
-def sticking() -> tuple[sw.drives.PositionDrive, sw.scenario.Scenario]:
+def sticking() -> tuple[sw.Drive, sw.scenario.Scenario]:
     return drives()["Stribeck, sticks"], COMMAND
 
 
@@ -105,17 +105,17 @@ PEERS = (
 )
 
 
-def side_by_side(drive: sw.drives.PositionDrive) -> sw.Ensemble:
+def side_by_side(drive: sw.Drive) -> sw.Ensemble:
     inertias = reference.OUTPUT_INERTIA * np.linspace(0.8, 1.2, MEMBERS)
     return sw.simulate_many(drive, COMMAND, {"load.inertia": inertias}, STEP, sample=reference.SAMPLE, threads=1)
 
 
-def one_by_one(drive: sw.drives.PositionDrive) -> list[sw.Recording]:
+def one_by_one(drive: sw.Drive) -> list[sw.Recording]:
     inertias = reference.OUTPUT_INERTIA * np.linspace(0.8, 1.2, ALONE)
     return [simulated(drive.replace(load=sw.loads.Inertia(inertia=inertia)), STEP) for inertia in inertias.tolist()]
 
 
-def costs(drives: Mapping[str, sw.drives.PositionDrive]) -> list[Cost]:
+def costs(drives: Mapping[str, sw.Drive]) -> list[Cost]:
     runs: dict[str, Callable[[], object]] = {}
     for name, drive in drives.items():
         runs |= {f"{name}, pack": partial(side_by_side, drive), f"{name}, scalar": partial(one_by_one, drive)}

@@ -7,6 +7,7 @@ namespace strainwave::host {
 
 void bind_course(nb::module_& core);
 void bind_drives(nb::module_& core);
+void bind_runs(nb::module_& core);
 
 namespace {
 
@@ -61,8 +62,10 @@ NB_MODULE(_core, core) {
     bind_list(core, hysteresis, "density", strainwave::hysteresis::Densities{});
     bind_list(core, hysteresis, "hysteresis", strainwave::hysteresis::Models{});
     bind_family(core, "motor", "Motors on the input shaft.", motor::Models{});
-    bind_family(core, "control", "What turns the command into the motor's voltage.", control::Models{});
+    bind_family(core, "control", "What turns the command into the motor's voltage, current or torque.", control::Models{});
     bind_family(core, "loads", "What the output shaft carries.", load::Models{});
+    bind_family(core, "sensor", "What a controller sees a quantity by.", sensor::Models{});
     bind_course(core);
     bind_drives(core);
+    bind_runs(core);
 }

@@ -27,11 +27,11 @@ Values evaluated(const Signal& signal, const Numbers& instants, bool before) {
     return out;
 }
 
-Values inputs_of(const Signal& command, const Signal& load_torque, const Signal& temperature, const Numbers& instants) {
+Values inputs_of(const Signal& command, const Signal& load, const Signal& temperature, const Numbers& instants) {
     if (instants.size() < 2) throw nb::value_error("a course has at least two instants");
     const std::size_t steps = instants.size() - 1;
-    Values out = array({steps, 3, std::size_t(driving)});
-    kernels().lay_out({command, load_torque, temperature}, instants.data(), steps, out.data());
+    Values out = array({steps, 3, std::size_t(input_count)});
+    kernels().lay_out({{&command, &load, &temperature}}, instants.data(), steps, out.data());
     return out;
 }
 
@@ -106,9 +106,10 @@ void bind_course(nb::module_& core) {
         .def("at", &evaluated, nb::arg("instants"), nb::arg("before"),
              nb::sig("def at(self, instants: " SW_ARRAY ", before: bool) -> " SW_ARRAY),
              "Values and rates at `instants` [s], or just before them: shape (2, …).");
-    core.def("inputs", &inputs_of, nb::arg("command"), nb::arg("load_torque"), nb::arg("temperature"), nb::arg("instants"),
-             nb::sig("def inputs(command: Signal, load_torque: Signal, temperature: Signal, instants: " SW_ARRAY ") -> " SW_ARRAY),
-             "Command, its rate, load torque and temperature at start, middle and end of each step: shape (n, 3, 4).");
+    core.def(
+        "inputs", &inputs_of, nb::arg("command"), nb::arg("load"), nb::arg("temperature"), nb::arg("instants"),
+        nb::sig("def inputs(command: Signal, load: Signal, temperature: Signal, instants: " SW_ARRAY ") -> " SW_ARRAY),
+        "Command, input of the load and temperature, each with its rate, at start, middle and end of each step: shape (n, 3, 6).");
     core.def("grid", &grid, nb::arg("step"), nb::arg("duration"), nb::arg("tolerance"),
              nb::sig("def grid(step: float, duration: float, tolerance: float) -> " SW_ARRAY),
              "0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.");

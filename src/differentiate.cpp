@@ -1,3 +1,4 @@
+#include <strainwave/quasi_static.hpp>
 #include <strainwave/scalar/dual.hpp>
 
 #include "describe.hpp"
@@ -36,22 +37,22 @@ class Writer {
     static constexpr std::size_t stretch = 16;
     const std::size_t first, last, samples;
     double *const out, *const slopes;
-    Array<Dual<n>, channels> held[stretch];
+    Outputs<Dual<n>> held[stretch];
     std::size_t written = 0, gathered = 0;
 
 public:
     Writer(std::size_t first_, std::size_t parameters, std::size_t samples_, double* out_, double* slopes_)
         : first(first_), last(std::min(parameters, first_ + n)), samples(samples_), out(out_), slopes(slopes_) {}
 
-    void operator()(const Output<Dual<n>>& output) {
-        held[gathered] = flattened<Dual<n>>(output);
+    void operator()(const Outputs<Dual<n>>& values) {
+        held[gathered] = values;
         if (++gathered == stretch) flush();
     }
     void flush() {
-        for (std::size_t c = 0; c < channels; ++c) {
+        for (std::size_t c = 0; c < output_count; ++c) {
             for (std::size_t k = 0; k < gathered; ++k) out[c * samples + written + k] = held[k][int(c)].value;
             for (std::size_t p = first; p < last; ++p) {
-                double* const row = slopes + (p * channels + c) * samples + written;
+                double* const row = slopes + (p * output_count + c) * samples + written;
                 for (std::size_t k = 0; k < gathered; ++k) row[k] = held[k][int(c)].slope[p - first];
             }
         }
@@ -60,37 +61,47 @@ public:
     }
 };
 
+template <class S>
+initial::Known<S> known_of(const Start& start) {
+    const initial::Known<double> known = start.of(0);
+    initial::Known<S> found{};
+    for (int q = 0; q < initial::quantities; ++q)
+        if (known.given[q]) found.set(initial::Quantity(q), S(known.value[q]));
+    return found;
+}
+
 /// One run that gives the derivatives by `n` parameters, number `first` and following.
 template <int n>
-void differentiate_by(const Parts& parts, const Course& course, const std::vector<int>& parameters, std::size_t first, double* out,
-                      double* slopes, std::size_t kept, const Pause& pause) {
+void differentiate_by(const Parts& parts, const Start& start, const Course& course, const std::vector<int>& parameters,
+                      std::size_t first, double* out, double* slopes, std::size_t kept, const Pause& pause) {
     using Scalar = Dual<n>;
-    const auto dual = seeded<AnyPositionDrive, n>(parts, parameters, first).compile();
+    const auto dual = seeded<AnyDrive, n>(parts, parameters, first).compile();
     Writer<n> record(first, parameters.size(), kept + 1, out, slopes);
     const Input<Scalar> at_start = interval<Scalar>(course.inputs).start;
-    record(dual.output(dual.evaluate(dual.rest(), at_start), at_start));
-    run<Scalar>(dual, dual.rest(), course, record, [&](std::size_t i) { pause(first * course.steps + n * i); });
+    const auto from = start.at_rest ? dual.rest() : initial::state(dual, known_of<Scalar>(start), at_start);
+    record(shown<Scalar>(dual, begun(dual, from, at_start, Scalar(missed(course.first_step()))), at_start));
+    run<Scalar>(dual, from, course, record, [&](std::size_t i) { pause(first * course.steps + n * i); });
     record.flush();
 }
 
 }  // namespace
 
-void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
-                   std::size_t kept, const Pause& pause) {
+void differentiate(const Drive& drive, const Start& start, const Course& course, const std::vector<int>& parameters, double* out,
+                   double* slopes, std::size_t kept, const Pause& pause) {
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width)
-        differentiate_by<width>(parts, course, parameters, first, out, slopes, kept, pause);
+        differentiate_by<width>(parts, start, course, parameters, first, out, slopes, kept, pause);
 }
 
 void differentiate_rates(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {
     const auto values = numbers_of(drive, x);
     const auto inputs = flattened<double>(u);
-    const int count = int(numbers_of(drive, x.continuous).size()), rows = count + channels, columns = count + driving;
-    const auto dual = seeded<AnyPositionDrive, width>(parts_of(drive), {}, 0);
+    const int count = int(numbers_of(drive, x.continuous).size()), rows = count + output_count, columns = count + input_count;
+    const auto dual = seeded<AnyDrive, width>(parts_of(drive), {}, 0);
     for (int first = 0; first < columns; first += width) {
         const auto state = state_of(dual, [&](int i) { return sought(values[i], i < count ? i - first : -1); });
-        Array<Slope, driving> given;
-        for (int i = 0; i < driving; ++i) given[i] = sought(inputs[i], count + i - first);
+        Array<Slope, input_count> given;
+        for (int i = 0; i < input_count; ++i) given[i] = sought(inputs[i], count + i - first);
         const auto input = shaped<Input<Slope>>(given);
         const auto write = [&](const auto& found, int row) {
             for (int i = 0; i < int(found.size()); ++i) {
@@ -99,7 +110,7 @@ void differentiate_rates(const Drive& drive, const Drive::State& x, const Input<
             }
         };
         write(numbers_of(dual, dual.derivatives(state, state.continuous, input).rate), 0);
-        write(flattened<Slope>(dual.output(dual.evaluate(state, input), input)), count);
+        write(shown<Slope>(dual, dual.evaluate(state, input), input), count);
     }
 }
 
@@ -115,11 +126,11 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
             if (i > 0 && shift < first + width) x.slope[shift - first] = 1.0;
             return x;
         };
-        auto held = typename decltype(dual.hysteresis)::State{};
+        QuasiStatic<Slope, AnyGear<Slope>> moved(dual, point(0));
         for (std::size_t i = 0; i < n; ++i) {
             pauses(i, i);
-            if (i > 0) held = dual.hysteresis.advance(held, point(i) - point(i - 1));
-            const Slope torque = dual.stiffness.torque(point(i)) + dual.hysteresis.torque(held, Slope(0.0));
+            if (i > 0) moved.move(point(i));
+            const Slope torque = moved.torque(point(i));
             out[i] = torque.value;
             for (std::size_t p = first; p < first + width && p <= shift; ++p) slopes[p * n + i] = torque.slope[p - first];
         }

@@ -4,7 +4,32 @@ namespace strainwave::host {
 
 Drive::State rest(const Drive& drive) { return drive.compile().rest(); }
 
+Drive::State started(const Drive& drive, const initial::Known<double>& known, const Input<double>& u) {
+    return initial::state(drive.compile(), known, u);
+}
+
 Drive::State consistent(const Drive& drive, const Drive::State& x) { return drive.compile().consistent(x); }
+
+namespace {
+
+/// How far an instant may be missed by rounding where the coming step is not known [s].
+double rounding(const control::Schedule<double>& schedule) { return 1e-9 * schedule.period; }
+
+/// How long until a controller acts next [s].
+double next_instant(const control::Schedule<double>& schedule, double within) {
+    if (schedule.period == 0.0) return unbounded;
+    const double output = schedule.first - schedule.period + schedule.delay;
+    return output > within ? output : schedule.first;
+}
+
+}  // namespace
+
+Drive::State begin(const Drive& drive, const Drive::State& x, const Input<double>& u) {
+    const auto compiled = drive.compile();
+    return begun(compiled, x, u, rounding(compiled.schedule(x))).state;
+}
+
+control::Schedule<double> schedule(const Drive& drive, const Drive::State& x) { return drive.compile().schedule(x); }
 
 Drive::State aged(const Drive& drive, const Drive::State& x, const Input<double>& u, double dt) {
     return drive.compile().aged(x, u, dt);
@@ -22,11 +47,20 @@ Drive::State break_away(const Drive& drive, const Drive::State& x, const Input<d
 
 Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval<Input<double>>& u, double dt) {
     const auto compiled = drive.compile();
-    const auto before = compiled.evaluate(compiled.consistent(x), u.start);
-    check_bounds<double>(compiled, before, 0.0);
-    const auto after = step<double>(compiled, before, u, dt, called_step<double, std::remove_cv_t<decltype(compiled)>>);
-    check_bounds<double>(compiled, after, dt);
-    return after.state;
+    const auto smooth = called_step<double, std::remove_cv_t<decltype(compiled)>>;
+    const double within = std::min(rounding(compiled.schedule(x)), missed(dt));
+    auto at = begun(compiled, x, u.start, within);
+    check_bounds<double>(compiled, at, 0.0);
+    for (double done = 0.0;;) {
+        const double next = done + next_instant(compiled.schedule(at.state), within);
+        const bool last = next >= dt - within;
+        const double end = last ? dt : next;
+        at = step<double>(compiled, at, last && done == 0.0 ? u : u.part(done / dt, end / dt, dt), end - done, smooth);
+        check_bounds<double>(compiled, at, end);
+        if (last) return at.state;
+        at = system::up_to_date(compiled, at, u.at(end / dt, dt), within);
+        done = end;
+    }
 }
 
 double vibration(const Drive& drive, double twist) { return drive.compile().vibration(twist); }
@@ -37,8 +71,8 @@ double bristle_vibration(const Drive& drive) { return drive.compile().bristle_vi
 
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
     const auto compiled = drive.compile();
-    const auto values = flattened<double>(compiled.output(compiled.evaluate(x, u), u));
-    for (int c = 0; c < channels; ++c) out[c] = values[c];
+    const auto values = shown<double>(compiled, compiled.evaluate(x, u), u);
+    for (int c = 0; c < output_count; ++c) out[c] = values[c];
 }
 
 }  // namespace strainwave::host

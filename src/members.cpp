@@ -73,7 +73,8 @@ bool same(const void* one, const void* other, const Description& description) {
 
 /// "def head(self, *, name: type = ..., ...) -> result"; required members have no value by default where a model is made.
 const char* signature(const std::string& head, const std::string& result, bool makes, const Description& description) {
-    std::string text = "def " + head + (makes ? "(self, *" : "(self, changes: dict[str, typing.Any] = ..., /, *");
+    std::string text = "def " + head + (makes ? "(self" : "(self, changes: dict[str, typing.Any] = ..., /");
+    if (!description.members.empty()) text += ", *";
     for (const Member& member : description.members)
         text += std::string(", ") + member.field.name + ": " + member.type->python_type(true) +
                 (makes && member.field.required ? "" : " = ...");

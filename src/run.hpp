@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/initial.hpp>
 #include <strainwave/integrate.hpp>
 #include <strainwave/scalar/dual.hpp>
 #include <strainwave/scalar/pack.hpp>
@@ -10,19 +11,22 @@
 #include <cstdint>
 #include <functional>
 #include <new>
+#include <string_view>
 
 /// A drive run through time, for any scalar: the loop that Python's `simulate` and `fit` stand on.
 namespace strainwave::host {
 
 /// How many numbers drive a drive from outside.
-inline constexpr int driving = size_of<double, Input<double>>;
+inline constexpr int input_count = size_of<double, Input<double>>;
 
 /// The command over `steps` steps: instants[0..steps], and per step the inputs at its start, middle and end.
 struct Course {
     const double* instants;
-    const double* inputs;      ///< (steps, 3, driving): what `Input` holds
+    const double* inputs;      ///< (steps, 3, input_count): what `Input` holds
     const std::uint8_t* keep;  ///< (steps): whether to record the end of the step
     std::size_t steps;
+
+    double first_step() const { return instants[1] - instants[0]; }
 };
 
 // Calls f with what each lane of some scalars holds.
@@ -41,21 +45,43 @@ void each_lane(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c, F&& f) {
 
 template <class S>
 Interval<Input<S>> interval(const double* inputs) {
-    const auto at = [](const double* u) { return Input<S>{S(u[0]), S(u[1]), S(u[2]), S(u[3])}; };
-    return {at(inputs), at(inputs + driving), at(inputs + 2 * driving)};
+    const auto at = [](const double* u) {
+        Array<S, input_count> numbers;
+        for (int i = 0; i < input_count; ++i) numbers[i] = S(u[i]);
+        return shaped<Input<S>>(numbers);
+    };
+    return {at(inputs), at(inputs + input_count), at(inputs + 2 * input_count)};
 }
 
 /// Called now and then with the number of steps done; may throw.
 using Pause = std::function<void(std::size_t)>;
+
+/// How many numbers a drive shows of itself, at most: its channels. Those that it does not have are 0.
+inline constexpr int output_count = size_of<double, typename AnyDrive<double>::Output>;
+template <class S>
+using Outputs = Array<S, output_count>;
+inline constexpr int twist_channel = [] {
+    int channel = -1, count = 0;
+    AnyDrive<double>::Output output{};
+    AnyDrive<double>::Output::fields(output, [&](const auto&, const Field& field) {
+        if (std::string_view(field.name) == "twist") channel = count;
+        ++count;
+    });
+    return channel;
+}();
+
+template <class S, class Drive>
+Outputs<S> shown(const Drive& drive, const typename Drive::Evaluation& at, const Input<S>& u) {
+    return flattened<S>(drive.output(at, u));
+}
 
 /// What an output may be at most: no angle beyond is told to within a radian.
 inline constexpr double largest = 1e15;
 
 /// 1 where every output is a number up to the largest, else 0.
 template <class S>
-S soundness(const Output<S>& output) {
+S soundness(const Outputs<S>& values) {
     S sound{1.0};
-    const auto values = flattened<S>(output);
     for (int c = 0; c < values.size(); ++c) sound = select(S(largest) >= abs(values[c]), sound, S(0.0));
     return sound;
 }
@@ -114,7 +140,15 @@ template <class S, class Drive>
     return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
 }
 
-/// Runs a compiled drive from `start` through one step or more and calls record(output) at the end of each step to be kept.
+/// A state from outside where a run begins.
+template <class S, class Drive>
+typename Drive::Evaluation begun(const Drive& drive, const typename Drive::State& start, const Input<S>& u, const S& within) {
+    return system::up_to_date(drive, drive.evaluate(drive.consistent(start), u), u, within);
+}
+/// How far an instant may be missed by rounding, where a step of `dt` [s] begins: instants are a step apart at the least.
+inline constexpr double missed(double dt) { return 0.5 * dt; }
+
+/// Runs a compiled drive from `start` through one step or more and calls record(outputs) at the end of each step to be kept.
 /// `advance` takes a step. Returns the state at the end. What a step returns is made where it stays: to copy it would take a
 /// twentieth of the step. A drive that has diverged, in all lanes, stays where that is noticed, and so do its outputs.
 template <class S, class Drive, class Record, class Advance>
@@ -124,26 +158,28 @@ typename Drive::State run_compiled(const Drive& drive, const typename Drive::Sta
     Pauses pauses(pause);
     Interval<Input<S>> u = interval<S>(course.inputs);
     using Evaluation = typename Drive::Evaluation;
-    Evaluation places[2]{drive.evaluate(drive.consistent(start), u.start), {}}, *here = places, *there = places + 1;
+    Evaluation places[2]{begun(drive, start, u.start, S(missed(course.first_step()))), {}}, *here = places, *there = places + 1;
     if (has_bounds) check_bounds<S>(drive, *here, course.instants[0]);
     bool lost = false;
     for (std::size_t i = 0; i < course.steps; ++i) {
         pauses(i, i);
-        if (i % 64 == 0) lost = lost || !any(soundness(drive.output(*here, u.end)) > S(0.0));
+        if (i % 64 == 0) lost = lost || !any(soundness(shown<S>(drive, *here, u.end)) > S(0.0));
         if (lost) {
-            if (course.keep[i]) record(drive.output(*here, u.end));
+            if (course.keep[i]) record(shown<S>(drive, *here, u.end));
             continue;
         }
         if (i > 0) {
-            const double *const inputs = course.inputs + 3 * driving * i, *const before = inputs - driving;
+            const double *const inputs = course.inputs + 3 * input_count * i, *const before = inputs - input_count;
             u = interval<S>(inputs);
-            const bool jump = !std::equal(inputs, inputs + driving, before);
+            const bool jump = !std::equal(inputs, inputs + input_count, before);
             if (jump) *here = drive.evaluate(here->state, u.start);
+            const S within(missed(course.instants[i + 1] - course.instants[i]));
+            if (system::due(drive, here->state, within)) *here = system::sampled(drive, *here, u.start, within);
         }
         new (there) Evaluation(advance(drive, *here, u, S(course.instants[i + 1] - course.instants[i])));
         std::swap(here, there);
         if (has_bounds) check_bounds<S>(drive, *here, course.instants[i + 1]);
-        if (course.keep[i]) record(drive.output(*here, u.end));
+        if (course.keep[i]) record(shown<S>(drive, *here, u.end));
     }
     return here->state;
 }
@@ -185,7 +221,7 @@ template <class S, class Drive>
 inline constexpr bool inlines =
     !std::is_same_v<Drive, CompiledDrive<S>> && !(differentiates<S> && std::is_same_v<Drive, ShortDrive<S>>);
 
-/// Runs `drive` in steps of fourth order, with events, and calls record(output) at the end of each step to be kept.
+/// Runs `drive` in steps of fourth order, with events, and calls record(outputs) at the end of each step to be kept.
 template <class S, class Record>
 typename CompiledDrive<S>::State run(const CompiledDrive<S>& drive, const typename CompiledDrive<S>::State& start,
                                      const Course& course, Record&& record, const Pause& pause) {
@@ -197,7 +233,7 @@ typename CompiledDrive<S>::State run(const CompiledDrive<S>& drive, const typena
     });
 }
 
-/// How a run from rest went.
+/// How a run went.
 template <class S>
 struct Tally {
     S twist{0.0};              ///< largest recorded, rad
@@ -206,24 +242,25 @@ struct Tally {
     S sound{0.0};              ///< 1 where all outputs at all samples are numbers up to the largest
 };
 
-/// Runs a drive from rest and calls record(output) at the start, too. Where the gear vibrates faster than `max_rate` [rad/s] at
-/// rest only that is told, with a twist of 0; where it does in all lanes nothing is run.
-template <class S, class Record>
-Tally<S> run_from_rest(const AnyPositionDrive<S>& given, const Course& course, double max_rate, Record&& record,
-                       const Pause& pause) {
+/// Runs a drive from start(drive, input) and calls record(outputs) there, too. Where the gear vibrates faster than `max_rate`
+/// [rad/s] at rest only that is told, with a twist of 0; where it does in all lanes nothing is run.
+template <class S, class Start, class Record>
+Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const Course& course, double max_rate, Record&& record,
+                  const Pause& pause) {
     const CompiledDrive<S> drive = given.compile();
     const S at_rest = drive.fastest(S(0.0)), on_bristles = drive.bristle_vibration();
     const auto too_fast = at_rest > S(max_rate);
     if (all(too_fast)) return {S(0.0), at_rest, on_bristles, S(0.0)};
     S twist{0.0}, sound{1.0};
-    const auto note = [&](const Output<S>& output) {
-        record(output);
-        sound = min(sound, soundness(output));
-        twist = max(twist, abs(output.twist));
+    const auto note = [&](const Outputs<S>& values) {
+        record(values);
+        sound = min(sound, soundness(values));
+        twist = max(twist, abs(values[twist_channel]));
     };
     const Input<S> at_start = interval<S>(course.inputs).start;
-    note(drive.output(drive.evaluate(drive.rest(), at_start), at_start));
-    run<S>(drive, drive.rest(), course, note, pause);
+    const auto from = start(drive, at_start);
+    note(shown<S>(drive, begun(drive, from, at_start, S(missed(course.first_step()))), at_start));
+    run<S>(drive, from, course, note, pause);
     return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.fastest(twist)), on_bristles, sound};
 }
 

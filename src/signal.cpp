@@ -53,14 +53,14 @@ void evaluate_together(const Signal& signal, const double* instants, Side side, 
     rate.write(rates);
 }
 
-/// Lays out one signal; its values go to every `driving`th number from `values` on, its rates likewise.
+/// Lays out one signal; its values go to every `input_count`th number from `values` on, its rates likewise.
 void lay_out(const Signal& signal, const double* instants, std::size_t steps, double* values, double* rates) {
     if (steps == 0) return;
     constexpr std::size_t most = 256;  // steps at a time, so that what is between stays in the nearest memory
     double t[2 * most + 1], value[2 * most + 1], rate[2 * most + 1];
     const auto put = [&](std::size_t place, std::size_t from) {
-        values[place * driving] = value[from];
-        if (rates) rates[place * driving] = rate[from];
+        values[place * input_count] = value[from];
+        rates[place * input_count] = rate[from];
     };
     for (std::size_t first = 0; first < steps; first += most) {
         const std::size_t count = std::min(most, steps - first);
@@ -100,24 +100,23 @@ void evaluate(const Signal& signal, const double* instants, std::size_t count, S
     std::copy(last_rates, last_rates + rest, rates + whole);
 }
 
-Unbroken::Unbroken(const Signals& signals_, double begin_)
-    : signals(signals_),
-      begin(begin_),
-      command(piece_at(signals.command, begin, Side::after)),
-      load_torque(piece_at(signals.load_torque, begin, Side::after)),
-      temperature(piece_at(signals.temperature, begin, Side::after)) {}
+Unbroken::Unbroken(const Signals& signals_, double begin_) : signals(signals_), begin(begin_) {
+    for (int i = 0; i < signal_count; ++i) piece[i] = piece_at(*signals[i], begin, Side::after);
+}
 
 Input<double> Unbroken::at(double fraction, double dt) const {
-    const double instant = begin + fraction * dt;
-    const Value commanded = along(signals.command, command, instant);
-    return {commanded.value, commanded.rate, along(signals.load_torque, load_torque, instant).value,
-            along(signals.temperature, temperature, instant).value};
+    static_assert(input_count == 2 * signal_count);
+    Array<double, input_count> numbers;
+    for (int i = 0; i < signal_count; ++i) {
+        const Value found = along(*signals[i], piece[i], begin + fraction * dt);
+        numbers[2 * i] = found.value;
+        numbers[2 * i + 1] = found.rate;
+    }
+    return shaped<Input<double>>(numbers);
 }
 
 void lay_out(const Signals& signals, const double* instants, std::size_t steps, double* inputs) {
-    lay_out(signals.command, instants, steps, inputs, inputs + 1);
-    lay_out(signals.load_torque, instants, steps, inputs + 2, nullptr);
-    lay_out(signals.temperature, instants, steps, inputs + 3, nullptr);
+    for (int i = 0; i < signal_count; ++i) lay_out(*signals[i], instants, steps, inputs + 2 * i, inputs + 2 * i + 1);
 }
 
 }  // namespace strainwave::host

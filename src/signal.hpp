@@ -25,16 +25,15 @@ enum class Side { before, after };
 /// The signal, and its rate, at each of some instants [s], in any order.
 void evaluate(const Signal& signal, const double* instants, std::size_t count, Side side, double* values, double* rates);
 
-/// What drives a drive, one signal each.
-struct Signals {
-    const Signal &command, &load_torque, &temperature;
-};
+/// How many signals act on a drive: the command, the input of its load, the temperature.
+inline constexpr int signal_count = 3;
+using Signals = Array<const Signal*, signal_count>;
 
 /// The inputs from one instant until before the next at which one of them jumps: exactly, at any fraction of the way.
 class Unbroken {
     const Signals signals;
     const double begin;
-    const std::size_t command, load_torque, temperature;  ///< which piece of each holds
+    Array<std::size_t, signal_count> piece;  ///< which of each holds
 
 public:
     Unbroken(const Signals& signals_, double begin_);

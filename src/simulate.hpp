@@ -9,14 +9,7 @@
 /// The ways to run a course, compiled once for every instruction set.
 namespace strainwave::host {
 
-using Drive = AnyPositionDrive<double>;
-
-inline constexpr int channels = [] {
-    Output<double> output{};
-    strainwave::detail::Counter<double> counter;
-    Output<double>::fields(output, counter);
-    return counter.count;
-}();
+using Drive = AnyDrive<double>;
 
 /// How many members of a crowd take every step together, and how many derivatives a run gives: those of one register. Whatever
 /// the number, each has the bits that it has alone.
@@ -29,6 +22,21 @@ struct Variation {
     std::vector<int> numbers;
     const double* values;
     std::size_t members;
+};
+
+/// Where runs begin: at rest, or where some quantities are known: values[q * members + m] is quantity `quantities[q]` of member m.
+struct Start {
+    bool at_rest = true;
+    std::vector<int> quantities{};
+    const double* values = nullptr;
+    std::size_t members = 1;
+
+    initial::Known<double> of(std::size_t member) const {
+        initial::Known<double> known{};
+        for (std::size_t q = 0; q < quantities.size(); ++q)
+            known.set(initial::Quantity(quantities[q]), values[q * members + member]);
+        return known;
+    }
 };
 
 /// How the run of a member went.
@@ -44,9 +52,16 @@ struct Verdict {
 /// How steps are taken.
 enum class Method { exponential, moreau_jean, rosenbrock };
 
-/// One trajectory in the steps of its course. Writes channel c of kept sample k to out[c * samples + k].
-Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
-                      std::size_t samples, const Pause& pause);
+/// Where a run writes: row r of sample k, from out[0] on, to out[r * samples + k], being channel recorded[r].
+struct Rows {
+    const std::vector<int>& recorded;
+    double* out;
+    std::size_t samples;
+};
+
+/// One trajectory in the steps of its course.
+Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, const Rows& rows,
+                      const Pause& pause);
 
 /// No step was short enough to keep the tolerance, between two instants [s].
 struct ToleranceMissed {
@@ -71,17 +86,17 @@ struct Instants {
 };
 
 /// One trajectory in at most `most` steps, as long as a tolerance allows, that end at all of `ends`, of which the first is its
-/// begin and between which no signal jumps. Writes channel c at wanted.at[k] to out[c * samples + k]. `pause` is called with the
-/// number of ends reached. Throws OutOfBounds, ToleranceMissed, StepsSpent.
+/// begin and between which no signal jumps. Samples are those at `wanted`. `pause` is called with the number of ends reached.
+/// Throws OutOfBounds, ToleranceMissed, StepsSpent.
 Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Signals& signals, const Instants& ends,
-                                 const integrate::Tolerance& tolerance, long most, const Instants& wanted, double* out,
-                                 std::size_t samples, Steps& steps, const Pause& pause);
+                                 const integrate::Tolerance& tolerance, long most, const Instants& wanted, const Rows& rows,
+                                 Steps& steps, const Pause& pause);
 
-/// Members side by side, from rest, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
+/// Members side by side, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
 /// not-a-number behind. Of a member whose gear vibrates faster than `fastest` [rad/s] at rest only that is told, with a twist of
 /// 0. `pause` is called with the number of steps done, on this thread.
-std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
+std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Start& start, const Course& course,
                                    const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
                                    const Pause& pause);
 
@@ -89,8 +104,14 @@ std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variatio
 
 /// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
 Drive::State rest(const Drive& drive);
+/// Where it begins if some quantities are known: its transmission error is not finite where there is no such state.
+Drive::State started(const Drive& drive, const initial::Known<double>& known, const Input<double>& u);
 /// With the slip direction of each shaft as its speed and its friction have it.
 Drive::State consistent(const Drive& drive, const Drive::State& x);
+/// Where a run begins: consistent, and sampled by a controller that samples.
+Drive::State begin(const Drive& drive, const Drive::State& x, const Input<double>& u);
+/// When its controller acts.
+control::Schedule<double> schedule(const Drive& drive, const Drive::State& x);
 /// With what friction remembers after `dt` [s] at constant speeds.
 Drive::State aged(const Drive& drive, const Drive::State& x, const Input<double>& u, double dt);
 /// With its hysteresis brought up to date at a twist [rad].
@@ -113,13 +134,13 @@ double bristle_vibration(const Drive& drive);
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
 
 /// A member that runs alone; writes its outputs through `record`.
-Tally<double> simulate_member(const Drive& drive, const Course& course, double max_rate,
-                              const std::function<void(const Output<double>&)>& record, const Pause& pause);
+Tally<double> simulate_member(const Drive& drive, const Drive::State& start, const Course& course, double max_rate,
+                              const std::function<void(const Outputs<double>&)>& record, const Pause& pause);
 
-/// One trajectory from rest and its derivatives with respect to the numbered parameters of the drive.
+/// One trajectory and its derivatives with respect to the numbered parameters of the drive.
 /// Writes values, beginning with the start, to out[c * (kept + 1) + k], derivatives to slopes[(p * channels + c) * (kept + 1) + k].
-void differentiate(const Drive& drive, const Course& course, const std::vector<int>& parameters, double* out, double* slopes,
-                   std::size_t kept, const Pause& pause);
+void differentiate(const Drive& drive, const Start& start, const Course& course, const std::vector<int>& parameters, double* out,
+                   double* slopes, std::size_t kept, const Pause& pause);
 
 /// The rates of the n continuous numbers of a state, its memory held, and then the outputs: value i in out[i], its derivative with
 /// respect to continuous number p, and then to the inputs, in slopes[p * (n + channels) + i].
@@ -139,7 +160,10 @@ struct Kernels {
     decltype(&host::evaluate) evaluate;
     decltype(&host::lay_out) lay_out;
     decltype(&host::rest) rest;
+    decltype(&host::started) started;
     decltype(&host::consistent) consistent;
+    decltype(&host::begin) begin;
+    decltype(&host::schedule) schedule;
     decltype(&host::aged) aged;
     decltype(&host::advance_hysteresis) advance_hysteresis;
     decltype(&host::break_away) break_away;

@@ -1,5 +1,6 @@
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <exception>
 #include <limits>
@@ -8,6 +9,7 @@
 
 #include "describe.hpp"
 #include "simulate.hpp"
+#include "state.hpp"
 
 namespace strainwave::host {
 
@@ -26,7 +28,7 @@ void write(const Lanes& x, double* to) { x.write(to); }
 /// Rows of samples, one for each output recorded of each of some members, filled column by column. They lie far apart, so a stretch
 /// of columns is gathered before it is written.
 template <class S>
-class Rows {
+class Gathered {
     static constexpr std::size_t stretch = 16, width = sizeof(S) / sizeof(double);
     const std::vector<int>& recorded;
     double* const out;
@@ -36,7 +38,7 @@ class Rows {
 
 public:
     /// `count` rows of each output from `out_` on, those of an output `members_` rows from those of the one before.
-    Rows(const std::vector<int>& recorded_, double* out_, std::size_t members_, std::size_t samples_, std::size_t count_)
+    Gathered(const std::vector<int>& recorded_, double* out_, std::size_t members_, std::size_t samples_, std::size_t count_)
         : recorded(recorded_),
           out(out_),
           members(members_),
@@ -44,7 +46,7 @@ public:
           count(count_),
           held(recorded_.size() * stretch * width) {}
 
-    void add(const Array<S, channels>& values) {
+    void add(const Outputs<S>& values) {
         for (std::size_t c = 0; c < recorded.size(); ++c) write(values[recorded[c]], &held[(c * stretch + gathered) * width]);
         if (++gathered == stretch) flush();
     }
@@ -64,6 +66,7 @@ public:
 class Crowd {
     const Parts parts;
     const Variation& variation;
+    const Start& start;
     const Course& course;
     const std::vector<int>& recorded;
     const double fastest;
@@ -75,10 +78,11 @@ class Crowd {
     std::atomic<bool> stopping{false};
 
 public:
-    Crowd(const Drive& drive, const Variation& variation_, const Course& course_, const std::vector<int>& recorded_,
-          double fastest_, double* out_, std::size_t kept)
+    Crowd(const Drive& drive, const Variation& variation_, const Start& start_, const Course& course_,
+          const std::vector<int>& recorded_, double fastest_, double* out_, std::size_t kept)
         : parts(parts_of(drive)),
           variation(variation_),
+          start(start_),
           course(course_),
           recorded(recorded_),
           fastest(fastest_),
@@ -112,8 +116,8 @@ private:
 
     /// Members `first` and following as one drive; a pack that is not full repeats its last member.
     template <class S>
-    AnyPositionDrive<S> assembled_from(std::size_t first, std::size_t count) const {
-        return assembled<AnyPositionDrive<S>, S>(parts.shape, [&](int i) {
+    AnyDrive<S> assembled_from(std::size_t first, std::size_t count) const {
+        return assembled<AnyDrive<S>, S>(parts.shape, [&](int i) {
             if constexpr (std::is_same_v<S, double>) {
                 return number(i, first);
             } else {
@@ -124,12 +128,35 @@ private:
         });
     }
 
+    /// Where a member begins.
+    Drive::State beginning(const Drive& drive, std::size_t member) const {
+        return start.at_rest ? rest(drive) : started(drive, start.of(member), interval<double>(course.inputs).start);
+    }
+    /// Why a member cannot begin; empty if it can.
+    static std::string problem_at(const Drive::State& from) {
+        return std::isfinite(from.continuous.transmission_error) ? "" : "there is no state that has the quantities of initial";
+    }
+    /// The states of members as those of one drive.
+    AnyDrive<Lanes>::State together(const std::vector<std::vector<double>>& numbers, std::size_t first) const {
+        return state_of(assembled_from<Lanes>(first, numbers.size()), [&](int i) {
+            Lanes x;
+            for (int lane = 0; lane < lanes; ++lane) x.set(lane, numbers[std::min<std::size_t>(lane, numbers.size() - 1)][i]);
+            return x;
+        });
+    }
+
     /// Runs members as a pack; false where one of them cannot go all the way.
     bool run_together(std::size_t first, std::size_t count) {
-        for (std::size_t member = first; member < first + count; ++member)
-            if (!problem_of(assembled_from<double>(member, 1)).empty()) return false;
+        std::vector<std::vector<double>> numbers;
+        for (std::size_t member = first; member < first + count; ++member) {
+            const Drive drive = assembled_from<double>(member, 1);
+            if (!problem_of(drive).empty()) return false;
+            const Drive::State from = beginning(drive, member);
+            if (!problem_at(from).empty()) return false;
+            numbers.push_back(numbers_of(drive, from));
+        }
         try {
-            run_members<Lanes>(first, count);
+            run_members<Lanes>(first, count, together(numbers, first));
         } catch (const OutOfBounds&) {
             return false;
         }
@@ -137,18 +164,18 @@ private:
     }
 
     template <class S>
-    void run_members(std::size_t first, std::size_t count) {
-        Rows<S> rows(recorded, out + first * samples, variation.members, samples, count);
-        const auto record = [&](const Output<S>& output) { rows.add(flattened<S>(output)); };
+    void run_members(std::size_t first, std::size_t count, const typename AnyDrive<S>::State& from) {
+        Gathered<S> rows(recorded, out + first * samples, variation.members, samples, count);
+        const auto record = [&](const Outputs<S>& values) { rows.add(values); };
         const auto pause = [this](std::size_t) {
             if (stopping) throw Stopped{};
         };
         const Tally<S> tally = [&] {
             const auto drive = assembled_from<S>(first, count);
             if constexpr (std::is_same_v<S, double>)
-                return simulate_member(drive, course, fastest, record, pause);
+                return simulate_member(drive, from, course, fastest, record, pause);
             else
-                return run_from_rest<S>(drive, course, fastest, record, pause);
+                return run_from<S>(drive, [&](const auto&, const auto&) { return from; }, course, fastest, record, pause);
         }();
         rows.flush();
         if (rows.empty()) clear(first, count);
@@ -171,10 +198,14 @@ private:
 
     void run_alone(std::size_t member) {
         clear(member, 1);
-        verdicts[member].problem = problem_of(assembled_from<double>(member, 1));
+        const Drive drive = assembled_from<double>(member, 1);
+        verdicts[member].problem = problem_of(drive);
+        if (!verdicts[member].problem.empty()) return;
+        const Drive::State from = beginning(drive, member);
+        verdicts[member].problem = problem_at(from);
         if (!verdicts[member].problem.empty()) return;
         try {
-            run_members<double>(member, 1);
+            run_members<double>(member, 1, from);
         } catch (const OutOfBounds& error) {
             verdicts[member].refusal = error;
         }
@@ -183,10 +214,10 @@ private:
 
 }  // namespace
 
-std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Course& course,
+std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Start& start, const Course& course,
                                    const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
                                    const Pause& pause) {
-    Crowd crowd(drive, variation, course, recorded, fastest, out, kept);
+    Crowd crowd(drive, variation, start, course, recorded, fastest, out, kept);
     std::mutex lock;
     std::condition_variable ended;
     std::exception_ptr failure;

@@ -4,24 +4,22 @@ namespace strainwave::host {
 
 namespace {
 
-/// Writes outputs one after the other to their place among `samples`.
+/// Writes outputs one after the other to their place among the samples.
 struct Writer {
-    double* out;
-    std::size_t samples;
+    const Rows& rows;
     std::size_t k = 0;
 
-    void operator()(const Output<double>& output) {
-        const auto values = flattened<double>(output);
-        for (int c = 0; c < channels; ++c) out[c * samples + k] = values[c];
+    void operator()(const Outputs<double>& values) {
+        for (std::size_t r = 0; r < rows.recorded.size(); ++r) rows.out[r * rows.samples + k] = values[rows.recorded[r]];
         ++k;
     }
 };
 
 }  // namespace
 
-Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, double* out,
-                      std::size_t samples, const Pause& pause) {
-    Writer record{out, samples};
+Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, const Rows& rows,
+                      const Pause& pause) {
+    Writer record{rows};
     const auto compiled = drive.compile();
     if (method == Method::exponential) return run<double>(compiled, start, course, record, pause);
     return run_specialised<double>(compiled, start, [&](const auto& special, const auto& from) {
@@ -55,7 +53,7 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     for (std::size_t i = 0; i + 1 < ends.count; ++i) {
         const double begin = ends.at[i], dt = ends.at[i + 1] - begin;
         const Unbroken u(signals, begin);
-        const Evaluation start = drive.evaluate(x, u.at(0.0, dt));
+        const Evaluation start = system::up_to_date(drive, drive.evaluate(x, u.at(0.0, dt)), u.at(0.0, dt), missed(dt));
         if (has_bounds) check_bounds<double>(drive, start, begin);
         const auto within = [&](double done, double to, const Evaluation& end, const auto& standing_at) {
             if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
@@ -64,7 +62,7 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
             const double until = to < 1.0 ? begin + to * dt : ends.at[i + 1];
             while (record.k < wanted.count && wanted.at[record.k] <= until) {
                 const double at = clip((wanted.at[record.k] - begin) / dt, done, to);
-                record(drive.output(standing_at(at), u.at(at, dt)));
+                record(shown<double>(drive, standing_at(at), u.at(at, dt)));
             }
         };
         x = adaptive.through(start, u, dt, within).state;
@@ -77,17 +75,17 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
 }  // namespace
 
 Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, const Signals& signals, const Instants& ends,
-                                 const integrate::Tolerance& tolerance, long most, const Instants& wanted, double* out,
-                                 std::size_t samples, Steps& steps, const Pause& pause) {
-    Writer record{out, samples};
+                                 const integrate::Tolerance& tolerance, long most, const Instants& wanted, const Rows& rows,
+                                 Steps& steps, const Pause& pause) {
+    Writer record{rows};
     return run_specialised<double>(drive.compile(), start, [&](const auto& special, const auto& from) {
         return run_adaptively(special, from, signals, ends, tolerance, most, wanted, record, steps, pause);
     });
 }
 
-Tally<double> simulate_member(const Drive& drive, const Course& course, double max_rate,
-                              const std::function<void(const Output<double>&)>& record, const Pause& pause) {
-    return run_from_rest<double>(drive, course, max_rate, record, pause);
+Tally<double> simulate_member(const Drive& drive, const Drive::State& start, const Course& course, double max_rate,
+                              const std::function<void(const Outputs<double>&)>& record, const Pause& pause) {
+    return run_from<double>(drive, [&](const auto&, const auto&) { return start; }, course, max_rate, record, pause);
 }
 
 }  // namespace strainwave::host

@@ -21,7 +21,7 @@ struct Sifted {
 };
 template <int most, class S, class... Kept, class First, class... Rest>
 struct Sifted<most, Choice<S, Kept...>, First, Rest...> {
-    static constexpr bool fits = strainwave::detail::state_size<S, First>() <= most;
+    static constexpr bool fits = strainwave::detail::kept_size<Holds::state, S, First>() <= most;
     using type = typename Sifted<most, std::conditional_t<fits, Choice<S, Kept..., First>, Choice<S, Kept...>>, Rest...>::type;
 };
 template <int most, class S, class... Law>
@@ -38,16 +38,16 @@ struct Short<most, Layers<Pack<n>, Law, Modulator...>> : Short<most, Law> {};
 
 template <class Drive>
 struct ShortDriveOf;
-template <class S, class Kinematics, class Error, class Noise, class Stiffness, class Hysteresis, class FrictionInput,
-          class FrictionMesh, class FrictionOutput, class Motor, class Control, class Load>
+template <class S, class Control, class Motor, class Kinematics, class Error, class Noise, class Stiffness, class Hysteresis,
+          class FrictionInput, class FrictionMesh, class FrictionOutput, class Load, class Sensors_>
 struct ShortDriveOf<
-    PositionDrive<S, Gear<S, Kinematics, Error, Noise, Stiffness, Hysteresis, FrictionInput, FrictionMesh, FrictionOutput>, Motor,
-                  Control, Load>> {
-    using type = PositionDrive<
-        S,
+    Drive<S, Control, Motor, Gear<S, Kinematics, Error, Noise, Stiffness, Hysteresis, FrictionInput, FrictionMesh, FrictionOutput>,
+          Load, Sensors_>> {
+    using type = Drive<
+        S, Control, Motor,
         Gear<S, Kinematics, Error, Noise, Stiffness, typename Short<16, Hysteresis>::type, typename Short<1, FrictionInput>::type,
              typename Short<1, FrictionMesh>::type, typename Short<1, FrictionOutput>::type>,
-        Motor, Control, Load>;
+        Load, Sensors<S, sensor::Ideal<S>>>;
 };
 
 /// One of a list of models: a choice only if there are several.
@@ -62,18 +62,18 @@ struct OneOf<S, Law> {
 
 /// The models of most papers and of most catalogues.
 template <class S, template <class...> class... FrictionInput>
-using Usual = PositionDrive<
-    S,
-    Gear<S, AnyOf<S, kinematics::Models>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
-         AnyOf<S, List<stiffness::Linear, stiffness::Piecewise, stiffness::ThreeSegment, stiffness::Cubic>>,
-         hysteresis::MaxwellSlip<S>, typename OneOf<S, FrictionInput...>::type, friction::Viscous<S>, friction::Viscous<S>>,
-    motor::DC<S>, AnyOf<S, List<control::OpenLoop, control::PID>>, AnyOf<S, List<load::Inertia, load::Pendulum>>>;
+using Usual =
+    Drive<S, AnyOf<S, List<control::OpenLoop, control::PID>>, motor::DC<S>,
+          Gear<S, AnyOf<S, kinematics::Models>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
+               AnyOf<S, List<stiffness::Linear, stiffness::Piecewise, stiffness::ThreeSegment, stiffness::Cubic>>,
+               hysteresis::MaxwellSlip<S>, typename OneOf<S, FrictionInput...>::type, friction::Viscous<S>, friction::Viscous<S>>,
+          AnyOf<S, List<load::Inertia, load::Pendulum>>, Sensors<S, sensor::Ideal<S>>>;
 
 }  // namespace detail
 
 /// A drive of any models, as a run compiles it.
 template <class S>
-using CompiledDrive = decltype(AnyPositionDrive<S>{}.compile());
+using CompiledDrive = decltype(AnyDrive<S>{}.compile());
 /// The same without the laws that have long states.
 template <class S>
 using ShortDrive = typename detail::ShortDriveOf<CompiledDrive<S>>::type;
@@ -89,6 +89,15 @@ template <class Part, class Law>
 inline constexpr bool holds = false;
 template <class S, class... Law, class Chosen>
 inline constexpr bool holds<Choice<S, Law...>, Chosen> = (std::is_same_v<Law, Chosen> || ...);
+
+template <class Part, class From>
+bool specialise(Part& part, const From& from);
+template <class S, class Sensor, class From>
+bool specialise(Sensors<S, Sensor>& sensors, const From& from) {
+    return specialise(sensors.input_angle, from.input_angle) && specialise(sensors.input_speed, from.input_speed) &&
+           specialise(sensors.output_angle, from.output_angle) && specialise(sensors.output_speed, from.output_speed) &&
+           specialise(sensors.current, from.current) && specialise(sensors.torque, from.torque);
+}
 
 /// Sets a part to the same law if it is among those that the part can be; says whether it is.
 template <class Part, class From>
@@ -127,7 +136,8 @@ bool specialise(Special& special, const CompiledDrive<S>& drive) {
            detail::specialise(gear.hysteresis, from.hysteresis) && detail::specialise(gear.friction_input, from.friction_input) &&
            detail::specialise(gear.friction_mesh, from.friction_mesh) &&
            detail::specialise(gear.friction_output, from.friction_output) && detail::specialise(special.motor, drive.motor) &&
-           detail::specialise(special.control, drive.control) && detail::specialise(special.load, drive.load);
+           detail::specialise(special.control, drive.control) && detail::specialise(special.load, drive.load) &&
+           detail::specialise(special.sensors, drive.sensors);
 }
 
 namespace detail {
@@ -162,6 +172,8 @@ To converted(To to, const From& from) {
     motion.output_speed = from.continuous.output_speed;
     detail::convert<S>(motion.motor, from.continuous.motor);
     detail::convert<S>(motion.control, from.continuous.control);
+    detail::convert<S>(motion.sensors, from.continuous.sensors);
+    detail::convert<S>(to.discrete.control, from.discrete.control);
     detail::convert<S>(motion.friction_input, from.continuous.friction_input);
     detail::convert<S>(motion.friction_mesh, from.continuous.friction_mesh);
     detail::convert<S>(motion.friction_output, from.continuous.friction_output);

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -9,46 +8,74 @@
 /// The state of a drive as the numbers that its models have, one after the other. What is continuous comes first.
 namespace strainwave::host {
 
-/// Visits the numbers of a state: number(value, part, name, field), where `part` is the part of the drive whose state it belongs
-/// to, or "" if it is the drive's own.
+/// Visits the numbers of a state: number(value, part, name, element, field). `part` is the path of the part of the drive whose
+/// state the number belongs to, or "" if it is the drive's own; `name` what follows it.
 template <class Drive, class Number>
 class StateWalk {
     const Drive& drive;
     const Number& number;
+    const std::string path;
 
 public:
-    StateWalk(const Drive& drive_, const Number& number_) : drive(drive_), number(number_) {}
+    StateWalk(const Drive& drive_, const Number& number_, const std::string& path_ = "")
+        : drive(drive_), number(number_), path(path_) {}
 
     template <class T>
     void operator()(T& member, const Field& field) const {
         if constexpr (is_slots<std::remove_const_t<T>>) {
+            const std::string place = path + field.name;
             drive.stateful_parts([&](const char* part, const auto& law) {
-                if (std::strcmp(part, field.name) == 0) of_model(law, member.slot, part);
+                if (place == part) of_model(law, member, place);
             });
         } else if constexpr (Described<T>) {
-            T::fields(member, *this);
+            const std::string name = field.name;
+            const bool is_part = name != "continuous" && name != "discrete";
+            T::fields(member, StateWalk(drive, number, is_part ? path + name + "." : path));
         } else {
-            number(member, "", -1, field);
+            number(member, "", field.name, -1, field);
         }
     }
 
 private:
-    template <class Law, class Slot>
-    void of_model(const Law& law, Slot& slot, const char* part) const {
+    template <class Law, class S, int n, Holds what, int few>
+    void of_model(const Law& law, const Slots<S, n, what, few>& slots, const std::string& part) const {
+        of_model<what>(law, slots.slot, part);
+    }
+    template <class Law, class S, int n, Holds what, int few>
+    void of_model(const Law& law, Slots<S, n, what, few>& slots, const std::string& part) const {
+        of_model<what>(law, slots.slot, part);
+    }
+    template <Holds what, class Law, class Slot>
+    void of_model(const Law& law, Slot& slot, const std::string& part) const {
         if constexpr (is_choice<Law>) {
-            law.visit([&](const auto& chosen) { of_model(chosen, slot, part); });
+            law.visit([&](const auto& chosen) { of_model<what>(chosen, slot, part); });
         } else if constexpr (friction::Modulation<Law>) {
-            of_model(law.law, slot, part);
+            of_model<what>(law.law, slot, part);
         } else {
-            int i = 0;
-            typename Law::State names{};
-            Law::State::fields(names, [&]<class T>(const T& member, const Field& field) {
-                if constexpr (is_array<T>)
-                    for (int k = 0; k < member.size(); ++k) number(slot[i++], part, k, field);
-                else
-                    number(slot[i++], part, -1, field);
-            });
+            // Law and slots are found by their names; those that do not fit are of different parts.
+            using X = strainwave::detail::KeptIn<what, std::remove_cvref_t<decltype(slot[0])>, Law>;
+            if constexpr (size_of<std::remove_cvref_t<decltype(slot[0])>, X> <= int(sizeof slot.item / sizeof slot.item[0])) {
+                int i = 0;
+                each<what>(law, slot, i, part, "");
+            }
         }
+    }
+    /// The numbers of a law, of which slots hold those from number `i` on.
+    template <Holds what, class Law, class Slot>
+    void each(const Law& law, Slot& slot, int& i, const std::string& part, const std::string& before) const {
+        using X = strainwave::detail::KeptIn<what, std::remove_cvref_t<decltype(slot[0])>, Law>;
+        X names{};
+        X::fields(names, [&]<class T>(const T& member, const Field& field) {
+            if constexpr (is_slots<T>) {  // of the law that this one holds: as many numbers as there is room for
+                const int first = i;
+                law.law.visit([&](const auto& inner) { each<Holds::state>(inner, slot, i, part, before + field.name + "."); });
+                i = first + member.slot.size();
+            } else if constexpr (is_array<T>) {
+                for (int k = 0; k < member.size(); ++k) number(slot[i++], part, before + field.name, k, field);
+            } else {
+                number(slot[i++], part, before + field.name, -1, field);
+            }
+        });
     }
 };
 
@@ -63,7 +90,7 @@ template <class Drive, class State>
 auto numbers_of(const Drive& drive, const State& state) {
     using S = std::remove_const_t<std::remove_reference_t<decltype(drive.gear.damping)>>;
     std::vector<S> numbers;
-    each_number(drive, state, [&](const S& x, const char*, int, const Field&) { numbers.push_back(x); });
+    each_number(drive, state, [&](const S& x, const std::string&, const std::string&, int, const Field&) { numbers.push_back(x); });
     return numbers;
 }
 
@@ -72,7 +99,7 @@ template <class Drive, class Number>
 typename Drive::State state_of(const Drive& drive, const Number& number) {
     typename Drive::State state = drive.initial_state();
     int i = 0;
-    each_number(drive, state, [&](auto& x, const char*, int, const Field&) { x = number(i++); });
+    each_number(drive, state, [&](auto& x, const std::string&, const std::string&, int, const Field&) { x = number(i++); });
     return state;
 }
 

@@ -16,15 +16,15 @@ PACKAGE = Path(strainwave.__file__).parent
 # Plain attributes carry no signature, so their types stand here.
 ATTRIBUTES = {
     r"\.fields$": "fields: tuple[dict[str, Any], ...]",
+    r"\.quantities$": "quantities: tuple[tuple[str, str, str], ...]",
     r"\.families$": "families: dict[str, dict[str, type[Any]]]",
-    r"\.outputs$": "outputs: tuple[tuple[str, str, str], ...]",
 }
 
 
 def stubs() -> dict[Path, str]:
     """The text of each stub, by its place in the package."""
     of_models = {model.__module__ for family in _core.families.values() for model in family.values()}
-    modules = ("strainwave._core", "strainwave.drives", *sorted(of_models))
+    modules = ("strainwave._core", *sorted(of_models))
     return {PACKAGE / f"{module.rpartition('.')[2]}.pyi": stub(module) for module in modules}
 
 

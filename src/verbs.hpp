@@ -487,7 +487,6 @@ void bind_model(nb::handle scope, const char* python_name) {
     error_verbs(c);
     noise_verbs(c);
     claims(c);
-    if constexpr (requires { M::command_unit; }) c.type.attr("command_unit") = M::command_unit;
 }
 
 }  // namespace strainwave::host

@@ -21,9 +21,10 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from strainwave import _core
-from strainwave.simulation import METHODS, differentiate
+from strainwave.signals import outputs
+from strainwave.simulation import METHODS, Excitation, differentiate
 
-from tests.stress import MOST_STEPS, OUTPUTS, STEPS, model, neighbours, step
+from tests.stress import MOST_STEPS, STEPS, acting_on, model, neighbours, step
 from tests.workers import answers
 
 DERIVATIVES = 12
@@ -34,10 +35,10 @@ def digest(number: int) -> dict[str, str]:
     """Of each run of a drive."""
     warnings.simplefilter("ignore")
     random = np.random.default_rng(number)
-    drive = model(sw.drives.PositionDrive, random)
+    drive = model(sw.Drive, random)
     dt = step(drive, random)
     volts = sw.scenario.sine(random.uniform(0.0, 48.0), random.uniform(0.5, 5.0) / (STEPS * dt), STEPS * dt)
-    acting: dict[str, Any] = {"load_torque": random.normal(0.0, 10.0), "temperature": random.uniform(230.0, 370.0)}
+    acting: dict[str, Any] = {"inputs": acting_on(drive, random)}
     varied, sample = neighbours(drive, random), 5.0 * dt
     count = min(DERIVATIVES, len(_core.parameters(drive)))
     free = sorted(random.choice(len(_core.parameters(drive)), count, replace=False).tolist())
@@ -46,8 +47,8 @@ def digest(number: int) -> dict[str, str]:
         method: partial(sw.simulate, drive, volts, dt, method=method, **course) for method in METHODS
     }
     runs["adaptive"] = partial(sw.simulate_adaptively, drive, volts, 1e-5, most_steps=MOST_STEPS, **course)
-    runs["many"] = partial(sw.simulate_many, drive, volts, varied, dt, record=OUTPUTS, **course)
-    runs["derivatives"] = partial(differentiate, drive, volts, free, dt, sample)
+    runs["many"] = partial(sw.simulate_many, drive, volts, varied, dt, record=list(outputs(drive)), **course)
+    runs["derivatives"] = partial(differentiate, drive, Excitation(volts), free, dt, sample)
     return {kind: bits(run) for kind, run in runs.items()}
 
 

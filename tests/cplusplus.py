@@ -25,7 +25,7 @@ ZIG = (sys.executable, "-m", "ziglang", "c++")
 NAMESPACE = {"loads": "load", "kinematic_noise": "kinematic_error"}
 GEAR = ("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", "friction", "friction", "friction")
 PLACES = 3  # of friction, the last parts of a gear
-DRIVE = ("motor", "control", "loads")
+DRIVE = ("control", "motor", "loads", "sensor")
 
 
 def compiler(name: str) -> tuple[str, ...]:
@@ -62,9 +62,10 @@ def drives(scalar: str) -> list[str]:
     """As many drives as the longest list has models; shorter lists go round, friction is one ahead from place to place."""
     count = max(map(len, _core.families.values()))
     gear = [islice(listed(family, scalar), max(0, i + PLACES - len(GEAR)), None) for i, family in enumerate(GEAR)]
-    drive = [listed(family, scalar) for family in DRIVE]
+    control, motor, load, sensor = (listed(family, scalar) for family in DRIVE)
     return [
-        f"strainwave::PositionDrive<{scalar}, strainwave::Gear<{scalar}, {', '.join(map(next, gear))}>, "
-        f"{', '.join(map(next, drive))}>"
+        f"strainwave::Drive<{scalar}, {next(control)}, {next(motor)}, "
+        f"strainwave::Gear<{scalar}, {', '.join(map(next, gear))}>, {next(load)}, "
+        f"strainwave::Sensors<{scalar}, {next(sensor)}>>"
         for _ in range(count)
     ]

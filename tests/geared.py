@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import strainwave as sw
-from strainwave import _core
+from strainwave import _core, signals
 from strainwave.state import State
 
 K, RATIO = 1e4, 20.0
@@ -12,14 +12,14 @@ MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_e
 ARM = sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0)
 
 
-def geared(load: object = ARM, control: object = None, motor: sw.motor.DC = MOTOR, **parts: object) -> sw.drives.PositionDrive:
+def geared(load: object = ARM, control: object = None, motor: sw.motor.DC = MOTOR, **parts: object) -> sw.Drive:
     """A motor, a gear of ratio 20 with a linear spring, and a load; in open loop if no controller is given."""
     gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=RATIO), stiffness=sw.stiffness.Linear(k=K), damping=5.0)
-    return sw.drives.PositionDrive(gear=gear.replace(**parts), motor=motor, control=control or sw.control.OpenLoop(), load=load)
+    return sw.Drive(gear=gear.replace(**parts), motor=motor, control=control or sw.control.OpenLoop(), load=load)
 
 
-def outputs(drive: sw.drives.PositionDrive, state: State, *inputs: float) -> dict[str, float]:
+def outputs(drive: sw.Drive, state: State, *inputs: float) -> dict[str, float]:
     """The outputs in a state under command, load torque and temperature."""
     command, load_torque, temperature = (*inputs, *(0.0, 0.0, 293.15)[len(inputs) :])
-    values = _core.now(drive, state.numbers, np.array([command, 0.0, load_torque, temperature]))[:, 0]
-    return {name: float(value) for (name, _, _), value in zip(_core.outputs, values, strict=True)}
+    values = _core.now(drive, state.numbers, np.array([command, 0.0, load_torque, 0.0, temperature, 0.0]))[:, 0]
+    return {name: float(values[each.channel]) for name, each in signals.outputs(drive).items()}

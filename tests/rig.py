@@ -95,7 +95,7 @@ def from_input(gear: sw.Gear) -> tuple[Array, Array]:
     motor = sw.motor.DC(resistance=1.0, inductance=0.0, torque_constant=1.0, back_emf=0.0, inertia=1e-3)
     # by angle, as the rig does: by torque, the friction that falls with speed makes the input stick and slip
     servo = sw.control.PID(proportional=1e3, derivative=1.0, limit=1e3)
-    drive = sw.drives.PositionDrive(gear=gear, motor=motor, control=servo, load=sw.loads.Inertia(inertia=LOCKED))
+    drive = sw.Drive(gear=gear, motor=motor, control=servo, load=sw.loads.Inertia(inertia=LOCKED))
     run = sw.simulate(drive, sw.scenario.sine(amplitude=2.2e-3, frequency=0.02, duration=100.0), sample=1e-2)
     later = run.time > 30.0
     return run["input_angle"][later] / ratio, ratio * run["current"][later]
@@ -104,7 +104,7 @@ def from_input(gear: sw.Gear) -> tuple[Array, Array]:
 def from_output(gear: sw.Gear) -> tuple[Array, Array]:
     """The same of the other side: the input locked, the output loaded."""
     motor = sw.motor.DC(resistance=1.0, inductance=0.0, torque_constant=1.0, back_emf=0.0, inertia=LOCKED)
-    drive = sw.drives.PositionDrive(gear=gear, motor=motor, load=sw.loads.Inertia(inertia=0.1))
+    drive = sw.Drive(gear=gear, motor=motor, load=sw.loads.Inertia(inertia=0.1))
     load = sw.scenario.sine(amplitude=60.0, frequency=0.1, duration=20.0)
     run = sw.simulate(drive, sw.scenario.constant(0.0, duration=20.0), load_torque=load, sample=1e-2)
     later = run.time > 10.0

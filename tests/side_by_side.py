@@ -9,15 +9,14 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from strainwave import _core
+from strainwave.signals import outputs
 
 
-def side_by_side(
-    drives: Sequence[sw.drives.PositionDrive], command: sw.scenario.Scenario, dt: float, **others: Any
-) -> sw.Ensemble:
+def side_by_side(drives: Sequence[sw.Drive], command: sw.scenario.Scenario, dt: float, **others: Any) -> sw.Ensemble:
     """All numbers of all drives, all outputs recorded."""
     paths = [path for path, *_ in _core.parameters(drives[0])]
     values = np.array([[value for _, value, *_ in _core.parameters(drive)] for drive in drives])
-    record = [name for name, _, _ in _core.outputs]
+    record = list(outputs(drives[0]))
     parameters = dict(zip(paths, values.T, strict=True))
     with warnings.catch_warnings(action="ignore", category=sw.EnsembleWarning):  # of bristles too stiff for dt
         return sw.simulate_many(drives[0], command, parameters, dt, record=record, **others)

@@ -69,11 +69,16 @@ def numbers(field: Field) -> st.SearchStrategy[float]:
     return magnitudes if field["open"] or field["min"] > 0.0 else st.one_of(st.just(0.0), *5 * [magnitudes])
 
 
+def kinds_of(field: Field) -> list[Any]:
+    """The models that a part may be; of a gear and of sensors there is one kind."""
+    return list(field["options"].values()) if field["options"] else [type(field["default"])]
+
+
 def values(field: Field, length: int) -> st.SearchStrategy[Any]:
     """What a field may be; a sequence has this length, for those of one model are equally long."""
     match field["kind"]:
         case "part":
-            return gears if field["name"] == "gear" else st.one_of([built(kind) for kind in field["options"].values()])
+            return st.one_of([built(kind) for kind in kinds_of(field)])
         case "choice":
             return st.sampled_from(field["options"])
         case "count":
@@ -119,4 +124,11 @@ def models(family: str, *verbs: str, **claims: bool) -> st.SearchStrategy[Any]:
 
 
 gears = built(sw.Gear)
-drives = built(sw.drives.PositionDrive)
+drives = built(sw.Drive)
+# Those that are one system of differential equations, whose shafts are moved by torques.
+smooth_drives = drives.map(
+    lambda drive: drive.replace(
+        control=getattr(drive.control, "law", drive.control),
+        load=drive.load if hasattr(drive.load, "inertia") else sw.loads.Inertia(inertia=0.1),
+    )
+)

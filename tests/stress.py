@@ -28,13 +28,13 @@ import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave import _core
+from strainwave.signals import load_input, outputs
 from strainwave.simulation import METHODS, Excitation
 
 from tests.laws.test_gear import has_memory, passive, speeds
-from tests.strategies import AROUND_ONE, TYPICAL, Field
+from tests.strategies import AROUND_ONE, TYPICAL, Field, kinds_of
 from tests.workers import answers
 
-OUTPUTS = [name for name, _, _ in _core.outputs]
 STEPS = 100
 MOST_STEPS = 2000  # of a run to a tolerance
 MEMBERS = 8
@@ -63,7 +63,7 @@ def number(field: Field, random: np.random.Generator) -> float:
 def value(field: Field, length: int, random: np.random.Generator) -> Any:
     match field["kind"]:
         case "part":
-            options = [sw.Gear] if field["name"] == "gear" else list(field["options"].values())
+            options = kinds_of(field)
             return model(options[random.integers(len(options))], random)
         case "choice":
             return field["options"][random.integers(len(field["options"]))]
@@ -86,7 +86,14 @@ def model(kind: Any, random: np.random.Generator) -> Any:
             continue
 
 
-def neighbours(drive: sw.drives.PositionDrive, random: np.random.Generator) -> dict[str, list[float]]:
+def acting_on(drive: sw.Drive, random: np.random.Generator) -> dict[str, float]:
+    """Inputs besides the command."""
+    load = load_input(drive)
+    size = {"load_torque": 10.0, "output_angle": 1e-3}[load]
+    return {load: random.normal(0.0, size), "temperature": random.uniform(230.0, 370.0)}
+
+
+def neighbours(drive: sw.Drive, random: np.random.Generator) -> dict[str, list[float]]:
     """Values of three of its numbers for as many members as a pack holds, the first its own.
 
     None of those that are whole in some members only, which may differ in the last digit then: documented.
@@ -100,7 +107,7 @@ def neighbours(drive: sw.drives.PositionDrive, random: np.random.Generator) -> d
     return drawn
 
 
-def step(drive: sw.drives.PositionDrive, random: np.random.Generator) -> float:
+def step(drive: sw.Drive, random: np.random.Generator) -> float:
     """As users take it [s], or so that it follows the gear's vibration, mostly."""
     if random.random() < 0.5:
         return float(10.0 ** random.uniform(-5.0, -3.5))
@@ -123,13 +130,13 @@ class Outcome:
 def outcome(number: int) -> Outcome:
     warnings.simplefilter("ignore")
     random = np.random.default_rng(number)
-    drive = model(sw.drives.PositionDrive, random)
+    drive = model(sw.Drive, random)
     dt = step(drive, random)
     duration = STEPS * dt
     volts = sw.scenario.sine(random.uniform(0.0, 48.0), random.uniform(0.5, 5.0) / duration, duration)
-    acting = {"load_torque": random.normal(0.0, 10.0), "temperature": random.uniform(230.0, 370.0)}
+    acting = {"inputs": acting_on(drive, random)}
     course: dict[str, Any] = {**acting, "sample": 20.0 * dt}
-    excitation = Excitation(volts, **acting)
+    excitation = Excitation.of(drive, volts, **acting)
     inputs = excitation.over(excitation.course(dt, None))[-1, -1]
     method: Any = (*METHODS, None)[random.integers(len(METHODS) + 1)]
     began = time.perf_counter()
@@ -155,7 +162,7 @@ def words(run: Callable[[], object]) -> str:
     return "finite"
 
 
-def check(drive: sw.drives.PositionDrive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
+def check(drive: sw.Drive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
     """Raises AssertionError if a run that ended under these inputs says what cannot be."""
     assert np.isfinite(run.end.numbers).all(), SILENT
     check_end(drive, run, inputs)
@@ -163,16 +170,17 @@ def check(drive: sw.drives.PositionDrive, run: sw.Run, inputs: NDArray[np.float6
     check_friction(drive.gear, run)
 
 
-def check_end(drive: sw.drives.PositionDrive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
+def check_end(drive: sw.Drive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
     """What was recorded last is what the state at the end makes of the inputs; what sticks there stands still."""
     for side in ("input", "output"):
         sticks = getattr(run.end, f"{side}_slip_direction") == 0.0
         assert not sticks or getattr(run.end, f"{side}_speed") == 0.0, f"{WRONG}the {side} sticks and moves"
-    for name, now in zip(OUTPUTS, _core.now(drive, run.end.numbers, inputs)[:, 0], strict=True):
+    found = _core.now(drive, run.end.numbers, inputs)[:, 0]
+    for name, now in ((name, found[each.channel]) for name, each in outputs(drive).items()):
         assert abs(now - run[name][-1]) <= 1e-9 * np.abs(run[name]).max(), f"{WRONG}{name} at the end is not that of the state"
 
 
-def check_angles(drive: sw.drives.PositionDrive, run: sw.Recording) -> None:
+def check_angles(drive: sw.Drive, run: sw.Recording) -> None:
     """The output lags behind by twist and kinematic error."""
     terms = [
         run["input_angle"] / drive.gear.kinematics.ratio,
@@ -201,23 +209,23 @@ def known_speeds(gear: sw.Gear, run: sw.Recording) -> Mapping[str, NDArray[np.fl
 
 
 def beside_others(
-    drive: sw.drives.PositionDrive, others: Mapping[str, list[float]], volts: Any, dt: float, course: dict[str, Any]
+    drive: sw.Drive, others: Mapping[str, list[float]], volts: Any, dt: float, course: dict[str, Any]
 ) -> sw.Recording:
     """The first of an ensemble, which is the drive itself; raises AssertionError if it is not what it is alone."""
-    runs = sw.simulate_many(drive, volts, others, dt, record=OUTPUTS, threads=1, **course)
+    runs = sw.simulate_many(drive, volts, others, dt, record=list(outputs(drive)), threads=1, **course)
     for member in runs.failures.keys() ^ set(range(MEMBERS)):
-        assert all(np.isfinite(runs[name][member]).all() for name in OUTPUTS), SILENT
+        assert all(np.isfinite(runs[name][member]).all() for name in outputs(drive)), SILENT
     try:
         alone = sw.simulate(drive, volts, dt, method="exponential", **course)
     except (ValueError, FloatingPointError):
         assert 0 in runs.failures, DIFFERENT
         return runs.member(0)
     assert 0 not in runs.failures, DIFFERENT
-    assert all(np.array_equal(runs[name][0], alone[name]) for name in OUTPUTS), DIFFERENT
+    assert all(np.array_equal(runs[name][0], alone[name]) for name in outputs(drive)), DIFFERENT
     return alone
 
 
-def with_derivatives(drive: sw.drives.PositionDrive, paths: list[str], volts: Any, dt: float, course: dict[str, Any]) -> None:
+def with_derivatives(drive: sw.Drive, paths: list[str], volts: Any, dt: float, course: dict[str, Any]) -> None:
     """Raises AssertionError if derivatives change the run, or contradict each other."""
 
     def differentiated() -> sw.Derivatives:
@@ -234,7 +242,7 @@ def with_derivatives(drive: sw.drives.PositionDrive, paths: list[str], volts: An
         if not str(error).endswith("though the run is"):
             raise AssertionError(DIFFERENT) from error
         raise
-    assert all(np.array_equal(found.run[name], run[name]) for name in OUTPUTS), DIFFERENT
+    assert all(np.array_equal(found.run[name], run[name]) for name in outputs(drive)), DIFFERENT
     for path in found.parameters:
         whole, *parts = (found[name, path] for name in ("transmission_error", "twist", "kinematic_error"))
         size = sum(np.abs(part) for part in (whole, *parts))

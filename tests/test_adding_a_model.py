@@ -55,7 +55,9 @@ ELSEWHERE = {
     },
     "DC": {"specialised.hpp": USUAL},
     "OpenLoop": {"specialised.hpp": USUAL},
-    "PID": {"specialised.hpp": USUAL},
+    "PID": {"specialised.hpp": USUAL, "control/sampled.hpp": "what it samples by default"},
+    "Sampled": {"any.hpp": BOUND_TO_ANY},
+    "Ideal": {"specialised.hpp": USUAL},
     "Inertia": {"specialised.hpp": USUAL},
     "StrainWave": {"identify/explain.py": "the ratio that two encoders show, as one of teeth"},
     "Stochastic": {"specialised.hpp": USUAL, "steady.py": STEADY_RUNNING},
@@ -163,7 +165,7 @@ MAIN = """
 using namespace strainwave;
 
 int main() {
-    AnyPositionDrive<double> drive{};
+    AnyDrive<double> drive{};
     drive.motor.model = motor::DC<double>{.resistance = 2.0, .torque_constant = 0.05, .back_emf = 0.05, .inertia = 1e-4};
     drive.gear.damping = 1.0;
     drive.gear.friction_input.model =

@@ -25,7 +25,7 @@ def digest() -> str:
     warnings.simplefilter("ignore")
     gear = sw.load("hfuc-25-100")
     control = sw.control.PID(proportional=2.0, derivative=0.05)
-    drive = sw.drives.PositionDrive(gear=gear, control=control, load=sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0))
+    drive = sw.Drive(gear=gear, control=control, load=sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0))
     bristles = sw.friction.LuGre(
         coulomb=0.02, breakaway=0.03, stribeck_speed=2.0, bristle_stiffness=300.0, bristle_damping=0.05, viscous=1e-4
     )

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import strainwave as sw
     from strainwave.simulation import Method
 
-    Task = Callable[[], tuple[sw.drives.PositionDrive, sw.scenario.Scenario]]
+    Task = Callable[[], tuple[sw.Drive, sw.scenario.Scenario]]
 
 
 def friction() -> sw.friction.LuGre:
@@ -59,11 +59,11 @@ def gear() -> sw.Gear:
     )
 
 
-def drive() -> sw.drives.PositionDrive:
+def drive() -> sw.Drive:
     """The reference drive, by the public interface."""
     import strainwave as sw
 
-    return sw.drives.PositionDrive(
+    return sw.Drive(
         gear=gear(),
         motor=sw.motor.DC(
             resistance=reference.RESISTANCE,
@@ -122,7 +122,7 @@ def peers(task: Task, steps: Mapping[Method, tuple[float, ...]], tolerances: tup
     yield Peer("strainwave, adaptive", ("strainwave",), "rtol", tolerances, partial(prepare_tolerance, task))
 
 
-def reference_task() -> tuple[sw.drives.PositionDrive, sw.scenario.Scenario]:
+def reference_task() -> tuple[sw.Drive, sw.scenario.Scenario]:
     return drive(), command()
 
 
@@ -147,7 +147,7 @@ def prepare_loop(members: int, step: float) -> Callable[[], Array]:
     import strainwave as sw
 
     one, wanted = drive(), command()
-    drives = [one.replace(load=one.load.replace(inertia=inertia)) for inertia in reference.output_inertias(members).tolist()]
+    drives = [one.replace({"load.inertia": inertia}) for inertia in reference.output_inertias(members).tolist()]
 
     def solve() -> Array:
         first, *_ = [sw.simulate(each, wanted, dt=step, sample=reference.SAMPLE) for each in drives]

@@ -13,10 +13,12 @@
 /// the models, not with their product.
 namespace strainwave {
 
-/// The state of whichever model was chosen, of at most n numbers. A few are all carried along; of more, those that it has.
-template <class S, int n>
+/// What numbers of a model slots hold: those that change continuously or that it remembers, at instants only, or for recordings.
+enum class Holds { state, discrete, output };
+
+/// Numbers of whichever model was chosen, of which it has at most n. Up to `few` are all carried along; of more, those it has.
+template <class S, int n, Holds what = Holds::state, int few = 4>
 struct Slots {
-    static constexpr int few = 4;
     std::conditional_t<(n <= few), Array<S, (n > 0 ? n : 1)>, Counted<S, n>> slot{};
 
     template <class Self, class Visit>
@@ -27,21 +29,36 @@ struct Slots {
 
 template <class T>
 inline constexpr bool is_slots = false;
-template <class S, int n>
-inline constexpr bool is_slots<Slots<S, n>> = true;
+template <class S, int n, Holds what, int few>
+inline constexpr bool is_slots<Slots<S, n, what, few>> = true;
 
 template <class S, class... Law>
 struct Choice;
 
 namespace detail {
 
-template <class S, class Law>
-constexpr int state_size() {
-    if constexpr (requires { typename Law::State; })
-        return size_of<S, typename Law::State>;
+/// The described struct in which a law keeps such numbers.
+template <Holds what, class S, class Law>
+constexpr auto kept_in() {
+    if constexpr (what == Holds::discrete)
+        return control::DiscreteOf<S, Law>{};
+    else if constexpr (what == Holds::state && requires { typename Law::State; })
+        return typename Law::State{};
+    else if constexpr (what == Holds::output && requires { typename Law::Output; })
+        return typename Law::Output{};
     else
-        return 0;
+        return Stateless<S>{};
 }
+template <Holds what, class S, class Law>
+using KeptIn = decltype(kept_in<what, S, Law>());
+template <Holds what, class S, class Law>
+constexpr int kept_size() {
+    return size_of<S, KeptIn<what, S, Law>>;
+}
+
+/// A sensor: most show what there is, and have no state, so that none is carried along for them.
+template <class Law>
+inline constexpr bool mostly_stateless = requires { &Law::shown; };
 
 }  // namespace detail
 
@@ -106,7 +123,10 @@ template <class S, class... Law>
 struct Choice {
     std::variant<Law...> model{};
 
-    using State = Slots<S, std::max({detail::state_size<S, Law>()...})>;
+    template <Holds what, int few = 4>
+    using SlotsFor = Slots<S, std::max({detail::kept_size<what, S, Law>()...}), what, few>;
+    using State = SlotsFor<Holds::state, (detail::mostly_stateless<Law> || ...) ? 0 : 4>;
+    using Output = SlotsFor<Holds::output>;
 
     /// f of the model chosen. A chain of comparisons, which inlines where a table of functions would not.
     template <int i = 0, class F>
@@ -164,7 +184,9 @@ struct Choice {
     SW_VERB(energy)
     SW_VERB(advance)
     SW_VERB(current)
-    SW_VERB(voltage)
+    SW_VERB(act)
+    SW_VERB(shown)
+    SW_VERB(settled)
     SW_VERB(relaxation_rate)
     SW_VERB(rate)
     SW_VERB(everett)
@@ -173,6 +195,44 @@ struct Choice {
     SW_VERB(virgin)
     SW_VERB(virgin_work)
 #undef SW_VERB
+
+    // Control, sampled or not.
+    template <class Discrete>
+    constexpr S actuation(const State& x, const Discrete& held, const control::Command<S>& command,
+                          const control::Measurement<S>& measured) const {
+        return visit([&](const auto& law) { return control::actuation(law, own(law, x), own(law, held), command, measured); });
+    }
+    template <class Discrete>
+    constexpr S held(const Discrete& x) const {
+        return visit([&](const auto& law) { return control::held<S>(law, own(law, x)); });
+    }
+    template <class Discrete>
+    constexpr Discrete sampled(const Discrete& x, const S& within, const control::Command<S>& command,
+                               const control::Measurement<S>& measured) const {
+        return visit(
+            [&](const auto& law) { return slotted<Discrete>(control::sampled(law, own(law, x), within, command, measured)); });
+    }
+    template <class Discrete>
+    constexpr Discrete elapsed(const Discrete& x, const S& dt) const {
+        return visit([&](const auto& law) { return slotted<Discrete>(control::elapsed(law, own(law, x), dt)); });
+    }
+    template <class Discrete>
+    constexpr bool due(const Discrete& x, const S& within) const {
+        return visit([&](const auto& law) { return control::due(law, own(law, x), within); });
+    }
+    template <class Discrete>
+    constexpr control::Schedule<S> schedule(const Discrete& x) const {
+        return visit([&](const auto& law) { return control::schedule<S>(law, own(law, x)); });
+    }
+    constexpr auto initial_discrete() const {
+        using Discrete = control::DiscreteOf<S, Choice>;
+        return visit([]<class Chosen>(const Chosen&) { return slotted<Discrete>(control::DiscreteOf<S, Chosen>{}); });
+    }
+
+    // What a motor shows of itself in recordings.
+    constexpr Output output(const State& x, const S& actuation, const S& speed) const {
+        return visit([&](const auto& law) { return slotted<Output>(law.output(own(law, x), actuation, speed)); });
+    }
 
     // Friction, modulated or not.
     constexpr S torque(const State& x, const friction::Contact<S>& at) const {
@@ -230,34 +290,42 @@ private:
     // A state is nothing but scalars, so it fits the slots as it lies in memory. Slots that hold none stand for no history.
     template <class Model, class T>
     static auto own(const Model&, const T& argument) {
-        if constexpr (std::is_same_v<T, State>) {
-            if constexpr (std::is_same_v<typename Model::State, State>) {  // a law that varies another has its state
-                return argument;
-            } else {
-                typename Model::State x{};
-                if constexpr (size_of<S, typename Model::State> > 0) {
-                    static_assert(sizeof x == size_of<S, typename Model::State> * sizeof(S));
-                    if (argument.slot.size() >= size_of<S, typename Model::State>)
-                        std::memcpy(static_cast<void*>(&x), argument.slot.item, sizeof x);
-                }
-                return x;
-            }
-        } else {
+        if constexpr (is_slots<T>)
+            return from_slots<Model>(argument);
+        else
             return argument;
+    }
+    template <class Model, int n, Holds what, int few>
+    static auto from_slots(const Slots<S, n, what, few>& slots) {
+        using X = detail::KeptIn<what, S, Model>;
+        if constexpr (std::is_same_v<X, Slots<S, n, what, few>>) {  // a law that varies another has its state
+            return slots;
+        } else {
+            X x{};
+            if constexpr (size_of<S, X> > 0) {
+                static_assert(sizeof x == size_of<S, X> * sizeof(S));
+                if (slots.slot.size() >= size_of<S, X>) std::memcpy(static_cast<void*>(&x), slots.slot.item, sizeof x);
+            }
+            return x;
         }
     }
     template <class Model, class Result>
     static auto stored(const Model&, const Result& result) {
-        if constexpr (std::is_same_v<Result, State> || !requires { requires std::is_same_v<Result, typename Model::State>; }) {
+        if constexpr (std::is_same_v<Result, State> || !requires { requires std::is_same_v<Result, typename Model::State>; })
             return result;
-        } else {
-            State x{};
-            if constexpr (size_of<S, Result> > 0) {
-                if constexpr (requires { x.slot.count; }) x.slot.count = size_of<S, Result>;
-                std::memcpy(static_cast<void*>(x.slot.item), &result, sizeof result);
-            }
-            return x;
+        else
+            return slotted<State>(result);
+    }
+    template <class Filled, class X>
+    static Filled slotted(const X& x) {
+        Filled slots{};
+        if constexpr (std::is_same_v<Filled, X>) {
+            slots = x;
+        } else if constexpr (size_of<S, X> > 0) {
+            if constexpr (requires { slots.slot.count; }) slots.slot.count = size_of<S, X>;
+            std::memcpy(static_cast<void*>(slots.slot.item), &x, sizeof x);
         }
+        return slots;
     }
 };
 
@@ -293,6 +361,10 @@ template <class S, class Law>
 struct AtRunTime<S, friction::Thermal<S, Law>> {
     using type = friction::Thermal<S, AnyOf<S, friction::Varying>>;
 };
+template <class S, class Law>
+struct AtRunTime<S, control::Sampled<S, Law>> {
+    using type = control::Sampled<S, AnyOf<S, control::Continuous>>;
+};
 template <class S, class Density>
 struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
     using type = hysteresis::Preisach<S, AnyOf<S, hysteresis::Densities>>;
@@ -302,8 +374,21 @@ struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
 
 template <class S, class... Body>
 constexpr S inertia_of(const Choice<S, Body...>& body) {
-    return body.visit([](const auto& chosen) { return chosen.inertia; });
+    return body.visit([](const auto& chosen) { return inertia_of<S>(chosen); });
 }
+template <class S, class... Load>
+inline constexpr bool load::can_prescribe<Choice<S, Load...>> = (load::can_prescribe<Load> || ...);
+template <class S, class... Load>
+constexpr bool prescribes(const Choice<S, Load...>& choice) {
+    return choice.visit([]<class Chosen>(const Chosen&) { return load::can_prescribe<Chosen>; });
+}
+namespace control::detail {
+template <class S, class... Law>
+    requires(requires { typename Law::Discrete; } || ...)
+struct DiscreteOf<S, Choice<S, Law...>> {
+    using type = typename Choice<S, Law...>::template SlotsFor<Holds::discrete>;
+};
+}  // namespace control::detail
 
 template <class S, class... Spring>
 constexpr S reduction_of(const Choice<S, Spring...>& spring) {
@@ -316,6 +401,9 @@ using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::
                      AnyOf<S, friction::Models>, AnyOf<S, friction::Models>>;
 
 template <class S>
-using AnyPositionDrive = PositionDrive<S, AnyGear<S>, AnyOf<S, motor::Models>, AnyOf<S, control::Models>, AnyOf<S, load::Models>>;
+using AnySensors = Sensors<S, AnyOf<S, sensor::Models>>;
+
+template <class S>
+using AnyDrive = Drive<S, AnyOf<S, control::Models>, AnyOf<S, motor::Models>, AnyGear<S>, AnyOf<S, load::Models>, AnySensors<S>>;
 
 }  // namespace strainwave

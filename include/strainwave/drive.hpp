@@ -1,27 +1,33 @@
 #pragma once
 #include <strainwave/condition.hpp>
-#include <strainwave/control/reference.hpp>
+#include <strainwave/control/law.hpp>
 #include <strainwave/friction/contact.hpp>
 #include <strainwave/gear.hpp>
+#include <strainwave/load/load.hpp>
+#include <strainwave/sensors.hpp>
 #include <strainwave/shaft.hpp>
 #include <strainwave/system.hpp>
 
 namespace strainwave {
 
-/// What drives a drive from outside, at one instant.
+/// What acts on a drive from outside, at one instant: one signal for each part that takes one, and its rate.
 template <class S>
 struct Input {
     S command{0.0};
     S command_rate{0.0};
-    S load_torque{0.0};                         ///< N.m, added to the load's own
+    S load{0.0};
+    S load_rate{0.0};
     S temperature{friction::room_temperature};  ///< K
+    S temperature_rate{0.0};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, command, "1", "Command: output angle [rad] of a controlled drive, voltage [V] of an open loop"));
-        visit(SW_FIELD(m, command_rate, "1/s", "Time derivative of the command"));
-        visit(SW_FIELD(m, load_torque, "N.m", "Torque that holds the output back, besides the load's own"));
+        visit(SW_FIELD(m, command, "1", "Command of the controller, in the unit that it takes"));
+        visit(SW_FIELD(m, command_rate, "1/s", "Its rate"));
+        visit(SW_FIELD(m, load, "1", "Input of the load: a torque that holds the output back, or an angle"));
+        visit(SW_FIELD(m, load_rate, "1/s", "Its rate"));
         visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
+        visit(SW_FIELD(m, temperature_rate, "K/s", "Its rate"));
     }
 
     /// At a fraction of a step. Between the three instants the command is Hermite's cubic, all else the parabola through them.
@@ -36,17 +42,22 @@ struct Input {
             const S from = start.*signal, bow = S(2.0) * (from - S(2.0) * (middle.*signal) + end.*signal);
             return from + fraction * ((end.*signal - from - bow) + fraction * bow);
         };
-        return {a + x * (da + x * (bend + x * turn)), (da + x * (S(2.0) * bend + S(3.0) * x * turn)) / max(half, S(smallest)),
-                parabola(&Input::load_torque), parabola(&Input::temperature)};
+        return {a + x * (da + x * (bend + x * turn)),
+                (da + x * (S(2.0) * bend + S(3.0) * x * turn)) / max(half, S(smallest)),
+                parabola(&Input::load),
+                parabola(&Input::load_rate),
+                parabola(&Input::temperature),
+                parabola(&Input::temperature_rate)};
     }
 };
 
 /// What changes continuously. The transmission error theta_in / i - theta_out replaces the output angle.
-template <class S, class MotorState, class ControlState, class FrictionInputState, class FrictionMeshState,
+template <class S, class MotorState, class ControlState, class SensorsState, class FrictionInputState, class FrictionMeshState,
           class FrictionOutputState>
 struct Continuous {
     MotorState motor{};
     ControlState control{};
+    SensorsState sensors{};
     S input_angle{0.0};
     S input_speed{0.0};
     S transmission_error{0.0};
@@ -59,6 +70,7 @@ struct Continuous {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, motor, "State of the motor"));
         visit(SW_PART(m, control, "State of the controller"));
+        visit(SW_PART(m, sensors, "State of the sensors"));
         visit(SW_FIELD(m, input_angle, "rad", "Input angle within the turn, in [-pi, pi]"));
         visit(SW_FIELD(m, input_speed, "rad/s", "Input speed"));
         visit(SW_FIELD(m, transmission_error, "rad", "theta_in / i - theta_out"));
@@ -69,10 +81,22 @@ struct Continuous {
     }
 };
 
-/// A drive at one instant: the motion, and what it remembers of the past.
-template <class S, class Continuous, class HysteresisState>
+/// What changes at instants only.
+template <class S, class ControlDiscrete>
+struct Discrete {
+    ControlDiscrete control{};
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, control, "What a sampled controller holds"));
+    }
+};
+
+/// A drive at one instant: the motion, what changes at instants only, and what the drive remembers of the past.
+template <class S, class Continuous, class Discrete, class HysteresisState>
 struct State {
     Continuous continuous{};
+    Discrete discrete{};
     HysteresisState hysteresis{};
     S held_twist{0.0};
     S held_rate{0.0};
@@ -84,6 +108,7 @@ struct State {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, continuous, "What changes continuously"));
+        visit(SW_PART(m, discrete, "What changes at instants only"));
         visit(SW_PART(m, hysteresis, "Memory of the hysteresis"));
         visit(SW_FIELD(m, held_twist, "rad", "Twist at which the hysteresis was last brought up to date"));
         visit(SW_FIELD(m, held_rate, "rad/s", "Rate of the twist there"));
@@ -95,10 +120,11 @@ struct State {
 };
 
 /// Everything worth recording, at one instant.
-template <class S>
+template <class S, class MotorOutput>
 struct Output {
-    S command, input_angle, input_speed, output_angle, output_speed, twist, kinematic_error, transmission_error, torque, current,
-        voltage, friction_input, friction_mesh, friction_output, load_torque, temperature;
+    S command, input_angle, input_speed, output_angle, output_speed, twist, kinematic_error, transmission_error, torque;
+    MotorOutput motor;
+    S friction_input, friction_mesh, friction_output, load_torque, temperature;
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -111,8 +137,7 @@ struct Output {
         visit(SW_FIELD(m, kinematic_error, "rad", "Pure kinematic error, at the output"));
         visit(SW_FIELD(m, transmission_error, "rad", "Total error theta_in / i - theta_out"));
         visit(SW_FIELD(m, torque, "N.m", "Torque transmitted, at the output"));
-        visit(SW_FIELD(m, current, "A", "Motor current"));
-        visit(SW_FIELD(m, voltage, "V", "Motor voltage"));
+        visit(SW_PART(m, motor, "What the motor shows of itself"));
         visit(SW_FIELD(m, friction_input, "N.m", "Friction torque at the input, opposing its motion"));
         visit(SW_FIELD(m, friction_mesh, "N.m", "Friction torque of the mesh, opposing its motion, at the output's scale"));
         visit(SW_FIELD(m, friction_output, "N.m", "Friction torque at the output, opposing its motion"));
@@ -121,36 +146,30 @@ struct Output {
     }
 };
 
-/// Inertia of a body that has one.
-template <class Body>
-constexpr auto inertia_of(const Body& body)
-    requires requires { body.inertia; }
-{
-    return body.inertia;
-}
-
-template <class S, class Gear, class Motor, class Control, class Load>
-struct PositionDrive {
+template <class S, class Control, class Motor, class Gear, class Load, class Sensors>
+struct Drive {
     Gear gear{};
     Motor motor{};
     Control control{};
     Load load{};
+    Sensors sensors{};
 
-    static constexpr auto name = "position_drive";
+    static constexpr auto name = "drive";
     static constexpr auto source = "document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)";
     static constexpr auto doc = R"(
-        A motor, its controller, one strain wave gear and a load.
+        A motor, its controller, one strain wave gear, a load, and the sensors that the controller sees all this by.
 
-        .. math:: J_{in} \ddot\theta_{in} = K_m i - (T + F_{mesh})\,(1/i - e') - F_{in}, \qquad
+        .. math:: J_{in} \ddot\theta_{in} = \tau - (T + F_{mesh})\,(1/i - e') - F_{in}, \qquad
                   J_{out} \ddot\theta_{out} = T - T_{load} - F_{out}
 
-        with J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear, F the friction of each place.
+        with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear,
+        F the friction of each place. A load can also prescribe the motion of the output shaft.
         Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
         told apart: it is reported in proportion to what each can hold.
         Angles are carried relative to the rigid motion, so an hour of rotation is as accurate as a second.
 
         >>> import strainwave as sw
-        >>> drive = sw.drives.PositionDrive(motor=sw.motor.DC(resistance=2.0), load=sw.loads.Inertia(inertia=0.005))
+        >>> drive = sw.Drive(motor=sw.motor.DC(resistance=2.0), load=sw.loads.Inertia(inertia=0.005))
         >>> drive.motor.resistance
         2.0)";
 
@@ -158,8 +177,9 @@ struct PositionDrive {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, gear, "The gear"));
         visit(SW_PART(m, motor, "The motor on the input shaft"));
-        visit(SW_PART(m, control, "What turns the command into the motor's voltage"));
+        visit(SW_PART(m, control, "What turns the command into the motor's voltage, current or torque"));
         visit(SW_PART(m, load, "What the output shaft carries"));
+        visit(SW_PART(m, sensors, "What the controller sees the drive by"));
     }
 
     constexpr const char* problem() const {
@@ -170,8 +190,9 @@ struct PositionDrive {
 
     /// Every part as the integrator wants it.
     constexpr auto compile() const {
-        return PositionDrive<S, decltype(gear.compile()), decltype(compiled(motor)), decltype(compiled(control)),
-                             decltype(compiled(load))>{gear.compile(), compiled(motor), compiled(control), compiled(load)};
+        return Drive<S, decltype(compiled(control)), decltype(compiled(motor)), decltype(gear.compile()), decltype(compiled(load)),
+                     decltype(sensors.compile())>{gear.compile(), compiled(motor), compiled(control), compiled(load),
+                                                  sensors.compile()};
     }
 
     using FrictionInput = decltype(Gear{}.friction_input);
@@ -179,11 +200,14 @@ struct PositionDrive {
     using FrictionOutput = decltype(Gear{}.friction_output);
     using Hysteresis = decltype(Gear{}.hysteresis);
 
-    using Continuous = strainwave::Continuous<S, typename Motor::State, typename Control::State, typename FrictionInput::State,
-                                              typename FrictionMesh::State, typename FrictionOutput::State>;
-    using State = strainwave::State<S, Continuous, typename Hysteresis::State>;
+    using Continuous =
+        strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
+                               typename FrictionInput::State, typename FrictionMesh::State, typename FrictionOutput::State>;
+    using Discrete = strainwave::Discrete<S, control::DiscreteOf<S, Control>>;
+    using State = strainwave::State<S, Continuous, Discrete, typename Hysteresis::State>;
     using Input = strainwave::Input<S>;
-    using Output = strainwave::Output<S>;
+    using Output = strainwave::Output<S, typename Motor::Output>;
+    using Measurement = control::Measurement<S>;
     using Shaft = strainwave::Shaft<S>;
     using Contact = friction::Contact<S>;
 
@@ -197,7 +221,7 @@ struct PositionDrive {
         Continuous rate;
         typename Gear::Mesh mesh;
         Contacts contacts;
-        S voltage, current, load_torque;
+        S actuation, load_torque;
         S friction_input, friction_mesh, friction_output;  ///< N.m, of places that slip
         S input_driving_torque, output_driving_torque;     ///< N.m, all but set-valued friction
     };
@@ -213,6 +237,14 @@ struct PositionDrive {
     constexpr void stateful_parts(Visit&& visit) const {
         visit("motor", motor);
         visit("control", control);
+        if constexpr (!Sensors::stateless) {
+            visit("sensors.input_angle", sensors.input_angle);
+            visit("sensors.input_speed", sensors.input_speed);
+            visit("sensors.output_angle", sensors.output_angle);
+            visit("sensors.output_speed", sensors.output_speed);
+            visit("sensors.current", sensors.current);
+            visit("sensors.torque", sensors.torque);
+        }
         visit("hysteresis", gear.hysteresis);
         visit("friction_input", gear.friction_input);
         visit("friction_mesh", gear.friction_mesh);
@@ -225,6 +257,8 @@ struct PositionDrive {
         x.hysteresis = strainwave::initial_state(gear.hysteresis);
         x.continuous.motor = strainwave::initial_state(motor);
         x.continuous.control = strainwave::initial_state(control);
+        x.continuous.sensors = sensors.initial_state();
+        x.discrete.control = control::initial_discrete<S>(control);
         x.continuous.friction_input = strainwave::initial_state(gear.friction_input);
         x.continuous.friction_mesh = strainwave::initial_state(gear.friction_mesh);
         x.continuous.friction_output = strainwave::initial_state(gear.friction_output);
@@ -239,44 +273,59 @@ struct PositionDrive {
             x.continuous.transmission_error = gear.geometry({}, S(0.0), x.continuous.transmission_error, S(0.0)).error;
         x.input_slip_direction = S(input_sticks() ? 0.0 : 1.0);
         x.output_slip_direction = S(output_sticks() ? 0.0 : 1.0);
+        x.continuous.sensors = sensors.settled(measurable(x, x.continuous, S(0.0)));
         return x;
     }
 
     constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u) const {
+        if constexpr (load::can_prescribe<Load>) {
+            if (prescribes(load)) {
+                const Continuous z = placed(x, y, u);
+                return derivatives(x, z, u, mesh(x, z));
+            }
+        }
         return derivatives(x, y, u, mesh(x, y));
     }
 
     /// Brings the memory of a state up to date.
     constexpr Evaluation evaluate(State x, const Input& u) const {
+        if constexpr (load::can_prescribe<Load>) {
+            if (prescribes(load)) {
+                x.continuous = placed(x, x.continuous, u);
+                x.output_slip_direction = sign(u.load_rate);
+            }
+        }
         const auto geometry = this->geometry(x, x.continuous);
         commit(x, geometry);
         return {x, derivatives(x, x.continuous, u, gear.loaded(geometry, x.hysteresis, x.held_twist))};
     }
 
     constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const typename Gear::Mesh& mesh) const {
-        const auto reference = this->reference(x, y, u);
-        const S voltage = control.voltage(y.control, reference), current = motor.current(y.motor, voltage, y.input_speed);
-        const S motor_torque = motor.torque(current), load_torque = load.torque(output_angle(x, y)) + u.load_torque;
+        const auto asked = command(u);
+        const Measurement actual = measurable(x, y, mesh.torque), measured = sensors.shown(y.sensors, actual);
+        const S actuation = control::actuation(control, y.control, x.discrete.control, asked, measured);
+        const S motor_torque = motor.torque(y.motor, actuation, y.input_speed);
 
         Continuous rate{};
         const Contacts at = contacts(x, y, mesh, u);
         const Resistance input = resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
         const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
         const Resistance output = resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
+        const S load_torque = prescribes(load) ? mesh.torque - output.torque() : load.torque(output_angle(x, y)) + u.load;
         const S input_driving_torque = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
         const S output_driving_torque = mesh.torque - load_torque - output.always;
-        rate.motor = motor.rate(y.motor, voltage, y.input_speed);
-        rate.control = control.rate(y.control, reference);
+        rate.motor = motor.rate(y.motor, actuation, y.input_speed);
+        rate.control = control.rate(y.control, asked, measured);
+        rate.sensors = sensors.rate(y.sensors, actual);
         rate.input_angle = y.input_speed;
         rate.input_speed =
             moving(at.input, input_driving_torque - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
-        rate.output_speed = moving(at.output, output_driving_torque - output.sliding) / inertia_of(load);
+        rate.output_speed = moving(at.output, output_driving_torque - output.sliding) / output_inertia();
         return {rate,
                 mesh,
                 at,
-                voltage,
-                current,
+                actuation,
                 load_torque,
                 input.torque(),
                 meshing.torque(),
@@ -288,6 +337,7 @@ struct PositionDrive {
     constexpr Continuous relaxation_rate(const Continuous& y, const Derivatives& now) const {
         Continuous rates = zeroed<S>(y);
         rates.motor = motor.relaxation_rate();
+        rates.sensors = sensors.relaxation_rate();
         rates.friction_input = friction::relaxation_rate(gear.friction_input, y.friction_input, now.contacts.input);
         rates.friction_mesh = friction::relaxation_rate(gear.friction_mesh, y.friction_mesh, now.contacts.mesh);
         rates.friction_output = friction::relaxation_rate(gear.friction_output, y.friction_output, now.contacts.output);
@@ -340,24 +390,37 @@ struct PositionDrive {
     /// The state becomes that `dt` [s] after it was committed: its input angle within its turn, whole turns counted.
     constexpr void finish_step(State& x, const S& dt) const {
         x.elapsed = dt;
+        x.discrete.control = control::elapsed(control, x.discrete.control, dt);
         const S turns = rint(x.continuous.input_angle * S(0.5 / pi));
         x.continuous.input_angle = x.continuous.input_angle - turns * S(2.0 * pi);
         x.turns = x.turns + turns;
     }
+
+    // A controller that samples.
+
+    constexpr bool due(const State& x, const S& within) const { return control::due(control, x.discrete.control, within); }
+    constexpr State sampled(const Evaluation& at, const Input& u, const S& within) const {
+        State x = at.state;
+        const Measurement actual = measurable(x, x.continuous, at.derivatives.mesh.torque);
+        x.discrete.control =
+            control::sampled(control, x.discrete.control, within, command(u), sensors.shown(x.continuous.sensors, actual));
+        return x;
+    }
+    constexpr control::Schedule<S> schedule(const State& x) const { return control::schedule<S>(control, x.discrete.control); }
 
     /// A state from outside, with the slip direction of each shaft as its speed and its friction have it.
     constexpr State consistent(State x) const {
         x.input_slip_direction =
             Shaft{input_sticks(), input_inertia(), x.continuous.input_speed, x.input_slip_direction}.consistent_direction();
         x.output_slip_direction =
-            Shaft{output_sticks(), inertia_of(load), x.continuous.output_speed, x.output_slip_direction}.consistent_direction();
+            Shaft{output_sticks(), output_inertia(), x.continuous.output_speed, x.output_slip_direction}.consistent_direction();
         return x;
     }
 
     /// The fastest angular frequency [rad/s] of the gear's own vibration at twists up to `twist` [rad].
     constexpr S vibration(const S& twist) const {
         const S inverse = gear.kinematics.inverse_ratio();
-        return sqrt(gear.steepest(twist) * (S(1.0) / inertia_of(load) + inverse * inverse / input_inertia()));
+        return sqrt(gear.steepest(twist) * (S(1.0) / output_inertia() + inverse * inverse / input_inertia()));
     }
 
     /// How fast speeds decay at most [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
@@ -386,7 +449,7 @@ struct PositionDrive {
     constexpr S bristle_vibration() const {
         const S inverse = gear.kinematics.inverse_ratio();
         const S input = presliding_stiffness(gear.friction_input) + presliding_stiffness(gear.friction_mesh) * inverse * inverse;
-        return sqrt(max(input / input_inertia(), presliding_stiffness(gear.friction_output) / inertia_of(load)));
+        return sqrt(max(input / input_inertia(), presliding_stiffness(gear.friction_output) / output_inertia()));
     }
 
     // Events: a shaft stops, or breaks away.
@@ -428,7 +491,7 @@ struct PositionDrive {
     constexpr Continuous speeds(const Continuous& y) const {
         Continuous only = zeroed<S>(y);
         only.input_speed = y.input_speed;
-        only.output_speed = y.output_speed;
+        if (!prescribes(load)) only.output_speed = y.output_speed;  // else it follows no rate
         return only;
     }
 
@@ -453,6 +516,16 @@ struct PositionDrive {
         return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist);
     }
 
+    /// What sensors can measure, under this torque of the gear.
+    constexpr Measurement measurable(const State& x, const Continuous& y, const S& torque) const {
+        const S held = control::held<S>(control, x.discrete.control);
+        return {input_angle(x, y),
+                y.input_speed,
+                output_angle(x, y),
+                y.output_speed,
+                motor.current(y.motor, held, y.input_speed),
+                torque};
+    }
     constexpr Output output(const Evaluation& at, const Input& u) const {
         const State& x = at.state;
         const Derivatives& now = at.derivatives;
@@ -467,8 +540,7 @@ struct PositionDrive {
                 now.mesh.error,
                 y.transmission_error,
                 now.mesh.torque,
-                now.current,
-                now.voltage,
+                motor.output(y.motor, now.actuation, y.input_speed),
                 reported(gear.friction_input, now.contacts.input, now.friction_input, of_input),
                 reported(gear.friction_mesh, now.contacts.mesh, now.friction_mesh, along(now.mesh.per_input, of_input)),
                 reported(gear.friction_output, now.contacts.output, now.friction_output, of_output),
@@ -491,11 +563,12 @@ private:
         return {found.torque, S(0.0)};
     }
 
-    constexpr S input_inertia() const { return inertia_of(motor) + gear.input_inertia; }
+    constexpr S input_inertia() const { return inertia_of<S>(motor) + gear.input_inertia; }
     constexpr bool input_sticks() const {
         return friction::set_valued(gear.friction_input) || friction::set_valued(gear.friction_mesh);
     }
-    constexpr bool output_sticks() const { return friction::set_valued(gear.friction_output); }
+    constexpr S output_inertia() const { return inertia_of<S>(load); }
+    constexpr bool output_sticks() const { return !prescribes(load) && friction::set_valued(gear.friction_output); }
 
     constexpr Shaft input_shaft(const State& x, const Derivatives& now) const {
         const S hold = input_sticks() ? input_hold(now) : S(0.0);
@@ -503,7 +576,7 @@ private:
     }
     constexpr Shaft output_shaft(const State& x, const Derivatives& now) const {
         const S hold = output_sticks() ? output_hold(now) : S(0.0);
-        return {output_sticks(),         inertia_of(load),          x.continuous.output_speed,
+        return {output_sticks(),         output_inertia(),          x.continuous.output_speed,
                 x.output_slip_direction, now.output_driving_torque, hold};
     }
 
@@ -586,10 +659,14 @@ private:
         return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;
     }
 
-    constexpr control::Reference<S> reference(const State& x, const Continuous& y, const Input& u) const {
-        const S ratio = gear.kinematics.ratio();
-        return {u.command, ratio * u.command - input_angle(x, y), ratio * u.command_rate - y.input_speed};
+    /// The numbers with the output shaft where its load puts it.
+    constexpr Continuous placed(const State& x, Continuous y, const Input& u) const {
+        y.transmission_error = input_angle(x, y) * gear.kinematics.inverse_ratio() - u.load;
+        y.output_speed = u.load_rate;
+        return y;
     }
+
+    constexpr control::Command<S> command(const Input& u) const { return {u.command, u.command_rate, gear.kinematics.ratio()}; }
 };
 
 }  // namespace strainwave

@@ -256,4 +256,16 @@ struct Stateless {
     static constexpr void fields(Self&, Visit&&) {}
 };
 
+namespace detail {
+/// One of two types; firmware compilers need no standard library.
+template <bool first, class First, class Second>
+struct Either {
+    using type = First;
+};
+template <class First, class Second>
+struct Either<false, First, Second> {
+    using type = Second;
+};
+}  // namespace detail
+
 }  // namespace strainwave

@@ -1,6 +1,7 @@
 #pragma once
 #include <strainwave/control/open_loop.hpp>
 #include <strainwave/control/pid.hpp>
+#include <strainwave/control/sampled.hpp>
 #include <strainwave/friction/coulomb.hpp>
 #include <strainwave/friction/cyclic.hpp>
 #include <strainwave/friction/load_dependent.hpp>
@@ -22,7 +23,12 @@
 #include <strainwave/kinematics.hpp>
 #include <strainwave/load/inertia.hpp>
 #include <strainwave/load/pendulum.hpp>
+#include <strainwave/load/prescribed.hpp>
+#include <strainwave/motor/current_source.hpp>
 #include <strainwave/motor/dc.hpp>
+#include <strainwave/motor/torque_source.hpp>
+#include <strainwave/sensor/first_order.hpp>
+#include <strainwave/sensor/ideal.hpp>
 #include <strainwave/stiffness/cubic.hpp>
 #include <strainwave/stiffness/linear.hpp>
 #include <strainwave/stiffness/multi_compliance.hpp>
@@ -67,13 +73,17 @@ using Models = List<MaxwellSlip, FadingMemory, BoucWen, Preisach, Regimes>;
 using Densities = List<PowerDensity, GridDensity>;
 }  // namespace hysteresis
 namespace motor {
-using Models = List<DC>;
+using Models = List<DC, TorqueSource, CurrentSource>;
 }
 namespace control {
-using Models = List<OpenLoop, PID>;
-}
+using Continuous = List<OpenLoop, PID>;
+using Models = Extended<Continuous, Sampled>;
+}  // namespace control
 namespace load {
-using Models = List<Inertia, Pendulum>;
+using Models = List<Inertia, Pendulum, Prescribed>;
+}
+namespace sensor {
+using Models = List<Ideal, FirstOrder>;
 }
 
 }  // namespace strainwave

@@ -9,7 +9,7 @@
 ///
 ///     Input         what acts on it from outside at one instant; Input::between tells how it runs through a step
 ///     Continuous    what changes continuously: the stages of a step work on these numbers
-///     State         `continuous`, and what changes at the end of a step or at an event only
+///     State         `continuous`, and what changes at the end of a step, at an event or at instants of sampling only
 ///
 /// these two, which are not described,
 ///
@@ -52,6 +52,35 @@ constexpr typename System::Continuous update_mode(const System& system, const ty
         return system.update_mode(y, now);
     else
         return y;
+}
+
+// What changes at instants only. Steps end at each, so that it changes where a step begins.
+
+/// Whether something changes at this instant, in any lane: as the output of a controller that samples. Rounding is forgiven as far
+/// as `within` [s], less than the coming step.
+template <class System, class S>
+constexpr bool due(const System& system, const typename System::State& x, const S& within) {
+    if constexpr (requires { system.due(x, within); })
+        return system.due(x, within);
+    else
+        return false;
+}
+
+/// The evaluation after that.
+template <class System, class S>
+constexpr typename System::Evaluation sampled(const System& system, const typename System::Evaluation& at,
+                                              const typename System::Input& u, const S& within) {
+    if constexpr (requires { system.sampled(at, u, within); })
+        return system.evaluate(system.sampled(at, u, within), u);
+    else
+        return at;
+}
+
+/// What is due at the beginning of a step is done.
+template <class System, class S>
+constexpr typename System::Evaluation up_to_date(const System& system, const typename System::Evaluation& at,
+                                                 const typename System::Input& u, const S& within) {
+    return system::due(system, at.state, within) ? system::sampled(system, at, u, within) : at;
 }
 
 /// At the end of a step of `dt` [s]: angles brought back within a turn, the time since the last evaluation kept.

@@ -11,17 +11,20 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from strainwave import drives
 from strainwave._core import (
+    Drive,
     Gear,
     PassivityWarning,
+    Sensors,
     control,
-    drives,
     friction,
     hysteresis,
     kinematic_error,
     kinematics,
     loads,
     motor,
+    sensor,
     stiffness,
 )
 
@@ -72,6 +75,7 @@ _LAZY = {
 
 __all__ = [
     "Derivatives",
+    "Drive",
     "Ensemble",
     "EnsembleWarning",
     "Fit",
@@ -84,6 +88,7 @@ __all__ = [
     "RatingWarning",
     "Recording",
     "Run",
+    "Sensors",
     "Twin",
     "catalogue",
     "check_ratings",
@@ -103,6 +108,7 @@ __all__ = [
     "motor",
     "save",
     "scenario",
+    "sensor",
     "simulate",
     "simulate_adaptively",
     "simulate_many",

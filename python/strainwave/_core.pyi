@@ -10,20 +10,24 @@ import numpy.typing
 
 from strainwave import (
     control as control,
-    drives as drives,
     friction as friction,
     hysteresis as hysteresis,
     kinematic_error as kinematic_error,
     kinematics as kinematics,
     loads as loads,
     motor as motor,
+    sensor as sensor,
     stiffness as stiffness
 )
-import strainwave.drives
+import strainwave.control
 import strainwave.friction
 import strainwave.hysteresis
 import strainwave.kinematic_error
 import strainwave.kinematics
+import strainwave.loads
+import strainwave.motor
+import strainwave.sensor
+import strainwave.state
 import strainwave.stiffness
 
 
@@ -45,9 +49,9 @@ class Signal:
     def at(self, instants: numpy.typing.NDArray[numpy.float64], before: bool) -> numpy.typing.NDArray[numpy.float64]:
         """Values and rates at `instants` [s], or just before them: shape (2, …)."""
 
-def inputs(command: Signal, load_torque: Signal, temperature: Signal, instants: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def inputs(command: Signal, load: Signal, temperature: Signal, instants: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Command, its rate, load torque and temperature at start, middle and end of each step: shape (n, 3, 4).
+    Command, input of the load and temperature, each with its rate, at start, middle and end of each step: shape (n, 3, 6).
     """
 
 def grid(step: float, duration: float, tolerance: float) -> numpy.typing.NDArray[numpy.float64]:
@@ -187,93 +191,258 @@ class Gear:
         Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of `trace`, to rounding, for every spring and hysteresis.
         """
 
-max_lanes: int = 8
-
-largest: float = 1000000000000000.0
-
-outputs: tuple[tuple[str, str, str], ...]
-
-class Method(enum.Enum):
-    """How steps are taken."""
-
-    exponential = 0
-
-    moreau_jean = 1
-
-    rosenbrock = 2
-
-def simulate(drive: strainwave.drives.PositionDrive, start: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: Method, out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> numpy.typing.NDArray[numpy.float64]:
+class Sensors:
     """
-    The state at the end; the outputs go to `out`, shape (channels, samples), from sample `first` on.
+    What the controller of a drive sees: one sensor for each quantity.
+
+    Recordings show the quantities themselves, not what sensors make of them.
+
+    >>> import strainwave as sw
+    >>> sensors = sw.Sensors(output_angle=sw.sensor.FirstOrder(time_constant=2e-3))
+    >>> sensors.output_angle.time_constant
+    0.002
+
+    Parameters
+    ----------
+    input_angle: Sensor of the input angle: the motor's encoder; default Ideal()
+    input_speed: Sensor of the input speed; default Ideal()
+    output_angle: Sensor of the output angle; default Ideal()
+    output_speed: Sensor of the output speed; default Ideal()
+    current: Sensor of the motor current; default Ideal()
+    torque: Sensor of the torque transmitted, at the output; default Ideal()
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition
     """
 
-def simulate_adaptively(drive: strainwave.drives.PositionDrive, start: numpy.typing.NDArray[numpy.float64], command: Signal, load_torque: Signal, temperature: Signal, ends: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], int, int]:
+    def __init__(self, *, input_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., input_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., current: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., torque: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, input_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., input_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., current: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., torque: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ...) -> Sensors:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def input_angle(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+        """Sensor of the input angle: the motor's encoder"""
+
+    @property
+    def input_speed(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+        """Sensor of the input speed"""
+
+    @property
+    def output_angle(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+        """Sensor of the output angle"""
+
+    @property
+    def output_speed(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+        """Sensor of the output speed"""
+
+    @property
+    def current(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+        """Sensor of the motor current"""
+
+    @property
+    def torque(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+        """Sensor of the torque transmitted, at the output"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'sensors'
+
+    source: str = 'definition'
+
+    fields: tuple[dict[str, Any], ...]
+
+class Drive:
     """
-    The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; the outputs at `samples` [s] go to `out`, shape (channels, samples), from sample `first` on.
+    A motor, its controller, one strain wave gear, a load, and the sensors that the controller sees all this by.
+
+    .. math:: J_{in} \\ddot\\theta_{in} = \\tau - (T + F_{mesh})\\,(1/i - e') - F_{in}, \\qquad
+              J_{out} \\ddot\\theta_{out} = T - T_{load} - F_{out}
+
+    with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear,
+    F the friction of each place. A load can also prescribe the motion of the output shaft.
+    Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
+    told apart: it is reported in proportion to what each can hold.
+    Angles are carried relative to the rigid motion, so an hour of rotation is as accurate as a second.
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(motor=sw.motor.DC(resistance=2.0), load=sw.loads.Inertia(inertia=0.005))
+    >>> drive.motor.resistance
+    2.0
+
+    Parameters
+    ----------
+    gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0)
+    motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05)
+    control: What turns the command into the motor's voltage, current or torque; default OpenLoop(gain=1.0)
+    load: What the output shaft carries; default Inertia(inertia=0.01)
+    sensors: What the controller sees the drive by; default Sensors(input_angle=Ideal(), input_speed=Ideal(), output_angle=Ideal(), output_speed=Ideal(), current=Ideal(), torque=Ideal())
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)
     """
 
-def simulate_many(drive: strainwave.drives.PositionDrive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
+    def __init__(self, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Prescribed = ..., sensors: Sensors = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Prescribed = ..., sensors: Sensors = ...) -> Drive:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def gear(self) -> Gear:
+        """The gear"""
+
+    @property
+    def motor(self) -> strainwave.motor.DC | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource:
+        """The motor on the input shaft"""
+
+    @property
+    def control(self) -> strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.Sampled:
+        """What turns the command into the motor's voltage, current or torque"""
+
+    @property
+    def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Prescribed:
+        """What the output shaft carries"""
+
+    @property
+    def sensors(self) -> Sensors:
+        """What the controller sees the drive by"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'drive'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    def rest(self) -> strainwave.state.State:
+        """The state at rest, untwisted and without history, input angle 0."""
+
+    def step(self, state: strainwave.state.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, output_angle: float = 0.0, output_speed: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave.state.State:
+        """
+        The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
+        """
+
+channels: int = 16
+
+def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]:
     """
-    Runs members from rest, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run.
+    Name, unit, doc, part and channel of each number that a drive shows of itself.
     """
 
-def vibration(drive: strainwave.drives.PositionDrive, twist: float) -> float:
+def load_input(drive: Drive) -> tuple[str, str, str]:
+    """Name, unit and doc of the input that the load of a drive takes."""
+
+def actuation(drive: Drive) -> tuple[str, str]:
+    """
+    The output of a drive's motor that is what the controller gives it, and its unit.
+    """
+
+def command_unit(drive: Drive) -> str:
+    """The unit of the command of a drive."""
+
+def schedule(drive: Drive, state: numpy.typing.NDArray[numpy.float64]) -> tuple[float, float, float]:
+    """
+    When a sampled controller acts: time to its next sample, period and delay [s]. A period of 0: it acts all the time.
+    """
+
+def vibration(drive: Drive, twist: float) -> float:
     """
     The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].
     """
 
-def fastest(drive: strainwave.drives.PositionDrive, twist: float) -> float:
+def fastest(drive: Drive, twist: float) -> float:
     """
     The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's vibration, or the decay of speeds.
     """
 
-def bristle_vibration(drive: strainwave.drives.PositionDrive) -> float:
+def bristle_vibration(drive: Drive) -> float:
     """
     The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
     """
 
-def instruction_set() -> str:
-    """The instruction set that the loops over time are compiled for."""
+def now(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """All channels in `state`, shape (channels, 1)."""
 
-def differentiate(drive: strainwave.drives.PositionDrive, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], parameters: Sequence[int], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+def differentiate_rates(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
-    Outputs from rest, shape (channels, 1 + kept), and derivatives, shape (parameters, channels, 1 + kept).
-    """
-
-def now(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-    """Outputs in `state`, shape (channels, 1)."""
-
-def differentiate_rates(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
-    """
-    Rates of the n continuous numbers, then outputs, shape (n + channels,), in `state`, and derivatives by those numbers and the inputs, shape (n + 4, n + channels).
+    Rates of the n continuous numbers, then outputs, shape (n + channels,), in `state`, and derivatives by those numbers and the inputs, shape (n + 6, n + channels).
     """
 
-def state(drive: strainwave.drives.PositionDrive) -> tuple[list[tuple[str, str, str]], int]:
+def state(drive: Drive) -> tuple[list[tuple[str, str, str]], int]:
     """
     Name, unit and part of each number of a drive's state, and how many of them are continuous; those come first.
     """
 
-def shape(drive: strainwave.drives.PositionDrive) -> dict[str, tuple[str, str]]:
+def shape(drive: Drive) -> dict[str, tuple[str, str]]:
     """
     Of each part that has a state, the name of its model and the counts that say which number means what.
     """
 
-def aged(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], dt: float) -> numpy.typing.NDArray[numpy.float64]:
+quantities: tuple[tuple[str, str, str], ...]
+
+def started(drive: Drive, quantities: Sequence[int], values: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    The state in which some quantities are known and the rest has settled; its transmission error is not finite where there is none.
+    """
+
+def aged(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], dt: float) -> numpy.typing.NDArray[numpy.float64]:
     """
     `state` with what friction remembers after `dt` [s] at constant speeds.
     """
 
-def advance_hysteresis(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], twist: float) -> numpy.typing.NDArray[numpy.float64]:
+def advance_hysteresis(drive: Drive, state: numpy.typing.NDArray[numpy.float64], twist: float) -> numpy.typing.NDArray[numpy.float64]:
     """`state` with its hysteresis brought up to date at `twist` [rad]."""
 
-def consistent(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def consistent(drive: Drive, state: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """
     `state` with the slip direction of each shaft as its speed and its law have it.
     """
 
-def break_away(drive: strainwave.drives.PositionDrive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def break_away(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """
     `state` with those shafts slipping that stick and are driven beyond what holds them.
+    """
+
+def begin(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    `state` as a run begins in it: consistent, and sampled if its controller samples.
     """
 
 def differentiate_loop(gear: Gear, twist: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -293,3 +462,39 @@ def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]
 
 def with_numbers(model: Any, numbers: Sequence[float]) -> Any:
     """The same models with other numbers, in the order of `parameters`."""
+
+max_lanes: int = 8
+
+largest: float = 1000000000000000.0
+
+class Method(enum.Enum):
+    """How steps are taken."""
+
+    exponential = 0
+
+    moreau_jean = 1
+
+    rosenbrock = 2
+
+def simulate(drive: Drive, start: numpy.typing.NDArray[numpy.float64], instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], method: Method, recorded: Sequence[int], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    The state at the end; the outputs go to `out`, shape (recorded, samples), from sample `first` on.
+    """
+
+def simulate_adaptively(drive: Drive, start: numpy.typing.NDArray[numpy.float64], command: Signal, load: Signal, temperature: Signal, ends: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], recorded: Sequence[int], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], int, int]:
+    """
+    The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; the outputs at `samples` [s] go to `out`, shape (recorded, samples), from sample `first` on.
+    """
+
+def simulate_many(drive: Drive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], initial: tuple[Sequence[int], numpy.typing.NDArray[numpy.float64]] | None, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
+    """
+    Runs members, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin at rest if there is none.
+    """
+
+def instruction_set() -> str:
+    """The instruction set that the loops over time are compiled for."""
+
+def differentiate(drive: Drive, initial: tuple[Sequence[int], numpy.typing.NDArray[numpy.float64]] | None, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], parameters: Sequence[int], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Outputs, from rest or with quantities known at the start, shape (channels, 1 + kept), and derivatives, shape (parameters, channels, 1 + kept).
+    """

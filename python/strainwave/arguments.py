@@ -9,8 +9,7 @@ from numbers import Integral, Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core
 from strainwave.messages import listed, quoted, shortened
 
 
@@ -105,10 +104,10 @@ def mapping(name: str, value: object, example: str) -> None:
         raise TypeError(f"{name} must be a mapping, as in {example}, not {shortened(value)}")
 
 
-def drive(value: object) -> PositionDrive:
+def drive(value: object) -> Drive:
     """A drive to run or to look at."""
-    if not isinstance(value, PositionDrive):
-        raise TypeError(f"drive = {shortened(value)} must be a drive, as sw.drives.PositionDrive(...) makes one")
+    if not isinstance(value, Drive):
+        raise TypeError(f"drive = {shortened(value)} must be a drive, as sw.Drive(...) makes one")
     return value
 
 

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from strainwave import scenario
-from strainwave.drives import PositionDrive
+from strainwave import Drive, scenario
 from strainwave.identify.twin import Twin, twin
 from strainwave.recording import Recording
 from strainwave.report.experiment import Experiment, Figure
@@ -73,7 +72,7 @@ def experiments(found: Twin) -> list[Experiment]:
     return [_experiment(name, command, drives) for name, command in commands().items()]
 
 
-def _experiment(name: str, command: Scenario, drives: dict[str, PositionDrive]) -> Experiment:
+def _experiment(name: str, command: Scenario, drives: dict[str, Drive]) -> Experiment:
     runs = tuple((label, simulate(drive, command, sample=2e-3)) for label, drive in drives.items())
     figures = zip(*(_figures(run) for _, run in runs), strict=True)
     names = (("root mean square error", "rad"), ("largest error", "rad"), ("correlation coefficient", "1"))

@@ -12,15 +12,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core, arguments
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core, arguments, signals
 from strainwave.ensemble_folder import EnsembleFolder, fingerprint
 from strainwave.equality import ComparedByFields
 from strainwave.files import claiming, making
-from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.initial import Known
+from strainwave.initial import known as initial_of
+from strainwave.messages import listed, one_line, quoted
 from strainwave.parameters import every, unknown
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
+from strainwave.signals import Output
 from strainwave.simulation import (
     COARSEST,
     FASTEST_ON_BRISTLES,
@@ -28,7 +30,6 @@ from strainwave.simulation import (
     Course,
     Excitation,
     diverged,
-    output_units,
     progressing,
     remedy,
     too_coarse,
@@ -37,7 +38,6 @@ from strainwave.simulation import (
 
 Array = NDArray[np.float64]
 MOST_THREADS = 2**31 - 1  # that the core can count
-OUTPUTS = [name for name, _, _ in _core.outputs]
 SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 PART = 64 << 20  # bytes of output that a part of the files holds at most, where one pack does not need more
 
@@ -134,23 +134,25 @@ def _read(files: EnsembleFolder) -> Ensemble:
 class _Plan(ComparedByFields):
     """What is asked for, checked."""
 
-    drive: PositionDrive
+    drive: Drive
     excitation: Excitation
     dt: float
     sample: float
     numbers: list[int]
     parameters: dict[str, Array]
+    initial: Known | None
     course: Course
     inputs: Array
-    recorded: list[str]
+    recorded: dict[str, Output]
     threads: int
 
     @classmethod
     def of(
         cls,
-        drive: PositionDrive,
+        drive: Drive,
         excitation: Excitation,
         parameters: Mapping[str, ArrayLike],
+        initial: Mapping[str, ArrayLike] | None,
         dt: float,
         sample: float | None,
         record: Sequence[str],
@@ -158,12 +160,17 @@ class _Plan(ComparedByFields):
     ) -> _Plan:
         arguments.drive(drive)
         numbers, values = _checked(drive, parameters)
-        recorded = _outputs(record)
+        known = initial_of(drive, initial, len(next(iter(values.values()))))
+        recorded = signals.chosen(drive, record)
         threads = available_threads() if threads is None else arguments.whole("threads", threads, 1, MOST_THREADS)
         dt = arguments.seconds("dt", dt)
         sample = dt if sample is None else arguments.seconds("sample", sample)
-        course = excitation.course(dt, sample)
-        return cls(drive, excitation, dt, sample, numbers, values, course, excitation.over(course), recorded, threads)
+        for path in values.keys() & {"control.period", "control.delay"}:
+            if (values[path] != every(drive)[path].value).any():
+                raise ValueError(f"{path} must be that of the drive for all members: their steps end at the same instants")
+        instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
+        course = excitation.course(dt, sample, instants)
+        return cls(drive, excitation, dt, sample, numbers, values, known, course, excitation.over(course), recorded, threads)
 
     @property
     def members(self) -> int:
@@ -180,18 +187,19 @@ class _Plan(ComparedByFields):
     @property
     def units(self) -> dict[str, str]:
         """Of the outputs that are recorded."""
-        units = output_units(self.drive)
+        units = signals.units(self.drive, self.recorded.values())
         return {name: units[name] for name in self.recorded}
 
     def run(self, first: int, last: int, shown: object) -> Ensemble:
         """Members `first` up to `last`, not included."""
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
-        channels = [OUTPUTS.index(name) for name in self.recorded]
+        channels = [each.channel for each in self.recorded.values()]
         outputs = np.empty((len(channels), last - first, len(self.time)))
         sound, twists, fastest, on_bristles, refusals = _core.simulate_many(
             self.drive,
             self.numbers,
             values,
+            None if self.initial is None else (self.initial[0], np.ascontiguousarray(self.initial[1][:, first:last])),
             self.course.instants,
             self.inputs,
             self.course.samples[1:],
@@ -222,14 +230,14 @@ class _Plan(ComparedByFields):
         sound = at_rest | ran
         for member in np.flatnonzero(~sound | coarse).tolist():
             if member not in found and not sound[member]:
-                found[member] = diverged(self.time, self.recorded, outputs[:, member], remedy(self.course.longest))
+                found[member] = diverged(self.time, list(self.recorded), outputs[:, member], remedy(self.course.longest))
             elif member not in found:
                 found[member] = too_coarse(self.course.longest, float(twists[member]), float(fastest[member]))
         return dict(sorted(found.items()))
 
 
 def simulate_many(
-    drive: PositionDrive,
+    drive: Drive,
     command: Scenario,
     parameters: Mapping[str, ArrayLike],
     dt: float = 2e-4,
@@ -238,15 +246,17 @@ def simulate_many(
     sample: float | None = None,
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
     progress: bool = False,
 ) -> Ensemble:
     """Runs a drive many times through one command, each time with other numbers: several to a vector register, on all cores.
 
-    The same trajectories as `simulate` gives from rest with its method "exponential", to the last bit, whatever the number of
+    The same trajectories as `simulate` gives with its method "exponential", to the last bit, whatever the number of
     threads and the instruction set; only where orders of an error or exponents of a density are whole in some members and not
     in others may the last digit differ. The outputs take 8 bytes times members, outputs recorded and samples; `simulate_to`
-    writes them to files instead, in memory that is flat over members. What acts on all of them takes 105 bytes a step.
+    writes them to files instead, in memory that is flat over members. What acts on all of them takes 153 bytes a step.
 
     Args:
         drive: the drive
@@ -254,7 +264,8 @@ def simulate_many(
         parameters: what the members differ in: path of a parameter, as in "gear.friction_input.coulomb" or
             "gear.hysteresis.stiffness[0]", and its value for each member, shape (members,)
         record: the outputs to keep
-        dt, sample, load_torque, temperature, progress: as for `simulate`
+        dt, sample, load_torque, temperature, inputs, progress: as for `simulate`
+        initial: as for `simulate`; a quantity has one value, or one for each member
         threads: how many to run on; all that this process may use, if not given
 
     Returns:
@@ -272,13 +283,14 @@ def simulate_many(
 
     >>> import numpy as np
     >>> import strainwave as sw
-    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> inertia = np.linspace(0.01, 0.02, 5)
     >>> runs = sw.simulate_many(drive, sw.scenario.step(amplitude=5.0, duration=0.1), {"load.inertia": inertia})
     >>> runs["output_angle"].shape
     (5, 501)
     """
-    plan = _Plan.of(drive, Excitation(command, load_torque, temperature), parameters, dt, sample, record, threads)
+    excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
+    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads)
     try:
         with progressing(progress, plan.members * plan.steps) as shown:
             ensemble = plan.run(0, plan.members, shown)
@@ -291,7 +303,7 @@ def simulate_many(
 
 def simulate_to(
     folder: str | Path,
-    drive: PositionDrive,
+    drive: Drive,
     command: Scenario,
     parameters: Mapping[str, ArrayLike],
     dt: float = 2e-4,
@@ -300,6 +312,8 @@ def simulate_to(
     sample: float | None = None,
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
     progress: bool = False,
 ) -> Path:
@@ -314,7 +328,8 @@ def simulate_to(
 
     Args:
         folder: where to write; must not exist, be empty, or hold the beginning of the same ensemble
-        drive, command, parameters, dt, record, sample, load_torque, temperature, threads, progress: as for `simulate_many`
+        drive, command, parameters, dt, record, sample, load_torque, temperature, inputs, initial,
+            threads, progress: as for `simulate_many`
 
     Returns:
         the folder
@@ -330,13 +345,14 @@ def simulate_to(
 
     >>> import tempfile
     >>> import strainwave as sw
-    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = sw.simulate_to(folder, drive, sw.scenario.step(5.0, 0.1), {"load.inertia": [0.01, 0.02]}, sample=1e-2)
     ...     sw.Ensemble.read(folder)["torque"].shape
     (2, 11)
     """
-    plan = _Plan.of(drive, Excitation(command, load_torque, temperature), parameters, dt, sample, record, threads)
+    excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
+    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads)
     folder, failures = Path(folder), dict[int, str]()
     with making(folder), claiming(folder), progressing(progress, plan.members * plan.steps) as shown:
         files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, _part_size(plan)).begin()
@@ -357,13 +373,14 @@ def _asked(plan: _Plan) -> dict[str, str]:
     asked = {
         "drive": plan.drive,
         "command": excitation.command,
-        "load_torque": _scenario(excitation.load_torque),
+        signals.load_input(plan.drive): _scenario(excitation.load),
         "temperature": _scenario(excitation.temperature),
         "members": plan.members,
         "parameters": plan.parameters,
+        "initial": plan.initial,
         "dt": plan.dt,
         "sample": plan.sample,
-        "record": plan.recorded,
+        "record": list(plan.recorded),
         "version": version("strainwave"),
     }
     return {name: fingerprint(value) for name, value in asked.items()}
@@ -378,7 +395,7 @@ def available_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
+def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
     """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
     known = every(drive)
     arguments.mapping("parameters", parameters, '{"load.inertia": [0.01, 0.02]}')
@@ -400,14 +417,6 @@ def _checked(drive: PositionDrive, parameters: Mapping[str, ArrayLike]) -> tuple
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
         raise ValueError(f"all parameters must have as many values as there are members: {counts}")
     return [known[path].number for path in values], values
-
-
-def _outputs(record: Sequence[str]) -> list[str]:
-    """The outputs to record, in order."""
-    names = arguments.names("record", record)
-    if not names or not set(names) <= set(OUTPUTS):
-        raise ValueError(f"record = {shortened(names)} must list outputs of a drive: {', '.join(OUTPUTS)}")
-    return names
 
 
 def _limits(low: float, high: float) -> str:

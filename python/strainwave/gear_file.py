@@ -15,9 +15,21 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_type_hints
 
-from strainwave.drives import PositionDrive
+from strainwave import Drive
 from strainwave.files import replacing
-from strainwave.gear_set import NOT_GIVEN, Entry, GearSet, Parameter, Part, Quantity, default_of, own_paths, parameters, parts
+from strainwave.gear_set import (
+    NOT_GIVEN,
+    Entry,
+    GearSet,
+    Parameter,
+    Part,
+    Quantity,
+    all_paths,
+    default_of,
+    own_paths,
+    parameters,
+    parts,
+)
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -64,13 +76,14 @@ def idle(gear_set: GearSet) -> list[str]:
 class _Table(NamedTuple):
     """A table of a gear file: the numbers of one model, without those of its parts.
 
-    `kinds` are the models to choose from, none where there is but one. `absent` holds where the table is left out: the
-    part that does nothing, or None.
+    `kinds` are the models to choose from, none where there is but one, `only`. `absent` holds where the table is left out:
+    the part that does nothing, or None.
     """
 
     name: str
     path: str
     kinds: Mapping[str, Any]
+    only: Any
     absent: Any
     required: bool
 
@@ -86,7 +99,7 @@ class _Table(NamedTuple):
 
 @cache
 def _tables() -> tuple[_Table, ...]:
-    drive = PositionDrive()
+    drive = Drive()
     return tuple(_table(path, model, part) for path, model in (("gear.", drive.gear), ("", drive)) for part in parts(model))
 
 
@@ -95,14 +108,19 @@ def _table(path: str, model: Any, part: Part) -> _Table:
     default = getattr(model, part.name)
     idle = not getattr(default, "active", any(getattr(default, p.name) not in (0, ()) for p in parameters(default)))
     absent = default if of_gear and idle else None
-    return _Table(part.name, path + part.name, part.options or {}, absent, required=of_gear and not idle)
+    return _Table(part.name, path + part.name, part.options or {}, type(default), absent, required=of_gear and not idle)
 
 
 def _inner(path: str, model: Any) -> list[_Table]:
     """The tables of the models that a model, or a class of models, holds; those of a gear stand in the file by themselves."""
     if path == "gear":
         return []
-    return [_Table(part.name, f"{path}.{part.name}", part.options or {}, None, required=True) for part in parts(model)]
+    tables = []
+    for part in parts(model):
+        default = default_of(model, part.name)
+        absent = None if list(all_paths("", default)) else default  # without numbers, so without a source
+        tables.append(_Table(part.name, f"{path}.{part.name}", part.options or {}, type(default), absent, absent is None))
+    return tables
 
 
 def _filled(gear_set: GearSet) -> Iterator[tuple[_Table, Any]]:
@@ -129,7 +147,7 @@ def _document(path: Path) -> dict[str, Any]:
 
 
 def _read_models(document: Mapping[str, Any]) -> tuple[dict[str, Any], Sources]:
-    """Gear, motor, control and load, as far as there are, and where their numbers come from, by path."""
+    """The parts of a drive, as far as there are, and where their numbers come from, by path."""
     models: dict[str, Any] = {}
     sources: Sources = {}
     for table in _tables():
@@ -178,7 +196,7 @@ def _read_parameter(path: str, parameter: Parameter, given: Any) -> tuple[Any, S
 def _chosen(table: _Table, content: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     """The class of the model that a table names, and the rest of the table."""
     if not table.kinds:
-        return type(table.absent), content
+        return table.only, content
     if "model" not in content:
         raise ValueError(f"has no model; write {_choice(table)}")
     name = str(content["model"])
@@ -241,7 +259,7 @@ def _table_form(path: str, model: Any) -> _Form:
         for parameter in parameters(model)
     }
     for inner in _inner(path, model):
-        keys[inner.name] = (dict[str, Any], ...)
+        keys[inner.name] = (dict[str, Any], ...) if inner.required else (dict[str, Any] | None, None)
         examples[inner.name] = f"{inner.header} with {_choice(inner)}"
     return _Form(f"parameter of {model.name}", _schema(model.name, keys), examples)
 
@@ -382,7 +400,8 @@ def _written(table: _Table, model: Any, sources: Mapping[str, Entry]) -> Any:
         else:
             written.add(name, _inline(value, unit, sources[place]))
     for inner in _inner(table.path, model):
-        written.add(inner.name, _written(inner, getattr(model, inner.name), sources))
+        if not _is_left_out(inner, part := getattr(model, inner.name), sources):
+            written.add(inner.name, _written(inner, part, sources))
     return written
 
 

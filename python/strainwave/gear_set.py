@@ -16,9 +16,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol, TypeVar, overload, runtime_checkable
 
-from strainwave import arguments
+from strainwave import Drive, arguments
 from strainwave._core import Gear
-from strainwave.drives import PositionDrive
 from strainwave.messages import quoted, shortened, unquoted
 from strainwave.units import check as check_unit
 from strainwave.units import convert
@@ -126,7 +125,8 @@ class GearSet:
         maker: who makes it
         note: what else is to be said
         ratings: what the maker allows, by name; no part of the model
-        motor, control, load: the rest of a drive, models of `sw.motor`, `sw.control` and `sw.loads`; None if not known
+        motor, control, load, sensors: the rest of a drive, models of `sw.motor`, `sw.control` and `sw.loads`, and `sw.Sensors`;
+            None if not known
 
     Raises:
         ValueError: a number has no source, a source has no number, or name or maker is no line of text
@@ -148,6 +148,7 @@ class GearSet:
     motor: Any = None
     control: Any = None
     load: Any = None
+    sensors: Any = None
 
     def __post_init__(self) -> None:
         _check_texts(self.name, self.maker, self.note)
@@ -166,7 +167,7 @@ class GearSet:
         return partial(GearSet, **vars(self) | {"sources": dict(self.sources), "ratings": dict(self.ratings)}), ()
 
     @property
-    def drive(self) -> PositionDrive:
+    def drive(self) -> Drive:
         """The drive that the set describes; open loop where it has no control.
 
         Raises:
@@ -188,9 +189,7 @@ class GearSet:
         return gear_file.left_out(self)
 
     @classmethod
-    def of(
-        cls, model: Gear | PositionDrive | Fitted, *, name: str, source: str, sources: Mapping[str, Entry] | None = None
-    ) -> GearSet:
+    def of(cls, model: Gear | Drive | Fitted, *, name: str, source: str, sources: Mapping[str, Entry] | None = None) -> GearSet:
         """The set of a model, or of a fit.
 
         A model does not remember which of its numbers were given. So a part that does nothing is "not given", and the
@@ -327,7 +326,7 @@ def load(name_or_path: str | Path) -> Any:
         name_or_path: a name in `catalogue()`, or a path: what ends in .toml or has a folder
 
     Returns:
-        A `Gear` or a `PositionDrive`; of a set of the catalogue a `Gear`.
+        A `Gear` or a `Drive`; of a set of the catalogue a `Gear`.
 
     Raises:
         ValueError: as `GearSet.read`, which also gives sources and ratings.
@@ -343,14 +342,14 @@ def load(name_or_path: str | Path) -> Any:
 def save(model: GearSet, path: str | Path) -> None: ...
 @overload
 def save(
-    model: Gear | PositionDrive | Fitted,
+    model: Gear | Drive | Fitted,
     path: str | Path,
     *,
     name: str,
     source: str,
     sources: Mapping[str, Entry] | None = None,
 ) -> None: ...
-def save(model: GearSet | Gear | PositionDrive | Fitted, path: str | Path, **naming: Any) -> None:
+def save(model: GearSet | Gear | Drive | Fitted, path: str | Path, **naming: Any) -> None:
     """Write a gear file, which `load` reads back equal, bit for bit.
 
     Args:
@@ -403,6 +402,9 @@ def parameters(model: Any) -> list[Parameter]:
     return [Parameter(*map(field.get, Parameter._fields)) for field in model.fields if field["kind"] != "part"]
 
 
+_PARTS = [field["name"] for field in Drive.fields]
+
+
 def default_of(model: Any, name: str) -> Any:
     """What a parameter of a model, or of a class of models, is by default; an order of magnitude where it must be given."""
     return next(field["default"] for field in model.fields if field["name"] == name)
@@ -417,25 +419,23 @@ def own_paths(path: str, model: Any) -> Iterator[str]:
             yield f"{path}.{name}"
 
 
-def _all_paths(path: str, model: Any) -> Iterator[str]:
+def all_paths(path: str, model: Any) -> Iterator[str]:
     """Path of every number of a model, and of its parts."""
     yield from own_paths(path, model)
     for part in parts(model):
-        yield from _all_paths(f"{path}.{part.name}", getattr(model, part.name))
+        yield from all_paths(f"{path}.{part.name}", getattr(model, part.name))
 
 
 def _paths(models: Mapping[str, Any]) -> Iterator[str]:
-    """Path of every number of gear, motor, control and load."""
-    for name in ("gear", "motor", "control", "load"):
+    """Path of every number of the parts of a drive."""
+    for name in _PARTS:
         if models.get(name) is not None:
-            yield from _all_paths(name, models[name])
+            yield from all_paths(name, models[name])
 
 
 def _models(model: Any) -> dict[str, Any]:
-    """Gear, motor, control and load of a drive, or the gear alone."""
-    return (
-        {part.name: getattr(model, part.name) for part in parts(model)} if isinstance(model, PositionDrive) else {"gear": model}
-    )
+    """The parts of a drive, or the gear alone."""
+    return {part.name: getattr(model, part.name) for part in parts(model)} if isinstance(model, Drive) else {"gear": model}
 
 
 def _unless_default(gear_set: GearSet, path: str) -> Entry:
@@ -469,7 +469,7 @@ def _named(gear_set: GearSet, sources: Mapping[str, Entry]) -> dict[str, Entry]:
 
 def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
     """The entries of fitted numbers; the paths of a gear's fit begin inside the gear."""
-    before = "" if isinstance(fit.model, PositionDrive) else "gear."
+    before = "" if isinstance(fit.model, Drive) else "gear."
     entries = {}
     for estimate in fit.estimates:
         told = isfinite(estimate.sigma)
@@ -478,10 +478,10 @@ def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
     return {path: entry for path, entry in entries.items() if path in gear_set.sources}
 
 
-def _drive(models: Mapping[str, Any]) -> PositionDrive:
+def _drive(models: Mapping[str, Any]) -> Drive:
     """The drive of these models, with the default for each that is None."""
-    rest = {name: models[name] for name in ("motor", "control", "load") if models.get(name) is not None}
-    return PositionDrive(gear=models["gear"], **rest)
+    rest = {name: models[name] for name in _PARTS if name == "gear" or models.get(name) is not None}
+    return Drive(**rest)
 
 
 def _check_texts(name: str, maker: str, note: str) -> None:

@@ -15,18 +15,19 @@ from math import tau
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core, arguments
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core, arguments
 from strainwave.equality import ComparedByFields
 from strainwave.memory import room_for
-from strainwave.simulation import ROOM_TEMPERATURE, output_units
+from strainwave.signals import TWIST, check_continuous, command_unit, outputs, units
+from strainwave.simulation import ROOM_TEMPERATURE
 from strainwave.state import Layout, State, start_of
-from strainwave.steady import OUTPUTS, OVERFLOW, SLOWLY, TWIST, averaged, constant_inputs, equilibrium
+from strainwave.steady import OVERFLOW, SLOWLY, averaged, constant_inputs, equilibrium
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 INPUTS = ("command", "command_rate", "load_torque", "temperature")
+_COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +130,7 @@ class LinearView(ComparedByFields):
 
 
 def linearise(
-    drive: PositionDrive,
+    drive: Drive,
     state: State | None = None,
     *,
     command: float = 0.0,
@@ -162,7 +163,7 @@ def linearise(
             torques grow beyond all numbers
 
     >>> import strainwave as sw
-    >>> drive = sw.drives.PositionDrive(control=sw.control.PID(proportional=2.0, derivative=0.05))
+    >>> drive = sw.Drive(control=sw.control.PID(proportional=2.0, derivative=0.05))
     >>> linear = sw.linearise(drive)
     >>> linear.states
     ('input_angle', 'input_speed', 'transmission_error', 'output_speed')
@@ -171,7 +172,7 @@ def linearise(
     >>> round(float(abs(linear.response(0.0))), 12)  # it goes where it is told
     1.0
     """
-    arguments.drive(drive)
+    check_continuous(arguments.drive(drive), "linearise")
     inputs = constant_inputs(command, load_torque, temperature, command_rate)
     if state is None:
         state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
@@ -184,19 +185,22 @@ def linearise(
         raise ValueError(f"the drive cannot be linearised: {OVERFLOW}")
     layout = Layout(drive)
     count = layout.count
-    by_numbers, by_inputs = np.split(0.5 * slopes[0].T + 0.5 * slopes[1].T, [count], axis=1)
+    shown = outputs(drive)
+    rows = [*range(count), *(count + each.channel for each in shown.values())]
+    by_numbers, by_inputs = np.split((0.5 * slopes[0].T + 0.5 * slopes[1].T)[rows], [count], axis=1)
+    by_inputs = by_inputs[:, _COLUMNS]
     kept = _moving(state, layout)
     by_numbers = by_numbers @ _tied(state, layout)
     while dead := [place for place in kept if not _matters(place, by_numbers, kept)]:
         kept = [place for place in kept if place not in dead]
     (a, c), (b, d) = np.split(by_numbers[:, kept], [count]), np.split(by_inputs, [count])
-    units = layout.units | output_units(drive) | _input_units(drive)
+    known = layout.units | units(drive, shown.values()) | _input_units(drive)
     states = tuple(layout.names[place] for place in kept)
-    chosen = {name: units[name] for name in (*states, *INPUTS, *OUTPUTS)}
-    return LinearView(a[kept], b[kept], c, d, states, INPUTS, tuple(OUTPUTS), chosen)
+    chosen = {name: known[name] for name in (*states, *INPUTS, *shown)}
+    return LinearView(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen)
 
 
-def _vibrating(state: State, drive: PositionDrive, inputs: Array, sense: float) -> Array:
+def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array:
     """`state` as a vibration finds it that is too small to change it and just passes in one `sense`, not for the first time."""
     twist = _core.now(drive, state.numbers, inputs)[TWIST].item()
     little, ratio = 1e-12 * max(abs(twist), 1e-3), abs(drive.gear.kinematics.ratio)
@@ -247,9 +251,8 @@ def _matters(place: int, by_numbers: Array, kept: list[int]) -> bool:
     return bool(by_numbers[others, place].any() or by_numbers[by_numbers.shape[1] :, place].any())
 
 
-def _input_units(drive: PositionDrive) -> dict[str, str]:
-    unit = drive.control.command_unit
-    return {"command_rate": f"{unit}/s", "load_torque": "N.m", "temperature": "K"}
+def _input_units(drive: Drive) -> dict[str, str]:
+    return {"command_rate": f"{command_unit(drive)}/s", "load_torque": "N.m", "temperature": "K"}
 
 
 def _place(name: str, names: tuple[str, ...], kind: str) -> int:

@@ -11,8 +11,8 @@ class DC:
 
     with u the voltage, omega the input speed, R = resistance, L = inductance, K_m = torque_constant, K_b = back_emf. With
     inductance = 0 the current follows at once, i = (u - K_b omega) / R, as document P assumes. Leaves out cogging, iron
-    losses, saturation and the warming of the winding. A torque source, as a current-controlled amplifier makes one, is
-    resistance = 1, back_emf = 0: the voltage then is the current.
+    losses, saturation and the warming of the winding. A motor whose current is controlled by its amplifier
+    is a CurrentSource.
 
     >>> from strainwave.motor import DC
     >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
@@ -78,5 +78,121 @@ class DC:
     name: str = 'dc'
 
     source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class TorqueSource:
+    """
+    A motor that gives the torque it is asked for, at once and at any speed.
+
+    .. math:: \\tau = u
+
+    with u what the controller asks for [N.m]. For studies of the gear alone, and for drives whose motor is not known.
+
+    >>> from strainwave.motor import TorqueSource
+    >>> TorqueSource(inertia=2e-5).inertia
+    2e-05
+
+    Parameters
+    ----------
+    inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition
+    """
+
+    def __init__(self, *, inertia: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ...) -> TorqueSource:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def inertia(self) -> float:
+        """Rotor inertia [kg.m2]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'torque_source'
+
+    source: str = 'definition'
+
+    fields: tuple[dict[str, Any], ...]
+
+class CurrentSource:
+    """
+    A motor behind a fast current controller: the current is what it is asked to be, at once and at any speed.
+
+    .. math:: i = u, \\qquad \\tau = K_m i
+
+    with u what the controller asks for [A], K_m = torque_constant. Leaves out that the supply limits the current as the
+    speed grows.
+
+    >>> from strainwave.motor import CurrentSource
+    >>> CurrentSource(torque_constant=0.1).torque_constant
+    0.1
+
+    Parameters
+    ----------
+    torque_constant: Torque per current K_m [N.m/A], in [0, inf); default 0.05
+    inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition
+    """
+
+    def __init__(self, *, torque_constant: float = ..., inertia: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, torque_constant: float = ..., inertia: float = ...) -> CurrentSource:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def torque_constant(self) -> float:
+        """Torque per current K_m [N.m/A]"""
+
+    @property
+    def inertia(self) -> float:
+        """Rotor inertia [kg.m2]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'current_source'
+
+    source: str = 'definition'
 
     fields: tuple[dict[str, Any], ...]

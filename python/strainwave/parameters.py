@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
-from strainwave import Gear, _core, arguments
-from strainwave.drives import PositionDrive
+from strainwave import Drive, Gear, _core, arguments
 from strainwave.messages import quoted
 
 
@@ -24,7 +23,7 @@ class Parameter:
     high: float
 
 
-def every(model: Gear | PositionDrive) -> dict[str, Parameter]:
+def every(model: Gear | Drive) -> dict[str, Parameter]:
     """All numbers of a model by their paths, in its order."""
     return {
         path: Parameter(number, path, unit, value, low, high)
@@ -38,7 +37,7 @@ def unknown(path: str, known: Iterable[str]) -> ValueError:
     return ValueError(f"the model has no parameter {quoted(path)}; near it are {', '.join(near)}")
 
 
-def parameters(name: str, model: Gear | PositionDrive, paths: Sequence[str]) -> list[Parameter]:
+def parameters(name: str, model: Gear | Drive, paths: Sequence[str]) -> list[Parameter]:
     """Those that an argument names, in the order of the model; the path of a sequence names all its elements.
 
     >>> gear = Gear()

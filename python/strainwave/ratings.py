@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
-from strainwave.drives import PositionDrive
+from strainwave import Drive, arguments
 from strainwave.gear_set import GearSet, Quantity
 from strainwave.messages import shortened
 from strainwave.recording import Recording
@@ -100,7 +99,7 @@ peak torque, CSG-20-100)
     return [check for check in found if check is not None]
 
 
-def drive_of(model: object) -> PositionDrive:
+def drive_of(model: object) -> Drive:
     """The drive to run: itself, or that of a gear set."""
     return model.drive if isinstance(model, GearSet) else arguments.drive(model)
 

@@ -10,12 +10,13 @@ from math import ceil
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core, arguments
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core, arguments
 from strainwave.equality import ComparedByFields
 from strainwave.memory import check_instants
 from strainwave.messages import listed, quoted
-from strainwave.scenario import SHORTEST, Scenario, constant, sine
+from strainwave.scenario import SHORTEST, constant, sine
+from strainwave.signals import check_continuous
+from strainwave.signals import outputs as outputs_of
 from strainwave.simulation import ROOM_TEMPERATURE, Excitation, beginning, check_resolution, recording, warn_of_bristles
 from strainwave.state import State, start_of
 from strainwave.steady import averaged, constant_inputs, equilibrium
@@ -60,7 +61,7 @@ class FrequencyResponse(ComparedByFields):
 
 
 def frequency_response(
-    drive: PositionDrive,
+    drive: Drive,
     frequency: ArrayLike,
     amplitude: float,
     *,
@@ -107,13 +108,13 @@ def frequency_response(
 
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
-    >>> drive = sw.drives.PositionDrive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
+    >>> drive = sw.Drive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
     >>> answer = sw.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
     >>> linear = sw.linearise(drive)
     >>> abs(answer["output_angle"] / linear.response([1.0, 2.0])).round(3)
     array([1., 1.])
     """
-    arguments.drive(drive)
+    check_continuous(arguments.drive(drive), "frequency_response")
     constant_inputs(command, load_torque, temperature)  # refuses what makes no sense
     frequencies = np.atleast_1d(arguments.numbers("frequency", frequency))
     amplitude = arguments.number("amplitude", amplitude, brackets="[)", low=_SMALLEST)
@@ -127,12 +128,13 @@ def frequency_response(
     if start.input_speed != 0.0:
         drive = averaged(drive)
     warn_of_bristles(drive, max(_step(1.0 / f, dt) for f in frequencies.tolist()))
-    sines = _Sines(drive, start.numbers, temperature, dt)
+    sines = _Sines(drive, start.numbers, dt)
     found = []
     for f in frequencies.tolist():
         levels = {"command": constant(command, 1.0 / f), "load_torque": constant(load_torque, 1.0 / f)}
         levels[input] = levels[input] + sine(amplitude, f, 1.0 / f)
-        found.append(sines.periodic(levels, tolerance, most_periods))
+        excitation = Excitation(levels["command"], levels["load_torque"], temperature)
+        found.append(sines.periodic(excitation, tolerance, most_periods))
     return _response(frequencies, amplitude, [period for period, _ in found], [count for _, count in found])
 
 
@@ -160,25 +162,22 @@ def _check(frequencies: Array, signal: str, dt: float) -> None:
 class _Sines:
     """Runs from one start, period by period."""
 
-    drive: PositionDrive
+    drive: Drive
     start: Array
-    temperature: float
     dt: float
 
-    def periodic(self, levels: dict[str, Scenario], tolerance: float, most_periods: int) -> tuple[dict[str, Array], int]:
-        """The outputs over the first period that repeats the one before, and its number; the levels last one period."""
+    def periodic(self, excitation: Excitation, tolerance: float, most_periods: int) -> tuple[dict[str, Array], int]:
+        """The outputs over the first period that repeats the one before, and its number; the excitation lasts one period."""
         before, change = None, np.inf
-        for count, period in enumerate(
-            islice(self._periods(Excitation(**levels, temperature=self.temperature)), most_periods), 1
-        ):
+        for count, period in enumerate(islice(self._periods(excitation), most_periods), 1):
             if before is not None:
                 change = max(_change(values, before[name]) for name, values in period.items())
             if change <= tolerance:
                 return period, count
             before = period
         raise RuntimeError(
-            f"at {1.0 / levels['command'].duration:g} Hz the motion is not periodic after {most_periods} periods: the last two "
-            f"differ by {change:.2g} of the swing, more than tolerance = {tolerance:g}; "
+            f"at {1.0 / excitation.command.duration:g} Hz the motion is not periodic after {most_periods} periods: the last "
+            f"two differ by {change:.2g} of the swing, more than tolerance = {tolerance:g}; "
             "a motion that only creeps may need more periods"
         )
 
@@ -188,13 +187,14 @@ class _Sines:
         step = _step(period, self.dt)
         check_resolution(self.drive, step, 0.0)
         course = excitation.course(step, None)
+        recorded = outputs_of(self.drive)
+        channels = [each.channel for each in recorded.values()]
         inputs, state = excitation.over(course), self.start
         while True:
-            outputs = beginning(self.drive, state, excitation, len(course.times))
-            state = _core.simulate(
-                self.drive, state, course.instants, inputs, course.samples[1:], _core.Method.exponential, outputs, 1
-            )
-            run = recording(self.drive, course, outputs)
+            outputs = beginning(self.drive, state, excitation, channels, len(course.times))
+            keep, method = course.samples[1:], _core.Method.exponential
+            state = _core.simulate(self.drive, state, course.instants, inputs, keep, method, channels, outputs, 1)
+            run = recording(self.drive, course, recorded, outputs)
             yield {name: run[name] for name in run.names if name != "time"}
 
 

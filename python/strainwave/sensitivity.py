@@ -9,14 +9,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
-from strainwave.drives import PositionDrive
+from strainwave import Drive, arguments
 from strainwave.equality import ComparedByFields
 from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import parameters as chosen
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
-from strainwave.simulation import ROOM_TEMPERATURE, differentiate, warn_of_bristles
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, differentiate, warn_of_bristles
 
 Array = NDArray[np.float64]
 
@@ -57,7 +56,7 @@ class Derivatives(ComparedByFields):
 
 
 def derivatives(
-    drive: PositionDrive,
+    drive: Drive,
     command: Scenario,
     parameters: Sequence[str],
     dt: float = 2e-4,
@@ -65,8 +64,10 @@ def derivatives(
     sample: float | None = None,
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    initial: Mapping[str, float] | None = None,
 ) -> Derivatives:
-    """Runs a drive through a command, from rest, with the derivatives of all outputs by some of its parameters.
+    """Runs a drive through a command with the derivatives of all outputs by some of its parameters.
 
     They are those of the run as it is computed, exact to rounding: dual numbers go through steps, events and the memory of
     hysteresis. At a moment where the run itself is not smooth in a parameter they are those of one side; by a whole number, as
@@ -76,7 +77,8 @@ def derivatives(
         drive: what is commanded
         command: as for `simulate`
         parameters: paths, as "gear.stiffness.a1"; that of a sequence, as "gear.kinematic_error.amplitude", is all its elements
-        dt, sample, load_torque, temperature: as for `simulate`
+        dt, sample, load_torque, temperature, inputs, initial: as for `simulate`; what follows from `initial` moves with the
+            parameters
 
     Raises:
         TypeError, ValueError, FloatingPointError, MemoryError: as `simulate`; a path that the drive does not have
@@ -85,7 +87,7 @@ def derivatives(
         RuntimeWarning: the drive has bristles too stiff for steps of `dt`
 
     >>> import strainwave as sw
-    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
     >>> found["output_angle", "load.inertia"].shape
     (101,)
@@ -98,7 +100,11 @@ def derivatives(
     if not places:
         raise ValueError("parameters must name at least one number")
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    run, values = differentiate(drive, command, [each.number for each in places], dt, interval, load_torque, temperature)
+    timed = [each.path for each in places if each.path in ("control.period", "control.delay")]
+    if timed:
+        raise ValueError(f"there is no derivative by {timed[0]}: it tells when something happens, not how much of it")
+    excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
+    run, values = differentiate(drive, excitation, [each.number for each in places], dt, interval, initial)
     warn_of_bristles(drive, min(dt, interval, command.duration))
     endless = [each.path for each, slopes in zip(places, values, strict=True) if not np.isfinite(slopes).all()]
     if endless:

@@ -13,24 +13,25 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core, arguments, signals
 from strainwave.equality import ComparedByFields
 from strainwave.gear_set import GearSet
+from strainwave.initial import beginning_numbers, known
 from strainwave.memory import check_instants, room_for
-from strainwave.messages import shortened
+from strainwave.messages import quoted, shortened
 from strainwave.ratings import drive_of, warn_of_ratings
 from strainwave.recording import Recording
 from strainwave.scenario import Scenario
-from strainwave.state import State, start_of
+from strainwave.signals import TWIST, Output
+from strainwave.state import State
 
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of a drive's own motion
 ROOM_TEMPERATURE = 293.15  # K
+NEVER = np.empty(0)
 LARGEST: float = _core.largest  # of all that is recorded
-_TWIST = [name for name, _, _ in _core.outputs].index("twist")
 # What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
-STEP, INPUTS = 33.0, 96.0
+STEP, INPUTS = 33.0, 144.0
 LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"
 STRETCH = 5e-3  # s, after which an adaptive step ends at the latest
 PER_PERIOD = 5.0  # such steps in a period of an input, at the least
@@ -74,41 +75,63 @@ class Course(ComparedByFields):
 
 @dataclass(frozen=True)
 class Excitation:
-    """What acts on a drive from outside: command, torque that holds the output back [N.m], temperature of the gear [K]."""
+    """What acts on a drive from outside: the command, the input of its load, and the temperature of the gear [K]."""
 
     command: Scenario
-    load_torque: Scenario | float = 0.0
+    load: Scenario | float = 0.0
     temperature: Scenario | float = ROOM_TEMPERATURE
 
-    def __post_init__(self) -> None:
-        if not isinstance(self.command, Scenario):
-            raise TypeError(f"command = {shortened(self.command)} must be a Scenario, as sw.scenario.constant(...) makes one")
-        for name in ("load_torque", "temperature"):
-            signal = getattr(self, name)
+    @classmethod
+    def of(
+        cls,
+        drive: Drive,
+        command: Scenario,
+        load_torque: Scenario | float = 0.0,
+        temperature: Scenario | float = ROOM_TEMPERATURE,
+        inputs: Mapping[str, Scenario | float] | None = None,
+    ) -> Excitation:
+        """From arguments as users give them; `inputs` has those that the parts of the drive take, by name."""
+        if not isinstance(command, Scenario):
+            raise TypeError(f"command = {shortened(command)} must be a Scenario, as sw.scenario.constant(...) makes one")
+        if inputs is not None:
+            arguments.mapping("inputs", inputs, '{"output_angle": 0.1}')
+        given = dict(inputs or {})
+        name = signals.load_input(drive)
+        if name != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
+            raise ValueError(f"the load of this drive takes no load_torque, but {name}: give inputs={{{quoted(name)}: ...}}")
+        known = {name: load_torque if name == "load_torque" else 0.0, "temperature": temperature}
+        for each in given:
+            arguments.one_of("the name of an input", each, tuple(known))
+        known |= given
+        for each, signal in known.items():
             if not isinstance(signal, Scenario | Real):
-                raise TypeError(f"{name} = {shortened(signal)} must be a number or a Scenario")
-            if isinstance(signal, Scenario) and signal.duration != self.command.duration:
-                raise ValueError(
-                    f"{name} lasts {signal.duration} s, command {self.command.duration} s; both must last equally long"
-                )
+                raise TypeError(f"{each} = {shortened(signal)} must be a number or a Scenario")
+            if isinstance(signal, Scenario) and signal.duration != command.duration:
+                raise ValueError(f"{each} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
             if not isinstance(signal, Scenario):
-                arguments.number(name, signal)
-        if not isinstance(self.temperature, Scenario):
-            check_temperature(self.temperature)
+                arguments.number(each, signal)
+        if not isinstance(known["temperature"], Scenario):
+            check_temperature(known["temperature"])
+        return cls(command, known[name], known["temperature"])
 
-    def course(self, dt: float, samples: float | Array | None) -> Course:
-        """The steps that follow it."""
-        signals = (self.command, self.load_torque, self.temperature)
-        breaks = np.concatenate([signal.breaks for signal in signals if isinstance(signal, Scenario)])
+    @property
+    def _scenarios(self) -> list[Scenario]:
+        return [signal for signal in (self.command, self.load, self.temperature) if isinstance(signal, Scenario)]
+
+    def course(self, dt: float, samples: float | Array | None, instants: Array = NEVER) -> Course:
+        """The steps that follow it, and end at `instants`, at which a controller acts."""
+        breaks = np.concatenate([*(signal.breaks for signal in self._scenarios), instants])
         return Course.through(self.command.duration, dt, dt if samples is None else samples, breaks)
 
-    def ends(self) -> Array:
-        """Where adaptive steps must end [s]: wherever an input jumps, and so often that none is as long as a period of one."""
-        signals = [signal for signal in (self.command, self.load_torque, self.temperature) if isinstance(signal, Scenario)]
+    def ends(self, instants: Array) -> Array:
+        """Where adaptive steps must end [s]: wherever an input jumps, at `instants`, at which a controller acts, and so often
+        that none is as long as a period of an input."""
         duration = self.command.duration
-        fastest = max((abs(w.frequency + t * w.sweep) for s in signals for w in s.waves for t in (0.0, duration)), default=0.0)
+        waves = [wave for signal in self._scenarios for wave in signal.waves]
+        fastest = max((abs(w.frequency + t * w.sweep) for w in waves for t in (0.0, duration)), default=0.0)
         regular = grid(1.0 / max(1.0 / STRETCH, PER_PERIOD * fastest), duration, 1e-9 * STRETCH)
-        return np.unique(np.concatenate([regular, *(signal.breaks for signal in signals)]))
+        ends = np.unique(np.concatenate([regular, instants, *(signal.breaks for signal in self._scenarios)]))
+        return ends[np.append(np.diff(ends) > 1e-9 * STRETCH * (duration > STRETCH), True)] if len(instants) else ends
 
     def check_temperature(self, ends: Array) -> None:
         """Refuses a temperature that is not positive, at eight places between all `ends`."""
@@ -118,20 +141,20 @@ class Excitation:
 
     @cached_property
     def signals(self) -> tuple[_core.Signal, _core.Signal, _core.Signal]:
-        """Command, load torque and temperature."""
-        return _signal(self.command), _signal(self.load_torque), _signal(self.temperature)
+        """Command, input of the load and temperature."""
+        return _signal(self.command), _signal(self.load), _signal(self.temperature)
 
     def first(self) -> Array:
-        """Command, its rate, load torque and temperature at t = 0."""
+        """Command, input of the load and temperature, each with its rate, at t = 0."""
         start: Array = _core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0]
         return start
 
     def over(self, course: Course) -> Array:
-        """The same at the start, middle and end of each step, shape (n, 3, 4)."""
+        """The same at the start, middle and end of each step, shape (n, 3, 6)."""
         with room_for("steps", len(course.instants), STEP + INPUTS, LONG_RUN):
             inputs = _core.inputs(*self.signals, course.instants)
         if isinstance(self.temperature, Scenario):
-            check_temperature(float(inputs[:, :, 3].min()))
+            check_temperature(float(inputs[:, :, 4].min()))
         return inputs
 
 
@@ -163,10 +186,10 @@ class Run(Recording):
         self._came_about(end, method)
 
     @classmethod
-    def _made(cls, drive: PositionDrive, time: Array, outputs: Array, end: State, method: str) -> Run:
-        """Of outputs, shape (channels, samples), that mean something: to check them as any others takes a quarter of a call."""
+    def _made(cls, drive: Drive, time: Array, recorded: Mapping[str, Output], outputs: Array, end: State, method: str) -> Run:
+        """Of outputs that mean something: to check them as any others takes a quarter of a call."""
         run = object.__new__(cls)
-        run._hold(_columns(time, outputs), output_units(drive), _title(method))
+        run._hold(_columns(time, recorded, outputs), signals.units(drive, recorded.values()), _title(method))
         run._came_about(end, method)
         return run
 
@@ -183,14 +206,17 @@ def _title(method: str) -> str:
 
 
 def simulate(
-    drive: PositionDrive | GearSet,
+    drive: Drive | GearSet,
     command: Scenario,
     dt: float = 2e-4,
     *,
     sample: float | None = None,
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
     start: State | None = None,
+    initial: Mapping[str, float] | None = None,
+    record: Sequence[str] | None = None,
     method: Method | None = None,
     progress: bool = False,
 ) -> Run:
@@ -202,30 +228,37 @@ def simulate(
 
     Args:
         drive: what is commanded; of a gear set its drive
-        command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
+        command: output angle [rad] of a drive under position control; in open loop what its motor takes, as a voltage [V]
         dt: largest step [s] where steps are fixed
         sample: distance of samples in the recording [s]; `dt` if not given
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K], for friction that depends on it
+        inputs: those and other inputs that parts take, by name: {"output_angle": ...} where the load prescribes that [rad]
         start: where the drive starts, as `end` of another run of a drive with the same models; at rest, untwisted, if not given
         method: "exponential", a Runge-Kutta method of fourth order that lets bristles relax exactly; "rosenbrock", a W-method
             of third order for shafts that rest on stiff bristles without turning round; "moreau_jean", time-stepping of second
             order that looks for no events, however many there are. If not given it is the first, unless a shaft vibrates on
             its bristles faster than steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its
             tolerances; at most a thousand for each of `dt`, or a hundred thousand if that is more.
+        initial: in place of `start`, some of input_angle, output_angle [rad], input_speed, output_speed [rad/s], twist [rad],
+            torque [N.m], current [A], as in {"output_angle": 0.3, "input_speed": 5.0}. The rest follows: one angle or speed
+            from the other; the twist as the one at which load and friction do not accelerate the output; bristles, motor and
+            sensors as they are once they have settled
+        record: the outputs to keep, by name; all, if not given
         progress: show a progress bar
 
     Returns:
         Recording with columns time [s], command, input_angle [rad], input_speed [rad/s], output_angle [rad], output_speed
-        [rad/s], twist [rad], kinematic_error [rad], transmission_error [rad], torque [N.m], current [A], voltage [V],
-        friction_input [N.m], friction_mesh [N.m], friction_output [N.m], load_torque [N.m], temperature [K], each of shape
-        (n,); the first sample is at t = 0. Its `end` is the state at the end, its `method` says how steps were taken.
+        [rad/s], twist [rad], kinematic_error [rad], transmission_error [rad], torque [N.m], what the motor shows of itself (a
+        DC motor current [A] and voltage [V]), friction_input [N.m], friction_mesh [N.m], friction_output [N.m], load_torque
+        [N.m], temperature [K], or of these what `record` names, each of shape (n,); the first sample is at t = 0. Its `end` is
+        the state at the end, its `method` says how steps were taken.
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: `dt`, `sample` or `temperature` is not positive, `load_torque` or `temperature` lasts another time than
-            `command`, `method` is not known, or the drive leaves the range in which one of its parts is valid; says which,
-            where and when
+        ValueError: an input or output that the drive does not have, `dt`, `sample` or `temperature` is not positive, an input
+            lasts another time than `command`, `method` is not known, or the drive leaves the range in which one of its parts is
+            valid; says which, where and when
         FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration or what damps it; says when, and
             what would do. Where bristles ask for adaptive steps, as `simulate_adaptively`
         MemoryError: the steps or the samples are too many; says how large they are, and what to do
@@ -235,7 +268,7 @@ def simulate(
         RatingWarning: a run of a gear set exceeded one of its ratings (`check_ratings`); one for each
 
     >>> import strainwave as sw
-    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
     >>> run.unit("output_angle"), len(run)
     ('rad', 501)
@@ -247,9 +280,10 @@ def simulate(
     model, drive = drive, drive_of(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    state = (drive.rest() if start is None else start_of(drive, start)).numbers
-    excitation = Excitation(command, load_torque, temperature)
-    course = excitation.course(dt, interval)
+    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
+    excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
+    state = beginning_numbers(drive, start, initial, excitation.first())
+    course = excitation.course(dt, interval, signals.instants(drive, state, command.duration))
     if method is None and course.longest * _core.bristle_vibration(drive) > FASTEST_ON_BRISTLES:
         run = simulate_adaptively(
             drive,
@@ -257,7 +291,10 @@ def simulate(
             sample=interval,
             load_torque=load_torque,
             temperature=temperature,
+            inputs=inputs,
             start=start,
+            initial=initial,
+            record=record,
             most_steps=max(MOST_STEPS, MOST_FOR_ONE * (len(course.instants) - 1)),
             progress=progress,
         )
@@ -267,30 +304,42 @@ def simulate(
         check_resolution(drive, course.longest, 0.0)
     taken = method or "exponential"
     time = course.times
-    outputs, first = beginning(drive, state, excitation, len(time)), 1
+    channels = _channels(recorded)
+    outputs, first = beginning(drive, state, excitation, channels, len(time)), 1
     with progressing(progress, len(course.instants) - 1) as shown:
         for number, chunk in enumerate(course.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
-            inputs, keep = excitation.over(chunk), chunk.samples[1:]
-            state = _core.simulate(drive, state, chunk.instants, inputs, keep, _core.Method[taken], outputs, first, report)
+            laid_out, keep = excitation.over(chunk), chunk.samples[1:]
+            state = _core.simulate(
+                drive, state, chunk.instants, laid_out, keep, _core.Method[taken], channels, outputs, first, report
+            )
             first += int(np.count_nonzero(keep))
-    _check_meaning(time, outputs, remedy(course.longest))
+    _check_meaning(time, recorded, outputs, remedy(course.longest))
     if method != "rosenbrock":
-        check_resolution(drive, course.longest, _largest_twist(outputs))
+        check_resolution(drive, course.longest, _largest_twist(outputs[channels.index(TWIST)]))
     warn_of_bristles(drive, course.longest)
-    run = Run._made(drive, time, outputs, State.of(drive, state), f"{_named(taken, drive)}, steps of {course.longest:g} s")
+    end = State.of(drive, state)
+    run = Run._made(drive, time, recorded, outputs, end, f"{_named(taken, drive)}, steps of {course.longest:g} s")
     warn_of_ratings(model, run)
     return run
 
 
-def beginning(drive: PositionDrive, state: Array, excitation: Excitation, samples: int) -> Array:
+def _channels(recorded: Mapping[str, Output]) -> list[int]:
+    """The channels of what is recorded, and of the twist, which tells whether steps were short enough."""
+    found = [each.channel for each in recorded.values()]
+    return found if TWIST in found else [*found, TWIST]
+
+
+def beginning(drive: Drive, state: Array, excitation: Excitation, channels: Sequence[int], samples: int) -> Array:
     """Room for the outputs of a run, shape (channels, samples), that of the start filled in.
 
-    There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from.
+    There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from, and a sampled
+    controller has acted if it was due.
     """
-    with room_for("samples", samples, 8.0 * len(_core.outputs), "sample less often"):
-        outputs = np.empty((len(_core.outputs), samples))
-    outputs[:, :1] = _core.now(drive, _core.consistent(drive, state), excitation.first())
+    with room_for("samples", samples, 8.0 * len(channels), "sample less often, or record fewer outputs"):
+        outputs = np.empty((len(channels), samples))
+    first = excitation.first()
+    outputs[:, 0] = _core.now(drive, _core.begin(drive, state, first), first)[list(channels), 0]
     return outputs
 
 
@@ -301,7 +350,7 @@ _NAMED: dict[Method, str] = {
 }
 
 
-def _named(method: Method, drive: PositionDrive) -> str:
+def _named(method: Method, drive: Drive) -> str:
     """A method in words, as it is where friction of the drive holds its place at rest or does not."""
     rest = drive.rest()
     sticks = not rest.input_slip_direction or not rest.output_slip_direction
@@ -309,7 +358,7 @@ def _named(method: Method, drive: PositionDrive) -> str:
 
 
 def simulate_adaptively(
-    drive: PositionDrive | GearSet,
+    drive: Drive | GearSet,
     command: Scenario,
     rtol: float = 1e-6,
     atol: float = 1e-12,
@@ -317,7 +366,10 @@ def simulate_adaptively(
     sample: float = 1e-3,
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
     start: State | None = None,
+    initial: Mapping[str, float] | None = None,
+    record: Sequence[str] | None = None,
     most_steps: int = 10_000_000,
     progress: bool = False,
 ) -> Run:
@@ -328,7 +380,8 @@ def simulate_adaptively(
     exactly as at the ends.
 
     Args:
-        drive, command, load_torque, temperature, start, progress: as for `simulate`
+        drive, command, load_torque, temperature, inputs, start, initial, record, progress: as
+            for `simulate`
         rtol: error tolerated in each member of the motion (input angle within its turn, transmission error, both speeds,
             current, state of the controller, bristles) and in the torque, relative to the largest it has been so far
         atol: error tolerated besides, in the unit of each
@@ -349,7 +402,7 @@ def simulate_adaptively(
         MemoryError: as `simulate`
 
     >>> import strainwave as sw
-    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> run = sw.simulate_adaptively(drive, sw.scenario.step(amplitude=5.0, duration=0.1), rtol=1e-8)
     >>> run.method.partition(":")[0]
     'exponential Runge-Kutta, adaptive, rtol 1e-08, atol 1e-12'
@@ -359,33 +412,35 @@ def simulate_adaptively(
     atol = arguments.number("atol", atol, low=0.0)
     sample = arguments.seconds("sample", sample)
     most_steps = arguments.whole("most_steps", most_steps, 1)
-    state = (drive.rest() if start is None else start_of(drive, start)).numbers
-    excitation = Excitation(command, load_torque, temperature)
+    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
+    excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
+    state = beginning_numbers(drive, start, initial, excitation.first())
     samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
-    ends = excitation.ends()
+    ends = excitation.ends(signals.instants(drive, state, command.duration))
     excitation.check_temperature(ends)
-    outputs = beginning(drive, state, excitation, len(samples))
+    channels = [each.channel for each in recorded.values()]
+    outputs = beginning(drive, state, excitation, channels, len(samples))
     with progressing(progress, len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
-            drive, state, *excitation.signals, ends, rtol, atol, most_steps, samples[1:], outputs, 1, shown
+            drive, state, *excitation.signals, ends, rtol, atol, most_steps, samples[1:], channels, outputs, 1, shown
         )
-    _check_meaning(samples, outputs, "check the parameters")
+    _check_meaning(samples, recorded, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
-    run = Run._made(drive, samples, outputs, State.of(drive, state), f"{_named('exponential', drive)}, {kept}")
+    end = State.of(drive, state)
+    run = Run._made(drive, samples, recorded, outputs, end, f"{_named('exponential', drive)}, {kept}")
     warn_of_ratings(model, run)
     return run
 
 
 def differentiate(
-    drive: PositionDrive,
-    command: Scenario,
+    drive: Drive,
+    excitation: Excitation,
     numbers: Sequence[int],
     dt: float,
     samples: float | Array,
-    load_torque: Scenario | float = 0.0,
-    temperature: Scenario | float = ROOM_TEMPERATURE,
+    initial: Mapping[str, float] | None = None,
 ) -> tuple[Recording, Array]:
-    """A run from rest and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
+    """A run and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
 
     Args:
         numbers: places in `_core.parameters(drive)`
@@ -394,13 +449,18 @@ def differentiate(
     Returns:
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
-    excitation = Excitation(command, load_torque, temperature)
-    course = excitation.course(dt, samples)
+    beginning_numbers(drive, None, initial, excitation.first())  # refuses what is no beginning
+    instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
+    course = excitation.course(dt, samples, instants)
     check_resolution(drive, course.longest, 0.0)
     inputs = excitation.over(course)
-    with room_for("samples", len(course.times), 8.0 * len(_core.outputs) * (1 + len(numbers)), "sample less often"):
-        outputs, slopes = _core.differentiate(drive, course.instants, inputs, course.samples[1:], list(numbers))
-    return recording(drive, course, outputs), slopes
+    with room_for("samples", len(course.times), 8.0 * _core.channels * (1 + len(numbers)), "sample less often"):
+        outputs, slopes = _core.differentiate(
+            drive, known(drive, initial), course.instants, inputs, course.samples[1:], list(numbers)
+        )
+    recorded = signals.outputs(drive)
+    channels = [each.channel for each in recorded.values()]
+    return recording(drive, course, recorded, outputs[channels]), slopes[:, channels]
 
 
 def check_temperature(lowest: float) -> None:
@@ -415,19 +475,20 @@ def grid(step: float, duration: float, tolerance: float) -> Array:
         return _core.grid(step, duration, tolerance)
 
 
-def recording(drive: PositionDrive, course: Course, outputs: Array) -> Recording:
-    """What a run recorded, shape (channels, samples), if its numbers mean anything."""
+def recording(drive: Drive, course: Course, recorded: Mapping[str, Output], outputs: Array) -> Recording:
+    """What a run recorded, shape (recorded, samples), the twist among it, if its numbers mean anything."""
     time = course.times
-    _check_meaning(time, outputs, remedy(course.longest))
-    check_resolution(drive, course.longest, _largest_twist(outputs))
-    return Recording(_columns(time, outputs), output_units(drive), title="simulation")
+    _check_meaning(time, recorded, outputs, remedy(course.longest))
+    check_resolution(drive, course.longest, _largest_twist(outputs[list(recorded).index("twist")]))
+    units = signals.units(drive, recorded.values())
+    return Recording(_columns(time, recorded, outputs), units, title="simulation")
 
 
-def _columns(time: Array, outputs: Array) -> dict[str, Array]:
+def _columns(time: Array, recorded: Mapping[str, Output], outputs: Array) -> dict[str, Array]:
     """The columns of a recording, which need not be copied as nobody can change them."""
     time.setflags(write=False)
     outputs.setflags(write=False)
-    return {"time": time} | {name: outputs[i] for i, (name, _, _) in enumerate(_core.outputs)}
+    return {"time": time} | {name: outputs[i] for i, name in enumerate(recorded)}
 
 
 def _meaningful(outputs: Array) -> NDArray[np.bool_]:
@@ -435,9 +496,10 @@ def _meaningful(outputs: Array) -> NDArray[np.bool_]:
     return np.abs(outputs) <= LARGEST
 
 
-def _check_meaning(time: Array, outputs: Array, what_to_do: str) -> None:
+def _check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, what_to_do: str) -> None:
     if not (outputs.max() <= LARGEST and outputs.min() >= -LARGEST):
-        raise FloatingPointError(diverged(time, [name for name, _, _ in _core.outputs], outputs, what_to_do))
+        names = [*recorded, "twist"][: len(outputs)]
+        raise FloatingPointError(diverged(time, names, outputs, what_to_do))
 
 
 def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
@@ -449,20 +511,15 @@ def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str)
     return f"the simulation diverged{place}; {what_to_do}"
 
 
-def _largest_twist(outputs: Array) -> float:
-    return float(np.abs(outputs[_TWIST]).max())
+def _largest_twist(twist: Array) -> float:
+    return float(np.abs(twist).max())
 
 
-def check_resolution(drive: PositionDrive, dt: float, twist: float) -> None:
+def check_resolution(drive: Drive, dt: float, twist: float) -> None:
     """Refuses steps too coarse for a drive; at rest before a run, else many a step may be spent on events that mean nothing."""
     fastest = _core.fastest(drive, twist)
     if fastest * dt > COARSEST:
         raise FloatingPointError(too_coarse(dt, twist, fastest))
-
-
-def output_units(drive: PositionDrive) -> dict[str, str]:
-    """The unit of the time and of each output of a drive."""
-    return {"time": "s"} | {name: unit for name, unit, _ in _core.outputs} | {"command": drive.control.command_unit}
 
 
 def too_coarse(dt: float, twist: float, fastest: float) -> str:
@@ -485,7 +542,7 @@ def too_stiff(dt: float, vibration: float) -> str:
     )
 
 
-def warn_of_bristles(drive: PositionDrive, dt: float) -> None:
+def warn_of_bristles(drive: Drive, dt: float) -> None:
     """Warns the caller of a function of this package that takes steps of `dt` [s], if the drive's bristles are too stiff."""
     vibration = _core.bristle_vibration(drive)
     if dt * vibration > FASTEST_ON_BRISTLES:

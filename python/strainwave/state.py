@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core
 from strainwave.messages import listed, shortened
 
 Array = NDArray[np.float64]
@@ -25,17 +24,17 @@ class State(Mapping[str, float]):
     It belongs to drives whose parts have the same models. Whatever takes a state refuses that of another drive.
 
     >>> import strainwave as sw
-    >>> rest = sw.drives.PositionDrive().rest()
+    >>> rest = sw.Drive().rest()
     >>> rest.replace(input_speed=50.0)["input_speed"]
     50.0
     """
 
     __slots__ = ("__dict__", "drive", "numbers")
-    drive: PositionDrive
+    drive: Drive
     numbers: Array  # (n,), in the order of the names; first what is continuous
 
     @classmethod
-    def of(cls, drive: PositionDrive, numbers: Array) -> State:
+    def of(cls, drive: Drive, numbers: Array) -> State:
         """A state of `drive` with these numbers, which nobody changes any more."""
         state = object.__new__(cls)
         numbers.setflags(write=False)
@@ -125,7 +124,7 @@ class Layout:
         places: by each name, and by each part that has continuous numbers or none: a slice
     """
 
-    def __init__(self, drive: PositionDrive) -> None:
+    def __init__(self, drive: Drive) -> None:
         described, self.count = _core.state(drive)
         self.names = [name for name, _, _ in described]
         self.units = {name: unit for name, unit, _ in described}
@@ -144,12 +143,12 @@ class Layout:
         return found
 
 
-def same_shape(one: PositionDrive, other: PositionDrive) -> bool:
+def same_shape(one: Drive, other: Drive) -> bool:
     """Whether states of one drive are states of another."""
     return one is other or _core.shape(one) == _core.shape(other)
 
 
-def start_of(drive: PositionDrive, state: object, name: str = "start") -> State:
+def start_of(drive: Drive, state: object, name: str = "start") -> State:
     """A state given as argument `name`, if it is one of this drive.
 
     Raises:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import tau
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments, kinematic_error
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core, arguments, kinematic_error
 from strainwave.equality import ComparedByFields
+from strainwave.signals import TWIST, actuation, check_continuous, command_unit, controls_position
 from strainwave.simulation import ROOM_TEMPERATURE, check_temperature
 from strainwave.state import Layout, State, start_of
 
@@ -23,7 +24,7 @@ _FASTEST = 1e9  # rad/s at the input: what nothing has stopped by then, nothing 
 
 
 def equilibrium(
-    drive: PositionDrive,
+    drive: Drive,
     *,
     command: float = 0.0,
     load_torque: float = 0.0,
@@ -57,11 +58,11 @@ def equilibrium(
 
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
-    >>> held = sw.equilibrium(sw.drives.PositionDrive(load=arm), command=0.5)
+    >>> held = sw.equilibrium(sw.Drive(load=arm), command=0.5)
     >>> held.input_speed, held.output_speed
     (0.0, 0.0)
     """
-    arguments.drive(drive)
+    check_continuous(arguments.drive(drive), "equilibrium")
     inputs = constant_inputs(command, load_torque, temperature)
     begin = _at_rest(drive, (drive.rest() if start is None else start_of(drive, start)).numbers)
     resting = _resting(drive, begin, inputs)
@@ -71,32 +72,25 @@ def equilibrium(
 
 
 def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:
-    """The inputs in the order of the core, shape (4,), if they make sense."""
+    """The inputs in the order of the core, shape (6,), if they make sense."""
     inputs = {"command": command, "command_rate": command_rate, "load_torque": load_torque, "temperature": temperature}
     numbers = [arguments.number(name, value) for name, value in inputs.items()]
     check_temperature(temperature)
-    return np.array(numbers)
+    command, command_rate, load_torque, temperature = numbers
+    return np.array([command, command_rate, load_torque, 0.0, temperature, 0.0])
 
 
-def _controls_position(drive: PositionDrive) -> bool:
-    return drive.control.command_unit == "rad"
-
-
-def averaged(drive: PositionDrive) -> PositionDrive:
+def averaged(drive: Drive) -> Drive:
     """The same drive without kinematic error, which is periodic: what is left of it over many turns."""
     gear = drive.gear.replace(kinematic_error=kinematic_error.Fourier(), kinematic_noise=kinematic_error.Stochastic())
     return drive.replace(gear=gear)
-
-
-OUTPUTS = [name for name, _, _ in _core.outputs]
-TWIST, _VOLTAGE = OUTPUTS.index("twist"), OUTPUTS.index("voltage")
 
 
 @dataclass(frozen=True, eq=False)
 class Rates(ComparedByFields):
     """Rates of the n continuous numbers, what they and the outputs depend on, and the size of the terms a rate is the sum of.
 
-    All to first order: of `by_numbers`, shape (n + outputs, n), and `by_inputs` the first n rows are those of the rates.
+    All to first order: of `by_numbers`, shape (n + channels, n), and `by_inputs` the first n rows are those of the rates.
     """
 
     rate: Array
@@ -106,16 +100,16 @@ class Rates(ComparedByFields):
 
     @classmethod
     @np.errstate(over="ignore", invalid="ignore")
-    def of(cls, drive: PositionDrive, state: Array, inputs: Array) -> Rates:
+    def of(cls, drive: Drive, state: Array, inputs: Array) -> Rates:
         values, slopes = _core.differentiate_rates(drive, state, inputs)
-        count = len(values) - len(OUTPUTS)
+        count = len(values) - _core.channels
         by_numbers, by_inputs = np.split(slopes.T, [count], axis=1)
         size = np.abs(by_numbers[:count]) @ np.abs(state[:count]) + np.abs(by_inputs[:count]) @ np.abs(inputs)
         return cls(values[:count], by_numbers, by_inputs, size + _NOTHING)
 
     @property
     def output(self) -> Array:
-        """How outputs depend on the numbers, shape (outputs, n)."""
+        """How outputs depend on the numbers, shape (channels, n)."""
         return self.by_numbers[len(self.rate) :]
 
     @property
@@ -131,7 +125,7 @@ class Rates(ComparedByFields):
 # At rest
 
 
-def _at_rest(drive: PositionDrive, state: Array) -> Array:
+def _at_rest(drive: Drive, state: Array) -> Array:
     """`state` without its speeds, every shaft that can stick sticking."""
     still = state.copy()
     places = Layout(drive).places
@@ -140,7 +134,7 @@ def _at_rest(drive: PositionDrive, state: Array) -> Array:
     return _core.consistent(drive, still)
 
 
-def _resting(drive: PositionDrive, start: Array, inputs: Array) -> Array | None:
+def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
     """The equilibrium at rest, if there is one: shafts that stick are let go until those that still do hold."""
     sliding = start
     while True:
@@ -150,7 +144,9 @@ def _resting(drive: PositionDrive, start: Array, inputs: Array) -> Array | None:
         freed, place = _core.break_away(drive, last, inputs), slow.layout.places
         if found is None and freed[place["input_slip_direction"]] == 0.0:  # an integral grows until the input gives way
             rates, control = Rates.of(drive, last, inputs), place["control"]
-            freed[place["input_slip_direction"]] = np.sign(rates.output[_VOLTAGE, control] @ rates.rate[control])
+            freed[place["input_slip_direction"]] = np.sign(
+                rates.output[actuation(drive).channel, control] @ rates.rate[control]
+            )
         directions = [place["input_slip_direction"].start, place["output_slip_direction"].start]
         if (freed[directions] == sliding[directions]).all():
             break
@@ -167,7 +163,7 @@ def _resting(drive: PositionDrive, start: Array, inputs: Array) -> Array | None:
 class _Slow(ComparedByFields):
     """Slow motions from `start`, shafts that stick left where they are."""
 
-    drive: PositionDrive
+    drive: Drive
     start: Array
     inputs: Array
 
@@ -192,7 +188,7 @@ class _Slow(ComparedByFields):
     def guess(self) -> Array:
         """Where to begin: where the controller wants the input, if it may move; else here."""
         numbers, places = self.start[: self.layout.count].copy(), self.layout.places
-        if self.free[0] and _controls_position(self.drive):
+        if self.free[0] and controls_position(self.drive):
             ratio = self.drive.gear.kinematics.ratio
             at = self.start[places["input_angle"]] + tau * self.start[places["turns"]]
             turned = self.inputs[0] * ratio - at
@@ -230,9 +226,9 @@ class _Slow(ComparedByFields):
 # Running
 
 
-def _running(drive: PositionDrive, start: Array, inputs: Array) -> Array:
+def _running(drive: Drive, start: Array, inputs: Array) -> Array:
     """The steady running of a drive without kinematic error."""
-    if _controls_position(drive):
+    if controls_position(drive):
         raise ValueError(
             f"there is no equilibrium at command = {inputs[0]:g} rad, load_torque = {inputs[2]:g} N.m: "
             "motor, spring and friction together cannot hold the load at any angle near it"
@@ -240,25 +236,26 @@ def _running(drive: PositionDrive, start: Array, inputs: Array) -> Array:
     steady = _Steady(drive, start, inputs)
     found = _balance(steady, steady.at(steady.guess())[: steady.layout.count])
     if found is None:
-        raise ValueError(_unsteady(inputs, "the torques do not balance at any speed"))
+        raise ValueError(_unsteady(drive, inputs, "the torques do not balance at any speed"))
     state = steady.moved(found)
     elsewhere = state.copy()
     elsewhere[steady.layout.places["input_angle"]] += 1.0
     rates = Rates.of(drive, elsewhere, inputs)
     if not rates.vanishes(steady.rows(rates), 1e-9):
-        raise ValueError(_unsteady(inputs, "load or friction depends on the angle that the drive turns through"))
+        raise ValueError(_unsteady(drive, inputs, "load or friction depends on the angle that the drive turns through"))
     return _core.advance_hysteresis(drive, state, _core.now(drive, state, inputs)[TWIST].item())
 
 
-def _unsteady(inputs: Array, why: str) -> str:
-    return f"the drive cannot rest at command = {inputs[0]:g} V, load_torque = {inputs[2]:g} N.m, nor run steadily: {why}"
+def _unsteady(drive: Drive, inputs: Array, why: str) -> str:
+    command, load_torque = f"command = {inputs[0]:g} {command_unit(drive)}", f"load_torque = {inputs[2]:g} N.m"
+    return f"the drive cannot rest at {command}, {load_torque}, nor run steadily: {why}"
 
 
 @dataclass(frozen=True, eq=False)
 class _Steady(ComparedByFields):
     """Running at constant speed, from the angles of `start`."""
 
-    drive: PositionDrive
+    drive: Drive
     start: Array
     inputs: Array
 
@@ -287,8 +284,9 @@ class _Steady(ComparedByFields):
             state[motor] += _least(rates.by_numbers[motor, motor], -rates.rate[motor])
             rates = Rates.of(drive, state, self.inputs)
         if not rates.finite:
-            raise ValueError(_unsteady(self.inputs, OVERFLOW))
-        inertia = drive.motor.inertia + drive.gear.input_inertia, drive.load.inertia / drive.gear.kinematics.ratio
+            raise ValueError(_unsteady(self.drive, self.inputs, OVERFLOW))
+        load: Any = drive.load  # one that has an inertia: `check_continuous`
+        inertia = drive.motor.inertia + drive.gear.input_inertia, load.inertia / drive.gear.kinematics.ratio
         of_input, of_output = (rates.rate[places[name]].item() for name in ("input_speed", "output_speed"))
         return float(inertia[0] * of_input + inertia[1] * of_output)
 
@@ -298,12 +296,12 @@ class _Steady(ComparedByFields):
 
         way = next((sense for sense in (1.0, -1.0) if sense * self.surplus(sense / SLOWLY) > 0.0), 0.0)
         if way == 0.0:
-            raise ValueError(_unsteady(self.inputs, "friction holds it, but no balance was found"))
+            raise ValueError(_unsteady(self.drive, self.inputs, "friction holds it, but no balance was found"))
         low, high = way / SLOWLY, 1e-3 * way
         while way * self.surplus(high) > 0.0:
             low, high = high, 2.0 * high
             if abs(high) > _FASTEST:
-                raise ValueError(_unsteady(self.inputs, "nothing limits its speed"))
+                raise ValueError(_unsteady(self.drive, self.inputs, "nothing limits its speed"))
         return float(brentq(self.surplus, low, high))
 
     def moved(self, numbers: Array) -> Array:

@@ -47,7 +47,7 @@ def test_every_model_steps_in_a_drive_of_static_type(name: str, tmp_path: Path) 
 @both
 def test_models_chosen_at_run_time_step_in_every_scalar(name: str, tmp_path: Path) -> None:
     scalars = ("double", "strainwave::Dual<4>", "strainwave::Pack<8>")
-    steps = [stepped(scalar, f"strainwave::AnyPositionDrive<{scalar}>") for scalar in scalars]
+    steps = [stepped(scalar, f"strainwave::AnyDrive<{scalar}>") for scalar in scalars]
     assert compilation(compiler(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}, *STRICT) == (0, "")
 
 

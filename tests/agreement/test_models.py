@@ -15,9 +15,9 @@ import strainwave as sw
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from strainwave import _core
-from strainwave.drives import PositionDrive
-from strainwave.simulation import differentiate
+from strainwave import Drive, _core
+from strainwave.signals import load_input, outputs
+from strainwave.simulation import Excitation, differentiate
 
 from tests.laws.test_gear import DRIVE, EVERY_PART, cannot_create_energy, laws, reduced_gears
 from tests.side_by_side import side_by_side
@@ -26,33 +26,38 @@ from tests.strategies import built, suited
 Array = NDArray[np.float64]
 
 DURATION, SAMPLE = 0.05, 1e-3
-COLUMNS = [name for name, _, _ in _core.outputs]
 COMMAND = sw.scenario.sine(12.0, 30.0, DURATION)  # V
-COURSE = {
-    "load_torque": sw.scenario.sine(5.0, 17.0, DURATION),  # N.m
-    "temperature": sw.scenario.ramp(100.0, DURATION) + sw.scenario.constant(290.0, DURATION),  # K
-}
+TIMED = ("control.period", "control.delay")  # when something happens
+
+
+def course(drive: Drive) -> dict[str, sw.scenario.Scenario]:
+    """Inputs besides the command, by name."""
+    size = {"load_torque": 5.0, "output_angle": 1e-3}  # N.m, rad
+    load = load_input(drive)
+    return {
+        load: sw.scenario.sine(size[load], 17.0, DURATION),
+        "temperature": sw.scenario.ramp(100.0, DURATION) + sw.scenario.constant(290.0, DURATION),  # K
+    }
+
+
 CONTROLLED = DRIVE.replace(control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05, limit=24.0))
 OTHER_PARTS = [
     pytest.param(part, model, id=f"{part}={model.name}")
-    for part, family in (("motor", "motor"), ("control", "control"), ("load", "loads"))
+    for part, family in (("motor", "motor"), ("control", "control"), ("load", "loads"), ("sensors", "sensor"))
     for model in _core.families[family].values()
 ]
 seeds = st.integers(0, 2**32 - 1)
 
 
-def columns(run: sw.Recording) -> Array:
-    return np.stack([run[name] for name in COLUMNS])
-
-
-def neighbours(drive: PositionDrive, seed: int) -> list[PositionDrive]:
+def neighbours(drive: Drive, seed: int) -> list[Drive]:
     """Eight with other numbers, but for whole ones: orders of errors are summed up otherwise if all of a pack are whole."""
-    _, numbers, _, _, low, high = (np.array(column) for column in zip(*_core.parameters(drive), strict=True))
+    paths, numbers, _, _, low, high = (np.array(column) for column in zip(*_core.parameters(drive), strict=True))
     random = np.random.default_rng(seed)
-    found: list[PositionDrive] = []
+    timed = np.array([path in TIMED for path in paths])  # the same for all members of a pack
+    found: list[Drive] = []
     for _ in range(200):
         other = np.clip(numbers * (1.0 + random.uniform(-0.1, 0.1, numbers.size)), low, high)
-        other = np.where((numbers == np.rint(numbers)) | (other == np.rint(other)), numbers, other)
+        other = np.where(timed | (numbers == np.rint(numbers)) | (other == np.rint(other)), numbers, other)
         with suppress(ValueError):  # the numbers of a model may not relate to each other so
             found.append(_core.with_numbers(drive, other))
         if len(found) == 8:
@@ -61,27 +66,27 @@ def neighbours(drive: PositionDrive, seed: int) -> list[PositionDrive]:
     return []
 
 
-def differentiable(drive: PositionDrive) -> list[int]:
+def differentiable(drive: Drive) -> list[int]:
     """The parameters by which derivatives leave values as they are: a power or an order is no longer whole then."""
     paths = [path for path, *_ in _core.parameters(drive)]
-    return [i for i, path in enumerate(paths) if ".order[" not in path and not path.endswith(".exponent")]
+    return [i for i, path in enumerate(paths) if ".order[" not in path and not path.endswith((".exponent", *TIMED))]
 
 
-def check(drive: PositionDrive, seed: int, dt: float) -> None:
+def check(drive: Drive, seed: int, dt: float) -> None:
     """Nine drives are one full pack, and one that repeats its last member."""
     singles = [
-        sw.simulate(each, COMMAND, dt, sample=SAMPLE, method="exponential", **COURSE)
+        sw.simulate(each, COMMAND, dt, sample=SAMPLE, method="exponential", inputs=course(drive))
         for each in (drive, *neighbours(drive, seed))
     ]
-    packed = side_by_side([drive, *neighbours(drive, seed)], COMMAND, dt, sample=SAMPLE, **COURSE)
+    packed = side_by_side([drive, *neighbours(drive, seed)], COMMAND, dt, sample=SAMPLE, inputs=course(drive))
     for number, single in enumerate(singles):
-        assert [name for name in COLUMNS if not np.array_equal(packed[name][number], single[name])] == []
+        assert [name for name in outputs(drive) if not np.array_equal(packed[name][number], single[name])] == []
     chosen = np.random.default_rng(seed).choice(differentiable(drive), 3, replace=False)
-    dual, _ = differentiate(drive, COMMAND, chosen, dt, SAMPLE, **COURSE)
-    assert [name for name in COLUMNS if not np.array_equal(dual[name], singles[0][name])] == []
+    dual, _ = differentiate(drive, Excitation.of(drive, COMMAND, inputs=course(drive)), chosen, dt, SAMPLE)
+    assert [name for name in outputs(drive) if not np.array_equal(dual[name], singles[0][name])] == []
 
 
-def agree(drive: PositionDrive, seed: int) -> None:
+def agree(drive: Drive, seed: int) -> None:
     """At a step that resolves the drives, if a small one does, and where all parts are valid."""
     assume(cannot_create_energy(drive.gear))
     for dt in (1e-4, 1.25e-5):
@@ -112,8 +117,9 @@ def test_a_drive_with_any_other_part_runs_one_trajectory_in_every_scalar(
     part: str, model: Any, data: st.DataObject, seed: int
 ) -> None:
     law = data.draw(built(model))
-    assume(part != "load" or law.inertia > 1e-3)
-    agree((CONTROLLED if part == "control" else DRIVE).replace(**{part: law}), seed)
+    assume(getattr(law, "inertia", 1.0) > 1e-3 or part != "load")
+    base = CONTROLLED if part in ("control", "sensors") else DRIVE
+    agree(base.replace(**{part: sw.Sensors(output_angle=law, input_speed=law) if part == "sensors" else law}), seed)
 
 
 @settings(max_examples=50)

@@ -10,9 +10,9 @@ import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from strainwave import _core
-from strainwave.drives import PositionDrive
-from strainwave.simulation import differentiate
+from strainwave import Drive, _core
+from strainwave.signals import outputs
+from strainwave.simulation import Excitation, differentiate
 
 from tests.reference_drive import DRIVE, command
 from tests.side_by_side import side_by_side
@@ -21,7 +21,7 @@ from tests.strategies import made
 Array = NDArray[np.float64]
 
 DT, SAMPLE = 2e-4, 1e-3
-COLUMNS = [name for name, _, _ in _core.outputs]
+COLUMNS = list(outputs(sw.Drive()))
 
 STRIBECK = sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5)
 COULOMB = sw.friction.Coulomb(coulomb=3.0, breakaway=4.0, viscous=0.5)
@@ -48,7 +48,7 @@ SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for a set-val
 every_drive = pytest.mark.parametrize("drive", DRIVES.values(), ids=DRIVES)
 
 
-def numbers(drive: PositionDrive) -> Array:
+def numbers(drive: Drive) -> Array:
     return np.array([number for _, number, *_ in _core.parameters(drive)])
 
 
@@ -56,7 +56,7 @@ def columns(run: sw.Recording) -> Array:
     return np.stack([run[name] for name in COLUMNS])
 
 
-def scales(drive: PositionDrive, run: sw.Recording) -> Array:
+def scales(drive: Drive, run: sw.Recording) -> Array:
     """How large the numbers in each column are; a bristle's torque is a difference of terms as large as its damping's."""
     largest = np.abs(columns(run)).max(axis=1)
     damping = getattr(drive.gear.friction_input, "bristle_damping", 0.0)
@@ -65,7 +65,7 @@ def scales(drive: PositionDrive, run: sw.Recording) -> Array:
     return largest[:, None]
 
 
-def scattered(drive: PositionDrive, count: int, seed: int, whole_orders: bool) -> list[PositionDrive]:
+def scattered(drive: Drive, count: int, seed: int, whole_orders: bool) -> list[Drive]:
     """Drives that all differ from one another, in every number; in the orders of the error too if those may be broken."""
     factors = np.random.default_rng(seed).uniform(0.9, 1.1, (count, numbers(drive).size))
     if whole_orders:
@@ -76,7 +76,7 @@ def scattered(drive: PositionDrive, count: int, seed: int, whole_orders: bool) -
 @every_drive
 @settings(max_examples=8)
 @given(seed=st.integers(0, 2**32 - 1), whole_orders=st.booleans(), swing=st.booleans())
-def test_double_pack_and_dual_run_one_trajectory(drive: PositionDrive, seed: int, whole_orders: bool, swing: bool) -> None:
+def test_double_pack_and_dual_run_one_trajectory(drive: Drive, seed: int, whole_orders: bool, swing: bool) -> None:
     """Nine drives are one full pack, and one that repeats its last member."""
     course = SWING if swing else command(0.2)
     drives = scattered(drive, 9, seed, whole_orders)
@@ -85,7 +85,7 @@ def test_double_pack_and_dual_run_one_trajectory(drive: PositionDrive, seed: int
     for member, each in enumerate(drives):
         single = sw.simulate(each, course, DT, sample=SAMPLE)
         assert columns(packed.member(member)).tolist() == columns(single).tolist()
-    dual, _ = differentiate(each, course, chosen, DT, SAMPLE)
+    dual, _ = differentiate(each, Excitation(course), chosen, DT, SAMPLE)
     assert np.all(np.abs(columns(dual) - columns(single)) <= 1e-12 * scales(each, single))
 
 
@@ -193,7 +193,7 @@ def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: 
     base, known = numbers(drive), [path for path, *_ in _core.parameters(drive)]
     fixed = (".domain_start", ".domain_end", ".stiffness.reduction")  # the last is the ratio of the gear
     own = [i for i, path in enumerate(known) if path.startswith(f"gear.{part}.") and not path.endswith(fixed)]
-    run, slopes = differentiate(drive, SWING, own, DT, SAMPLE)
+    run, slopes = differentiate(drive, Excitation(SWING), own, DT, SAMPLE)
     for i, slope in zip(own, slopes, strict=True):
         h = 1e-5 * abs(base[i])
         pair = []
@@ -208,14 +208,14 @@ def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: 
 
 
 @every_drive
-def test_derivatives_are_what_differences_show(drive: PositionDrive) -> None:
+def test_derivatives_are_what_differences_show(drive: Drive) -> None:
     """By every number, at every sample, stick-slip included: the times of its events move with the numbers.
 
     Central differences over h and h / 2, extrapolated, are as good as a run's rounding over h, and as their agreement:
     where a Maxwell element starts to slip within h at one sample and beyond it at the next, they disagree.
     """
     base = numbers(drive)
-    run, slopes = differentiate(drive, SWING, range(base.size), DT, SAMPLE)
+    run, slopes = differentiate(drive, Excitation(SWING), range(base.size), DT, SAMPLE)
 
     def difference(i: int, h: float) -> Array:
         up, down = base.copy(), base.copy()

@@ -29,7 +29,7 @@ def test_outcomes_from_other_processes_are_those_of_their_drives() -> None:
 
 
 FRICTION = sw.friction.Coulomb(coulomb=0.01, breakaway=0.02)
-SLIDING = sw.drives.PositionDrive(gear=sw.Gear(friction_input=FRICTION))
+SLIDING = sw.Drive(gear=sw.Gear(friction_input=FRICTION))
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ class _NoText:
 
 def _junk() -> tuple[Any, ...]:
     """What is no argument of anything, or rarely."""
-    drive = sw.drives.PositionDrive()
+    drive = sw.Drive()
     return (
         *SCALARS, None, 1j, "", "x", "a\nb\x1b[31m", "\ud800", "ü" * 3000, b"bytes", [], [1.0], [float("nan")], ["a"],
         [[1.0, 2.0]], [[1.0], [2.0, 3.0]], [None], {}, {"a": 1}, {1: 2}, {"load.inertia": "x"}, (), (1.0, 2.0), object(), len,
@@ -86,7 +86,7 @@ def _junk() -> tuple[Any, ...]:
 @cache
 def valid() -> Mapping[str, Any]:
     """An argument that is right, by the name of the argument or of function and argument."""
-    drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.1))
+    drive = sw.Drive(load=sw.loads.Inertia(inertia=0.1))
     command = sw.scenario.constant(1.0, 0.01)
     time = np.arange(0.0, 4.0, 0.01)
     recording = sw.Recording({"time": [0.0, 1.0], "speed": [1.0, 2.0]}, {"time": "s", "speed": "rad/s"})

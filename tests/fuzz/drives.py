@@ -33,10 +33,10 @@ def _size(random: Generator) -> float:
     return picked(random, (-1.0, 1.0)) * picked(random, SIZES)
 
 
-def _extreme(random: Generator) -> tuple[sw.drives.PositionDrive, dict[str, float]]:
+def _extreme(random: Generator) -> tuple[sw.Drive, dict[str, float]]:
     """A random drive of which some numbers are as large or small as may be; drawn again where they contradict each other."""
     while True:
-        drive = model(sw.drives.PositionDrive, random)
+        drive = model(sw.Drive, random)
         known = _core.parameters(drive)
         numbers = [value for _, value, *_ in known]
         changed = {}

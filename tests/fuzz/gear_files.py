@@ -27,7 +27,7 @@ WORDS = (
 @cache
 def _texts() -> tuple[str, ...]:
     """Files as they should be: of the catalogue, and of a drive whose models have sequences, choices and parts."""
-    drive = sw.drives.PositionDrive(
+    drive = sw.Drive(
         gear=sw.Gear(
             friction_input=sw.friction.Thermal(),
             hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[6e3, 3e3], breakaway=[0.5, 0.8]),

@@ -45,7 +45,7 @@ def measurements_case(random: Generator, folder: Path) -> Case:
 def _whole(name: str) -> sw.GearSet:
     """A set with motor and load, so that a log can be looked at."""
     start = sw.GearSet.read(name)
-    rest = sw.GearSet.of(sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.1)), name="rest", source="assumed")
+    rest = sw.GearSet.of(sw.Drive(load=sw.loads.Inertia(inertia=0.1)), name="rest", source="assumed")
     others = {path: entry for path, entry in rest.sources.items() if not path.startswith("gear.")}
     return start.replace(motor=rest.motor, control=rest.control, load=rest.load, sources=start.sources | others)
 

@@ -20,7 +20,7 @@ from strainwave import _core
 from tests.strategies import made
 
 LAWS = [made(kind) for family in _core.families.values() for kind in family.values()]
-WHOLE = [*LAWS, sw.Gear(), sw.drives.PositionDrive()]
+WHOLE = [*LAWS, sw.Gear(), sw.Drive()]
 VERBS = [
     pytest.param(getattr(law, name), id=f"{law.name}.{name}")
     for law in WHOLE
@@ -69,7 +69,7 @@ def test_text_is_no_argument(verb: Any) -> None:
 @pytest.mark.parametrize("law", [law for law in LAWS if hasattr(law, "State")], ids=lambda law: law.name)
 def test_a_state_of_another_kind_is_refused(law: Any) -> None:
     time = {"speed": [0.0, 1.0]} if "speed" in law.trace.__doc__ else {}
-    for wrong in (3, None, sw.drives.PositionDrive().rest(), law.State.__new__(law.State)):
+    for wrong in (3, None, sw.Drive().rest(), law.State.__new__(law.State)):
         text = one_line(lambda wrong=wrong: law.trace([0.0, 1.0], **time, state=wrong))
         assert text.startswith(f"{law.name}.trace: state must be a ")
 

@@ -45,7 +45,7 @@ def test_a_drive_that_leaves_a_domain_says_which_part_where_and_when() -> None:
     gear = sw.Gear(
         kinematics=sw.kinematics.PlainRatio(reduction=100.0), friction_input=position_dependent("refuse"), damping=10.0
     )
-    drive = sw.drives.PositionDrive(gear=gear, motor=sw.motor.DC(inertia=1e-4), load=sw.loads.Inertia(inertia=0.5))
+    drive = sw.Drive(gear=gear, motor=sw.motor.DC(inertia=1e-4), load=sw.loads.Inertia(inertia=0.5))
     with pytest.raises(ValueError, match=r"gear\.friction_input: angle = 2\.\d+ rad lies .*\[0, 2\] rad.* at t = 0\.\d+ s"):
         sw.simulate(drive, sw.scenario.constant(12.0, 2.0))
 

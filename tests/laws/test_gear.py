@@ -12,10 +12,10 @@ import strainwave as sw
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from strainwave import _core
-from strainwave.drives import PositionDrive
+from strainwave import Drive, _core
 from strainwave.friction import LuGre, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
+from strainwave.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
 from tests.strategies import built, drives, gears, made, models, suited
@@ -51,7 +51,7 @@ GEAR = sw.Gear(
     friction_output=sw.friction.Coulomb(coulomb=0.5, breakaway=0.7, viscous=0.1),
     input_inertia=2e-5,
 )
-DRIVE = PositionDrive(
+DRIVE = Drive(
     gear=GEAR,
     motor=sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4),
     load=sw.loads.Pendulum(inertia=0.05, gravity_torque=2.0),
@@ -80,7 +80,7 @@ def laws(part: str, model: Any) -> st.SearchStrategy[Any]:
     return built(model).filter(lambda law: part != "kinematics" or 1.0 <= abs(law.ratio) <= 1e3)
 
 
-def changed(part: str, law: Any) -> PositionDrive:
+def changed(part: str, law: Any) -> Drive:
     return DRIVE.replace(gear=GEAR.replace(**{part: suited(law, GEAR.kinematics)}))
 
 
@@ -114,7 +114,7 @@ def cannot_create_energy(gear: sw.Gear) -> bool:
     return steady and all(passive(getattr(gear, place)) for place in PLACES)
 
 
-def resolved(drive: PositionDrive, command: sw.scenario.Scenario, dt: float = 1e-4, **others: Any) -> sw.Recording:
+def resolved(drive: Drive, command: sw.scenario.Scenario, dt: float = 1e-4, **others: Any) -> sw.Recording:
     """A run at the first step of `dt` and an eighth of it that resolves it; none where it would take a smaller one.
 
     Nor where a part is not valid, or where the run of a gear that can create energy ends.
@@ -175,7 +175,7 @@ def test_a_gear_with_any_law_at_any_place_stays_finite_and_no_friction_drives(
 ) -> None:
     drive = changed(part, data.draw(laws(part, model)))
     run = resolved(drive, data.draw(commands), sample=SAMPLE, load_torque=data.draw(loads), temperature=data.draw(temperatures))
-    assert all(np.isfinite(run[name]).all() for name, _, _ in _core.outputs)
+    assert all(np.isfinite(run[name]).all() for name in outputs(sw.Drive()))
     assert run["time"][-1] == DURATION
     check_friction(drive.gear, run)
 
@@ -186,7 +186,7 @@ def test_any_gear_stays_finite_and_no_friction_drives(
     gear: sw.Gear, command: sw.scenario.Scenario, load: float | sw.scenario.Scenario, temperature: float
 ) -> None:
     run = resolved(DRIVE.replace(gear=gear), command, sample=SAMPLE, load_torque=load, temperature=temperature)
-    assert all(np.isfinite(run[name]).all() for name, _, _ in _core.outputs)
+    assert all(np.isfinite(run[name]).all() for name in outputs(sw.Drive()))
     check_friction(gear, run)
 
 
@@ -205,7 +205,7 @@ def cumulated(power: Array, dt: float, kinks: Array) -> tuple[Array, Array]:
     return np.append(0.0, np.cumsum(fine)), np.append(0.0, np.cumsum(slack))
 
 
-def balance(drive: PositionDrive, run: sw.Recording) -> tuple[Array, Array, float]:
+def balance(drive: Drive, run: sw.Recording) -> tuple[Array, Array, float]:
     """Energy [J] put in less stored and lost; how exactly the samples tell; and how much was put in to and fro."""
     gear, step = drive.gear, run["time"][1]
     moving = speeds(gear, run)
@@ -247,7 +247,7 @@ def test_what_goes_into_a_gear_is_stored_or_lost(part: str, model: Any, data: st
 
 def gap(spring: Any, error: Any, dt: float, steps: int) -> float:
     """How far the energy of the coasting gear strays from where it began, relative to it."""
-    drive = PositionDrive(
+    drive = Drive(
         gear=sw.Gear(stiffness=spring, kinematic_error=error),
         motor=sw.motor.DC(torque_constant=0.0, inertia=1.5e-4),
         load=sw.loads.Inertia(inertia=0.05),
@@ -373,6 +373,6 @@ def test_what_sticks_holds_no_more_than_its_breakaway(
 
 
 @given(drives, st.floats(0.0, 1e9))
-def test_a_drive_is_never_slower_at_large_twists_than_at_rest(drive: PositionDrive, twist: float) -> None:
+def test_a_drive_is_never_slower_at_large_twists_than_at_rest(drive: Drive, twist: float) -> None:
     """Else a run away to them would be taken for one that its steps can follow."""
     assert _core.fastest(drive, twist) >= _core.fastest(drive, 0.0)

@@ -21,7 +21,7 @@ from strainwave import _core, units
 from tests.strategies import Field, drives, gears, models, usual
 
 LISTED = [model for family in _core.families.values() for model in family.values()]
-COMPOSED = [sw.Gear, sw.drives.PositionDrive]
+COMPOSED = [sw.Gear, sw.Drive]
 EVERY_MODEL = [*LISTED, *COMPOSED]
 EVERY_FIELD = [
     pytest.param(model, field, id=f"{model.name}.{field['name']}") for model in EVERY_MODEL for field in model.fields

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 INPUT_INERTIA, OUTPUT_INERTIA = 1.5e-4, 0.05  # kg.m2
 SPRING = sw.stiffness.Cubic(a1=8000.0, a3=4e7)
-DRIVE = sw.drives.PositionDrive(
+DRIVE = sw.Drive(
     gear=sw.Gear(
         kinematics=sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed="circular_spline"),
         kinematic_error=sw.kinematic_error.Fourier(order=[2.0, 4.0], amplitude=[3e-4, 0.8e-4], phase=[0.3, -1.1]),

@@ -22,7 +22,7 @@ GEAR = sw.Gear(
     stiffness=sw.stiffness.Linear(k=150.0),
     friction_input=sw.friction.Coulomb(coulomb=COULOMB, breakaway=BREAKAWAY, viscous=MOTOR_DAMPING),
 )
-DRIVE = sw.drives.PositionDrive(
+DRIVE = sw.Drive(
     gear=GEAR,
     motor=sw.motor.DC(resistance=2.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=0.0012),
     load=sw.loads.Inertia(inertia=0.0050),
@@ -48,7 +48,7 @@ def first(fulfilled: Callable[[float], bool], low: float, high: float) -> float:
 # The linear drive
 
 
-def propagator(drive: sw.drives.PositionDrive, dt: float) -> np.ndarray:
+def propagator(drive: sw.Drive, dt: float) -> np.ndarray:
     """The matrix of one step of a linear drive, over input angle, input speed, transmission error, output speed."""
     names = ("input_angle", "input_speed", "transmission_error", "output_speed")
     rest = drive.rest()
@@ -56,14 +56,14 @@ def propagator(drive: sw.drives.PositionDrive, dt: float) -> np.ndarray:
     return np.array([[getattr(motion, name) for motion in after] for name in names])
 
 
-def eigenfrequency(drive: sw.drives.PositionDrive) -> float:
+def eigenfrequency(drive: sw.Drive) -> float:
     """The highest [rad/s]; the step is of order four, and short enough that its own error lies below 1e-11."""
     dt = 1e-5
     return float(np.abs(np.angle(np.linalg.eigvals(propagator(drive, dt)))).max() / dt)
 
 
-def undamped(kinematics: object, input_inertia: float, output_inertia: float, k: float) -> sw.drives.PositionDrive:
-    return sw.drives.PositionDrive(
+def undamped(kinematics: object, input_inertia: float, output_inertia: float, k: float) -> sw.Drive:
+    return sw.Drive(
         gear=sw.Gear(kinematics=kinematics, stiffness=sw.stiffness.Linear(k=k)),
         motor=sw.motor.DC(torque_constant=0.0, inertia=input_inertia),
         load=sw.loads.Inertia(inertia=output_inertia),
@@ -158,7 +158,7 @@ def test_coasting_down_takes_its_time_and_angle() -> None:
 def test_the_coulomb_oscillator_turns_at_its_peaks_and_sticks() -> None:
     """A mass on a spring to a wall, here an output of endless inertia, with dry friction at the mass."""
     stiction = sw.friction.Coulomb(coulomb=COULOMB, breakaway=COULOMB)
-    oscillator = sw.drives.PositionDrive(
+    oscillator = sw.Drive(
         gear=sw.Gear(
             kinematics=sw.kinematics.PlainRatio(reduction=1.0),
             stiffness=sw.stiffness.Linear(k=0.5),
@@ -202,7 +202,7 @@ class Slider:
         gear = GEAR.replace(
             stiffness=sw.stiffness.Linear(k=self.k), friction_input=sw.friction.Viscous(), friction_output=stiction
         )
-        drive = sw.drives.PositionDrive(
+        drive = sw.Drive(
             gear=gear,
             motor=sw.motor.DC(torque_constant=0.0, back_emf=0.0, inertia=1e30),
             load=sw.loads.Inertia(inertia=self.inertia),
@@ -253,7 +253,7 @@ class Twins:
         self.a = (self.breakaway - self.coulomb) / (2.0 * k)
         self.slipping = (math.pi + 2.0 * math.atan2(self.speed, self.w * self.a)) / self.w
         self.period = self.slipping + 2.0 * (self.breakaway - self.coulomb) / self.rate
-        self.drive = sw.drives.PositionDrive(
+        self.drive = sw.Drive(
             gear=sw.Gear(
                 kinematics=sw.kinematics.PlainRatio(reduction=ratio),
                 stiffness=sw.stiffness.Linear(k=self.k * ratio**2),

@@ -34,15 +34,14 @@ struct Chattering : Base {
 };
 
 template <class S, class Hysteresis, class FrictionOutput>
-using Drive =
-    PositionDrive<S,
-                  strainwave::Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
-                                   stiffness::Linear<S>, Hysteresis, friction::Coulomb<S>, friction::Viscous<S>, FrictionOutput>,
-                  motor::DC<S>, control::OpenLoop<S>, load::Inertia<S>>;
+using Tried = Drive<S, control::OpenLoop<S>, motor::DC<S>,
+                    strainwave::Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
+                                     stiffness::Linear<S>, Hysteresis, friction::Coulomb<S>, friction::Viscous<S>, FrictionOutput>,
+                    load::Inertia<S>, Sensors<S, sensor::Ideal<S>>>;
 
 template <class S>
 auto made(const S& wall) {
-    Drive<S, hysteresis::MaxwellSlip<S>, friction::Coulomb<S>> drive{};
+    Tried<S, hysteresis::MaxwellSlip<S>, friction::Coulomb<S>> drive{};
     drive.gear.kinematics.reduction = S(100.0);
     drive.gear.stiffness.k = S(1.2e4);
     drive.gear.damping = S(10.0);
@@ -130,7 +129,7 @@ void run_adaptively(double wall) {
 /// How many steps that keep a tolerance end later than an event, of a gear that has all but settled when it is moved anew: its
 /// twist often turns round at once then.
 int late_after_settling() {
-    Drive<double, hysteresis::BoucWen<double>, friction::Viscous<double>> made{};
+    Tried<double, hysteresis::BoucWen<double>, friction::Viscous<double>> made{};
     made.gear.kinematics.reduction = 100.0;
     made.gear.stiffness.k = 1.2e4;
     made.gear.damping = 60.0;
@@ -150,8 +149,8 @@ int late_after_settling() {
             late += system::event_function<double>(drive, end) < -1e-9;
         };
         Input<double> before{}, after{};
-        before.load_torque = 1.0;
-        after.load_torque = k % 2 ? 2.0 : 0.0;
+        before.load = 1.0;
+        after.load = k % 2 ? 2.0 : 0.0;
         after.command = 10.0;
         const Interval<Input<double>> settling{before, before, before}, moving{after, after, after};
         const auto settled = adaptive.through(drive.evaluate(drive.rest(), before), settling, 0.25 + 1e-3 * k, within);

@@ -14,7 +14,7 @@ import strainwave as sw
 from strainwave import arguments
 from strainwave.state import start_of
 
-DRIVE = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+DRIVE = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
 COMMAND = sw.scenario.step(0.1, 0.01)
 MEMBERS = {"load.inertia": [0.01, 0.02]}
 
@@ -135,7 +135,7 @@ def test_a_longer_float_may_become_infinite() -> None:
 
 
 def test_what_is_shown_of_a_wrong_argument_is_short() -> None:
-    drive = sw.drives.PositionDrive()
+    drive = sw.Drive()
     for refuse in (arguments.drive, lambda value: arguments.number("dt", value), lambda value: start_of(drive, value)):
         with pytest.raises(TypeError) as told:
             refuse(1000 * "no drive ")
@@ -216,4 +216,4 @@ def test_steps_that_no_clock_could_tell_apart_are_refused() -> None:
 
 def test_a_whole_number_beyond_all_others_is_refused_by_its_name() -> None:
     with pytest.raises(ValueError, match=r"^dt = 1000.* is too large a number$"):
-        sw.simulate(sw.drives.PositionDrive(), sw.scenario.constant(0.0, 0.1), 10**400)
+        sw.simulate(sw.Drive(), sw.scenario.constant(0.0, 0.1), 10**400)

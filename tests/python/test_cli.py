@@ -307,7 +307,7 @@ import strainwave as sw
 def run():
     print("here", flush=True)
     inertia = {"load.inertia": [0.01] * 100_000}
-    sw.simulate_many(sw.drives.PositionDrive(), sw.scenario.constant(1.0, 10.0), inertia, record=["torque"], sample=10.0)
+    sw.simulate_many(sw.Drive(), sw.scenario.constant(1.0, 10.0), inertia, record=["torque"], sample=10.0)
 cli.main = run
 __main__.main()
 """

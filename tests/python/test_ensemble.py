@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 from pyarrow import dataset
 from strainwave import _core, ensemble
 from strainwave.ensemble import EnsembleWarning
-from strainwave.simulation import differentiate
+from strainwave.signals import outputs
+from strainwave.simulation import Excitation, differentiate
 
 from tests.reference_drive import DRIVE, command
 from tests.strategies import made
@@ -34,7 +35,7 @@ from tests.strategies import made
 Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
-OUTPUTS = [name for name, _, _ in _core.outputs]
+OUTPUTS = list(outputs(sw.Drive()))
 STRIBECK = sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5)
 STICKING = DRIVE.replace(
     gear=DRIVE.gear.replace(friction_input=STRIBECK, friction_output=sw.friction.Coulomb(coulomb=3.0, breakaway=4.0))
@@ -57,13 +58,13 @@ def varied(members: int = MEMBERS) -> dict[str, Array]:
     }
 
 
-def with_parameters(drive: sw.drives.PositionDrive, values: dict[str, float]) -> sw.drives.PositionDrive:
+def with_parameters(drive: sw.Drive, values: dict[str, float]) -> sw.Drive:
     """The same drive with other numbers at these paths."""
     numbers = {path: number for path, number, *_ in _core.parameters(drive)} | values
     return _core.with_numbers(drive, list(numbers.values()))
 
 
-def member_of(drive: sw.drives.PositionDrive, parameters: dict[str, Array], member: int) -> sw.drives.PositionDrive:
+def member_of(drive: sw.Drive, parameters: dict[str, Array], member: int) -> sw.Drive:
     return with_parameters(drive, {path: float(values[member]) for path, values in parameters.items()})
 
 
@@ -108,7 +109,7 @@ def test_input_angle_output_angle_and_torque_are_recorded_at_every_step_unless_t
 
 
 @every_drive
-def test_a_member_is_the_run_of_its_drive_alone_to_the_last_bit(drive: sw.drives.PositionDrive) -> None:
+def test_a_member_is_the_run_of_its_drive_alone_to_the_last_bit(drive: sw.Drive) -> None:
     others: dict[str, Any] = {"sample": 1e-3, "load_torque": 3.0, "temperature": sw.scenario.ramp(50.0, 0.2) + WARM}
     runs = sw.simulate_many(drive, SWING, varied(), 5e-4, record=OUTPUTS, **others)
     assert np.unique(runs["torque"][:, -1]).size == MEMBERS  # the parameters do change the runs
@@ -130,7 +131,7 @@ def test_the_swing_makes_the_set_valued_side_stick_and_slip() -> None:
 
 
 @every_drive
-def test_the_number_of_threads_changes_no_bit(drive: sw.drives.PositionDrive) -> None:
+def test_the_number_of_threads_changes_no_bit(drive: sw.Drive) -> None:
     one, two, three = (sw.simulate_many(drive, SWING, varied(43), 5e-4, threads=threads) for threads in (1, 2, 3))
     assert same_bits(one, two)
     assert same_bits(one, three)
@@ -152,7 +153,7 @@ def digests() -> dict[str, str]:
     found = {}
     for kind, drive in DRIVES.items():
         run = sw.simulate(drive, SWING, 5e-4)
-        _, slopes = differentiate(drive, SWING, range(12), 5e-4, 1e-3)
+        _, slopes = differentiate(drive, Excitation(SWING), range(12), 5e-4, 1e-3)
         many = sw.simulate_many(drive, SWING, varied(), 5e-4, record=OUTPUTS)
         arrays = {"one": [run[name] for name in OUTPUTS], "derivatives": [slopes], "many": list(many.columns.values())}
         for name, values in arrays.items():
@@ -196,7 +197,7 @@ def test_the_instruction_set_changes_no_bit(instruction_set: str) -> None:
 
 
 def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> None:
-    code = "import strainwave as sw; sw.simulate(sw.drives.PositionDrive(), sw.scenario.constant(0.0, 1e-3))"
+    code = "import strainwave as sw; sw.simulate(sw.Drive(), sw.scenario.constant(0.0, 1e-3))"
     process = script(code, STRAINWAVE_INSTRUCTION_SET="sse9")
     _, wrong = process.communicate(timeout=60)
     running = [name for name in reversed(FLAGS) if name in built() and FLAGS[name] <= machine_flags()]
@@ -230,9 +231,9 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
         (
             {"load.inertia": [0.5]},
             {"record": ["torque", "torsion"]},
-            r"^record = .*'torsion'.* must list outputs of a drive: comm",
+            r"^record = .*'torsion'.* must list outputs of this drive: comm",
         ),
-        ({"load.inertia": [0.5]}, {"record": []}, r"^record = \[\] must list outputs of a drive: command, "),
+        ({"load.inertia": [0.5]}, {"record": []}, r"^record = \[\] must list outputs of this drive: command, "),
         ({"load.inertia": [0.5]}, {"threads": 0}, r"^threads = 0 must be 1 or more$"),
         ({"load.inertia": [0.5]}, {"dt": -1.0}, r"^dt = -1\.0 s must lie in \(0, inf\)$"),
         ({"load.inertia": [0.5]}, {"temperature": -1.0}, r"^temperature = -1 K must lie in \(0, inf\)"),
@@ -304,7 +305,7 @@ failing = pytest.mark.parametrize(("drive", "path", "good", "bad", "reason"), FA
 
 @failing
 def test_a_member_that_fails_is_told_and_disturbs_no_other(
-    drive: sw.drives.PositionDrive, path: str, good: float, bad: float, reason: str, tmp_path: Path
+    drive: sw.Drive, path: str, good: float, bad: float, reason: str, tmp_path: Path
 ) -> None:
     numbers, wrong = good * np.linspace(0.95, 1.05, 19), [3, 9, 18]  # in each of three packs one
     right = [member for member in range(19) if member not in wrong]
@@ -453,7 +454,7 @@ def test_a_run_to_files_that_is_stopped_half_way_leaves_what_was_done(how: signa
 
 @every_drive
 def test_what_is_read_from_files_is_what_would_have_been_in_memory(
-    drive: sw.drives.PositionDrive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    drive: sw.Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     arguments: dict[str, Any] = {"record": ["output_speed", "command"], "sample": 1e-3, "threads": 2}
     whole = sw.simulate_many(drive, SWING, varied(37), 5e-4, **arguments)
@@ -499,6 +500,7 @@ import tempfile
 from strainwave import ensemble
 from tests.python.test_ensemble import DRIVE, OUTPUTS, RISE, most_memory, varied
 import strainwave as sw
+from strainwave.signals import outputs
 ensemble.PART = 1 << 20
 for members in (256, 2048):
     with tempfile.TemporaryDirectory() as folder:

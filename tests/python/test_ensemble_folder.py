@@ -28,7 +28,7 @@ from strainwave.files import claiming
 
 from tests.python.test_ensemble import ROOT, same_bits
 
-DRIVE = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+DRIVE = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
 COMMAND = sw.scenario.step(5.0, 0.004)
 INERTIA = {"load.inertia": np.linspace(0.01, 0.02, 20)}
 OTHERS: dict[str, Any] = {"sample": 1e-3, "record": ["torque"], "threads": 1}

@@ -23,7 +23,7 @@ from strainwave.steady import Rates
 
 from tests.strategies import made as usual
 
-DRIVE = sw.drives.PositionDrive(
+DRIVE = sw.Drive(
     control=sw.control.PID(proportional=2.0, derivative=0.05), load=sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
 )
 COMMAND = sw.scenario.sine(0.1, 1.0, 0.02) + sw.scenario.table([0.0, 0.02], [0.0, 1.0])
@@ -38,7 +38,7 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "Derivatives": lambda: sw.derivatives(DRIVE, COMMAND, ["load.inertia"]),
     "LinearView": lambda: sw.linearise(DRIVE),
     "FrequencyResponse": lambda: sw.frequency_response(DRIVE, [20.0], 0.01),
-    "Rates": lambda: Rates.of(DRIVE, DRIVE.rest().numbers, np.zeros(4)),
+    "Rates": lambda: Rates.of(DRIVE, DRIVE.rest().numbers, np.zeros(6)),
     "GearSet": lambda: sw.GearSet.read("hfuc-25-100"),
     "Experiment": lambda: Experiment("step", (("twin", RUN),), (Figure("error", "rad", (0.1,), 0.2),)),
     "drive": lambda: DRIVE,

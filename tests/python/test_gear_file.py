@@ -158,7 +158,7 @@ LAWS = (
 )
 PARTS = (
     "name, maker, note, ratings, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, friction_input, "
-    "friction_mesh, friction_output, gear, motor, control, load"
+    "friction_mesh, friction_output, gear, motor, control, load, sensors"
 )
 HYSTERESIS = """
 [hysteresis]
@@ -203,7 +203,7 @@ REFUSED = {
     with_line("name", "name = 'a'\ncolour = 3"): f"my.toml colour: not a part of a gear file; it has {PARTS}",
     with_line("[stiffness]", "[stifness]"): f"my.toml stifness: not a part of a gear file; it has {PARTS}",
     with_line("name", "name = 'a'\nload = 3"): (
-        'my.toml load = 3 must be a table; write [load] with model = "inertia" or "pendulum"'
+        'my.toml load = 3 must be a table; write [load] with model = "inertia" or "pendulum" or "prescribed"'
     ),
     BASE[: BASE.index("[stiffness]")]: (
         f"my.toml stiffness is missing; write [stiffness] with model = {SPRINGS}"
@@ -427,9 +427,9 @@ def filled(model: Any) -> Any:
     return made(model, **{field["name"]: [1.0] for field in model.fields if field["kind"] == "sequence"})
 
 
-def with_law(**parts: Any) -> sw.drives.PositionDrive:
+def with_law(**parts: Any) -> sw.Drive:
     """A drive with these parts, of its gear or its own."""
-    drive = sw.drives.PositionDrive()
+    drive = sw.Drive()
     of_gear = {name: parts.pop(name) for name in list(parts) if hasattr(drive.gear, name)}
     return drive.replace(gear=drive.gear.replace(**of_gear), **parts)
 
@@ -534,7 +534,7 @@ def gear_sets(draw: st.DrawFn) -> GearSet:
     motor = chosen["motor"]
     assume(gear.input_inertia > 0.0 or motor is None or motor.inertia > 0.0)  # something must turn at the input
     whole = {part: model for part, model in chosen.items() if model is not None}
-    paths = GearSet.of(sw.drives.PositionDrive(gear=gear, **whole), name="x", source="x").sources
+    paths = GearSet.of(sw.Drive(gear=gear, **whole), name="x", source="x").sources
     absent = tuple(f"{part}." for part in chosen.keys() - whole.keys())
     shared, own = draw(entries), draw(st.booleans())
     return GearSet(
@@ -588,7 +588,7 @@ def entries_of(content: Any, path: str = "") -> Iterator[tuple[str, dict[str, An
 
 @untimed
 @given(drives)
-def test_a_drive_that_was_saved_is_loaded_and_so_is_its_gear(tmp_path: Path, drive: sw.drives.PositionDrive) -> None:
+def test_a_drive_that_was_saved_is_loaded_and_so_is_its_gear(tmp_path: Path, drive: sw.Drive) -> None:
     for model in (drive, drive.gear):
         save(model, tmp_path / "model.toml", name="x", source="x")
         again = load(tmp_path / "model.toml")

@@ -45,7 +45,7 @@ def test_every_number_has_a_source_and_every_source_a_number() -> None:
 
 
 @given(drives)
-def test_the_paths_are_those_of_the_drives_parameters_and_its_counts(drive: sw.drives.PositionDrive) -> None:
+def test_the_paths_are_those_of_the_drives_parameters_and_its_counts(drive: sw.Drive) -> None:
     counts = {f"gear.kinematics.{f['name']}" for f in drive.gear.kinematics.fields if f["kind"] == "count"}
     numbers = {path for path, *_ in _core.parameters(drive)}
     assert GearSet.of(drive, name="x", source="x").sources.keys() == numbers | counts
@@ -73,10 +73,10 @@ def test_a_file_without_motor_or_load_is_loaded_as_its_gear(tmp_path: Path) -> N
 
 
 @given(drives)
-def test_of_a_drive_each_number_has_the_source_given_or_says_that_it_may_be_none(drive: sw.drives.PositionDrive) -> None:
+def test_of_a_drive_each_number_has_the_source_given_or_says_that_it_may_be_none(drive: sw.Drive) -> None:
     """No number that nobody gave has the source: it does nothing, or equals its default."""
     gear_set = GearSet.of(drive, name="x", source="measured")
-    default = {path: value for path, value, *_ in _core.parameters(sw.drives.PositionDrive())}
+    default = {path: value for path, value, *_ in _core.parameters(sw.Drive())}
     for path, value, *_ in _core.parameters(drive):
         source = gear_set.sources[path].source
         assert source in ("measured", "not given", "assumed: the default, unless given by: measured")
@@ -164,7 +164,7 @@ def test_what_a_fit_kept_or_could_not_tell_says_so() -> None:
 
 
 def test_the_fit_of_a_drive_keeps_its_paths() -> None:
-    drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01), control=sw.control.OpenLoop(gain=1.0))
+    drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01), control=sw.control.OpenLoop(gain=1.0))
     log = sw.simulate(drive, sw.scenario.sine(2.0, 3.0, 0.2), sample=1e-3).select(["time", "command", "input_speed"])
     fit = sw.fit(drive, log, ["motor.resistance"])
     gear_set = GearSet.of(fit, name="x", source="log")
@@ -187,7 +187,7 @@ def test_a_catalogue_set_becomes_a_drive_with_the_parts_it_lacks() -> None:
     start = GearSet.read("csg-20-80")
     motor, disc = sw.motor.DC(resistance=0.3), sw.loads.Inertia(inertia=2.0)
     whole = start.with_parts(motor=motor, load=disc, source="data sheet")
-    assert whole.drive == sw.drives.PositionDrive(gear=start.gear, motor=motor, load=disc)
+    assert whole.drive == sw.Drive(gear=start.gear, motor=motor, load=disc)
     assert whole.ratings == start.ratings
     assert {path: whole.sources[path] for path in start.sources} == start.sources
     assert whole.sources["motor.resistance"] == whole.sources["load.inertia"] == Entry("data sheet")
@@ -198,7 +198,7 @@ def test_a_catalogue_set_becomes_a_drive_with_the_parts_it_lacks() -> None:
 
 
 def test_a_part_of_another_family_is_refused() -> None:
-    with pytest.raises(TypeError, match=exactly("position_drive.motor must be one of DC, not 3")):
+    with pytest.raises(TypeError, match=exactly("drive.motor must be one of DC, TorqueSource, CurrentSource, not 3")):
         GearSet.read("csg-20-80").with_parts(motor=3, source="x")
 
 
@@ -243,11 +243,11 @@ def test_a_set_is_saved_under_its_own_name(tmp_path: Path) -> None:
             TypeError,
             "a number is named by a text, not 3",
         ),
-        (lambda: GearSet.of(3, name="x", source="x"), TypeError, "position_drive.gear must be a Gear, not 3"),
+        (lambda: GearSet.of(3, name="x", source="x"), TypeError, "drive.gear must be a Gear, not 3"),
         (
             lambda: GearSet.read("hfuc-25-100").replace(motor=3),
             TypeError,
-            "position_drive.motor must be one of DC, not 3",
+            "drive.motor must be one of DC, TorqueSource, CurrentSource, not 3",
         ),
         (
             lambda: GearSet.read("hfuc-25-100").replace(ratings={"peak_torque": 4.0}),
@@ -266,7 +266,7 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
     with pytest.raises(ValueError, match=exactly("bare has no [motor] and no [load]; a drive needs a motor and a load")):
         _ = bare.drive
     motor, load = sw.motor.DC(resistance=2.0), sw.loads.Inertia(inertia=3.0)
-    drive = sw.drives.PositionDrive(gear=sw.Gear(damping=7.0), motor=motor, load=load)
+    drive = sw.Drive(gear=sw.Gear(damping=7.0), motor=motor, load=load)
     whole = GearSet.of(drive, name="whole", source="x")
     assert whole.drive == drive
     sources = {path: entry for path, entry in whole.sources.items() if not path.startswith("control.")}
@@ -286,9 +286,8 @@ def test_the_uncertainty_of_a_temperature_is_a_difference() -> None:
 
 def whole_set() -> GearSet:
     """A set that has every member."""
-    drive = sw.drives.PositionDrive(
-        gear=load("csg-20-80"), control=sw.control.OpenLoop(gain=2.0), load=sw.loads.Inertia(inertia=3.0)
-    )
+    drive = sw.Drive(gear=load("csg-20-80"), control=sw.control.OpenLoop(gain=2.0), load=sw.loads.Inertia(inertia=3.0))
+    drive = drive.replace(sensors=sw.Sensors(torque=sw.sensor.FirstOrder(time_constant=1e-3)))
     ratings = {"peak_torque": Quantity(value=1.0, unit="N.m", source="x")}
     return GearSet.of(drive, name="whole", source="x").replace(maker="x", note="x", ratings=ratings)
 
@@ -304,6 +303,9 @@ def changed(gear_set: GearSet, member: str) -> dict[str, Any]:
         "control": sw.control.OpenLoop(gain=3.0),
         "load": sw.loads.Inertia(inertia=4.0),
     }
+    if member == "sensors":  # ideal ones have no numbers, and so no sources
+        sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith("sensors.")}
+        return {"sensors": sw.Sensors(), "sources": sources}
     return {member: others.get(member, "other")}
 
 
@@ -368,7 +370,7 @@ def test_a_catalogue_gear_turns_its_output_by_its_ratio(name: str) -> None:
     inertia = gear.input_inertia
     motor = sw.motor.DC(inertia=inertia, torque_constant=0.1, back_emf=0.1, resistance=0.1**2 * 0.02 / (3 * inertia))
     disc = sw.loads.Inertia(inertia=inertia * gear.kinematics.ratio**2)
-    drive = sw.drives.PositionDrive(gear=gear, motor=motor, load=disc)
+    drive = sw.Drive(gear=gear, motor=motor, load=disc)
     run = sw.simulate(drive, sw.scenario.step(amplitude=20.0, duration=0.2))
     _, _, ratio = name.split("-")
     assert run["input_angle"][-1] > 2 * math.pi

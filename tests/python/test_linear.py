@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
-from strainwave import _core
+from strainwave import _core, signals
 from strainwave.state import Layout
 
 from tests.geared import MOTOR, RATIO, K, geared, outputs
@@ -182,7 +182,7 @@ EVERYWHERE = [
 ]
 
 
-def replaced(drive: sw.drives.PositionDrive, place: str, model: object) -> sw.drives.PositionDrive:
+def replaced(drive: sw.Drive, place: str, model: object) -> sw.Drive:
     part, _, member = place.partition(".")
     return drive.replace(**{part: getattr(drive, part).replace(**{member: model}) if member else model})
 
@@ -206,7 +206,7 @@ def test_derivatives_are_those_of_differences(place: str, model: object, data: s
         transmission_error=at.transmission_error - error,
         output_speed=sense * 0.02,
     )
-    inputs = np.array([0.001, 0.02, 0.7, 300.0])
+    inputs = np.array([0.001, 0.02, 0.7, 0.0, 300.0, 0.0])
     state = _core.aged(drive, _core.consistent(drive, moving.numbers), inputs, 1e-4)
     values, slopes = _core.differentiate_rates(drive, state, inputs)
     layout = Layout(drive)
@@ -280,7 +280,7 @@ def test_rows_and_columns_have_names_and_units() -> None:
         "friction_input.deflection",
     )
     assert linear.inputs == ("command", "command_rate", "load_torque", "temperature")
-    assert linear.outputs == tuple(name for name, _, _ in _core.outputs)
+    assert linear.outputs == tuple(signals.outputs(sw.Drive()))
     a, b, c, d = linear
     assert (a.shape, b.shape, c.shape, d.shape) == ((6, 6), (6, 4), (16, 6), (16, 4))
     assert linear.units["motor.current"] == "A"

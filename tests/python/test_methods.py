@@ -62,9 +62,7 @@ SWING = sw.scenario.sine(0.02, 3.0, 0.35)  # small and slow enough for what can 
         "moreau_jean, both sides sticking, Stribeck",
     ],
 )
-def test_each_method_converges_with_its_order(
-    drive: sw.drives.PositionDrive, course: sw.scenario.Scenario, method: Any, order: float
-) -> None:
+def test_each_method_converges_with_its_order(drive: sw.Drive, course: sw.scenario.Scenario, method: Any, order: float) -> None:
     """Halving the step twice, from where the asymptotic range has been reached."""
     exact = sw.simulate(drive, course, 2e-6, sample=1e-3)
     coarse = {"exponential": 1e-4, "rosenbrock": 5e-5, "moreau_jean": 2.5e-5}[method]
@@ -89,7 +87,7 @@ def test_where_orders_are_told_what_can_stick_does() -> None:
 
 
 @pytest.mark.parametrize("drive", [COULOMBS, STRIBECKS], ids=["Coulomb", "Stribeck"])
-def test_with_several_places_that_stick_events_lead_where_time_stepping_does(drive: sw.drives.PositionDrive) -> None:
+def test_with_several_places_that_stick_events_lead_where_time_stepping_does(drive: sw.Drive) -> None:
     """Which looks for no events, and misses each by as much as a step: of first order across them."""
     located = sw.simulate(drive, SWING, 1e-4, sample=1e-3)
     stepped = [sw.simulate(drive, SWING, dt, sample=1e-3, method="moreau_jean") for dt in (5e-5, 1.25e-5, 3.125e-6)]
@@ -183,7 +181,7 @@ def test_bristles_of_any_stiffness_are_followed_as_chosen(stiffer: float) -> Non
     assert difference(sw.simulate(drive, to_and_fro, 2e-4, sample=1e-3), exact) < 1e-3
 
 
-def on_bristles(stiffness: float) -> sw.drives.PositionDrive:
+def on_bristles(stiffness: float) -> sw.Drive:
     law = DRIVE.gear.friction_input
     return DRIVE.replace(gear=DRIVE.gear.replace(friction_input=law.replace(bristle_stiffness=stiffness)))
 

@@ -7,25 +7,25 @@ import re
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave import _core
-from strainwave.simulation import ROOM_TEMPERATURE, differentiate
+from strainwave.signals import outputs
+from strainwave.simulation import ROOM_TEMPERATURE, Excitation, differentiate
 
 from tests.side_by_side import side_by_side
 from tests.strategies import made
 
-COLUMNS = [name for name, _, _ in _core.outputs]
+COLUMNS = list(outputs(sw.Drive()))
 
 MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4)
 RATIOS = {"driving_forward": 0.1, "driving_reverse": 0.15, "backdriving_forward": 0.2, "backdriving_reverse": 0.25}
 
 
-def open_loop(**parts: object) -> sw.drives.PositionDrive:
+def open_loop(**parts: object) -> sw.Drive:
     """A motor at the voltage commanded, a gear of ratio 20 without kinematic error, a disc."""
     gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=20.0), stiffness=sw.stiffness.Linear(k=1e4), damping=5.0)
-    return sw.drives.PositionDrive(gear=gear.replace(**parts), motor=MOTOR, load=sw.loads.Inertia(inertia=0.05))
+    return sw.Drive(gear=gear.replace(**parts), motor=MOTOR, load=sw.loads.Inertia(inertia=0.05))
 
 
-def settled(drive: sw.drives.PositionDrive, voltage: float, load_torque: float) -> dict[str, float]:
+def settled(drive: sw.Drive, voltage: float, load_torque: float) -> dict[str, float]:
     """The last sample of a run, many time constants long."""
     run = sw.simulate(drive, sw.scenario.constant(voltage, 1.0), load_torque=load_torque, sample=0.1)
     assert run["output_speed"][-2:] == pytest.approx([run["output_speed"][-1]] * 2, rel=1e-12)
@@ -108,7 +108,7 @@ def test_drives_side_by_side_and_derivatives_see_mesh_and_temperature_too() -> N
     voltage = sw.scenario.sine(24.0, 5.0, 0.3)
     alone = sw.simulate(drive, voltage, dt=1e-4, sample=1e-3, **arguments)
     packed = side_by_side([drive], voltage, dt=1e-4, sample=1e-3, **arguments).member(0)
-    dual, _ = differentiate(drive, voltage, [0], 1e-4, 1e-3, **arguments)
+    dual, _ = differentiate(drive, Excitation.of(drive, voltage, **arguments), [0], 1e-4, 1e-3)
     for name in ("input_speed", "friction_mesh", "temperature"):
         size = np.abs(alone[name]).max()
         assert size > 0.0
@@ -136,7 +136,7 @@ def test_a_drive_that_leaves_the_domain_of_a_part_is_refused_with_part_numbers_a
     drive = open_loop(friction_input=law)
     for run in (
         lambda: sw.simulate(drive, voltage),
-        lambda: differentiate(drive, voltage, [0], 2e-4, 1e-2),
+        lambda: differentiate(drive, Excitation(voltage), [0], 2e-4, 1e-2),
     ):
         with pytest.raises(ValueError, match=r"^gear\.friction_input: angle = ") as refusal:
             run()

@@ -15,9 +15,9 @@ from tests.reference_drive import DRIVE, command
 TORQUE_CONSTANT, RESISTANCE, INERTIA = 0.05, 0.5, 1e-4  # N.m/A, ohm, kg.m2
 
 
-def free_input(friction: Any, back_emf: float) -> sw.drives.PositionDrive:
+def free_input(friction: Any, back_emf: float) -> sw.Drive:
     """A motor whose shaft feels nothing of the gear: the spring is all but nothing."""
-    return sw.drives.PositionDrive(
+    return sw.Drive(
         gear=sw.Gear(stiffness=sw.stiffness.Linear(k=1e-20), friction_input=friction),
         motor=sw.motor.DC(resistance=RESISTANCE, torque_constant=TORQUE_CONSTANT, back_emf=back_emf, inertia=INERTIA),
         load=sw.loads.Inertia(inertia=1.0),
@@ -70,7 +70,7 @@ def test_a_derivative_is_the_same_whatever_others_are_asked_for(count: int) -> N
 
 def test_the_path_of_a_sequence_is_all_its_elements() -> None:
     gear = sw.Gear(kinematic_error=sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 2e-4], phase=[0.0, 0.5]))
-    drive = sw.drives.PositionDrive(gear=gear)
+    drive = sw.Drive(gear=gear)
     found = sw.derivatives(drive, sw.scenario.step(1.0, 0.01), ["gear.kinematic_error.amplitude", "motor.resistance"])
     assert dict(found.parameters) == {
         "gear.kinematic_error.amplitude[0]": "rad",
@@ -85,7 +85,7 @@ def test_the_path_of_a_sequence_is_all_its_elements() -> None:
 def test_steps_too_coarse_at_rest_are_refused_as_they_are_of_a_run() -> None:
     """Of a hysteresis that is stiff at first, and lets go in a run that steps cannot follow."""
     sudden = sw.hysteresis.BoucWen(stiffness=1e7, saturation=0.1)
-    drive = sw.drives.PositionDrive(gear=sw.Gear(hysteresis=sudden), load=sw.loads.Inertia(inertia=0.01))
+    drive = sw.Drive(gear=sw.Gear(hysteresis=sudden), load=sw.loads.Inertia(inertia=0.01))
     volts = sw.scenario.constant(10.0, 0.1)
     with pytest.raises(FloatingPointError, match="too coarse for this drive") as refusal:
         sw.simulate(drive, volts)
@@ -101,7 +101,7 @@ def test_derivatives_go_through_a_pickle() -> None:
 
 
 def test_what_there_is_not_is_refused_with_what_there_is() -> None:
-    drive, command = sw.drives.PositionDrive(), sw.scenario.step(1.0, 0.01)
+    drive, command = sw.Drive(), sw.scenario.step(1.0, 0.01)
     with pytest.raises(ValueError, match=r'^the model has no parameter "motor.resistanse"; near it are motor.resistance'):
         sw.derivatives(drive, command, ["motor.resistanse"])
     with pytest.raises(ValueError, match=r"^parameters must name at least one number$"):

@@ -14,10 +14,10 @@ from strainwave.state import Layout
 
 from tests.geared import MOTOR, RATIO, K, geared, outputs
 from tests.reference_drive import DRIVE
-from tests.strategies import drives, made
+from tests.strategies import made, smooth_drives
 
 
-def stays(drive: sw.drives.PositionDrive, state: _core.State, command: float, load_torque: float = 0.0) -> None:
+def stays(drive: sw.Drive, state: _core.State, command: float, load_torque: float = 0.0) -> None:
     """A run from `state` does not move, but for rounding."""
     run = sw.simulate(drive, sw.scenario.constant(command, 0.2), load_torque=load_torque, start=state)
     for name in ("input_angle", "output_angle", "twist", "current"):
@@ -121,8 +121,8 @@ def test_the_reference_drive_rests_there(command: float) -> None:
 
 
 @settings(max_examples=40)
-@given(drives)
-def test_any_drive_rests_where_it_is_said_to(drive: sw.drives.PositionDrive) -> None:
+@given(smooth_drives)
+def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:
     """What has no equilibrium says so; in all others no side accelerates, nor does the current or the controller."""
     inputs, state = {"command": 0.01, "load_torque": 0.1}, None
     with suppress(ValueError):
@@ -134,11 +134,11 @@ def test_any_drive_rests_where_it_is_said_to(drive: sw.drives.PositionDrive) -> 
     if state.input_speed != 0.0:
         gear = drive.gear.replace(kinematic_error=sw.kinematic_error.Fourier(), kinematic_noise=sw.kinematic_error.Stochastic())
         drive = drive.replace(gear=gear)
-    values, slopes = _core.differentiate_rates(drive, state.numbers, np.array([0.01, 0.0, 0.1, 293.15]))
+    values, slopes = _core.differentiate_rates(drive, state.numbers, np.array([0.01, 0.0, 0.1, 0.0, 293.15, 0.0]))
     layout = Layout(drive)
     n = layout.count
     numbers = state.numbers[:n]
-    size = np.abs(numbers) @ np.abs(slopes[:n, :n]) + np.abs([0.01, 0.0, 0.1, 293.15]) @ np.abs(slopes[n:, :n])
+    size = np.abs(numbers) @ np.abs(slopes[:n, :n]) + np.abs([0.01, 0.0, 0.1, 0.0, 293.15, 0.0]) @ np.abs(slopes[n:, :n])
     for name in ("motor", "input_speed", "output_speed"):
         place = layout.places[name]
         assert (np.abs(values[place]) <= 1e-9 * size[place] + 1e-20).all()
@@ -219,7 +219,7 @@ def test_torques_beyond_all_numbers_are_told_in_a_line_without_a_word_of_librari
     amplitude: float, capfd: pytest.CaptureFixture[str]
 ) -> None:
     error = sw.kinematic_error.Fourier(order=[2.0], amplitude=[amplitude], phase=[0.3])
-    drive = sw.drives.PositionDrive(gear=sw.Gear(kinematic_error=error))
+    drive = sw.Drive(gear=sw.Gear(kinematic_error=error))
     for look in (sw.equilibrium, sw.linearise):
         with pytest.raises(ValueError, match=r"^no equilibrium can be found: torques or .* grow beyond all numbers"):
             look(drive, load_torque=1.0)
@@ -231,7 +231,7 @@ def test_torques_beyond_all_numbers_are_told_in_a_line_without_a_word_of_librari
 @pytest.mark.parametrize("load_torque", [1e160, 1e300, 1.7e308])
 def test_a_load_beyond_all_numbers_is_told_in_a_line(load_torque: float, capfd: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(ValueError, match=r"^[^\n]*(nothing limits its speed|grow beyond all numbers)[^\n]*$"):
-        sw.equilibrium(sw.drives.PositionDrive(), load_torque=load_torque)
+        sw.equilibrium(sw.Drive(), load_torque=load_torque)
     assert capfd.readouterr() == ("", "")
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
+from strainwave.signals import outputs
 from strainwave.simulation import METHODS
 
 from tests.reference_drive import DRIVE
@@ -27,7 +28,7 @@ HOLDING = {
     "thermal": sw.friction.Thermal(law=COULOMB, dry_fall=0.01, reference_temperature=300.0),
 }  # of the input's scale
 OUTPUT_SCALE = 100.0
-EVERY_OUTPUT = [name for name, _, _ in _core.outputs]
+EVERY_OUTPUT = list(outputs(sw.Drive()))
 
 
 def test_every_law_that_can_hold_is_among_those_held_here() -> None:
@@ -46,7 +47,7 @@ def scaled(law: Any, factor: float) -> Any:
     return law.replace(**{name: factor * np.array(getattr(law, name)) for name in torques})
 
 
-def held(place: str, law: Any) -> sw.drives.PositionDrive:
+def held(place: str, law: Any) -> sw.Drive:
     """Both sides can stick, of which one by this law, with error and hysteresis; the current follows the voltage at once."""
     output = scaled(COULOMB, OUTPUT_SCALE)
     friction = {"friction_input": COULOMB if place == "friction_output" else sw.friction.Viscous(), "friction_output": output}
@@ -63,13 +64,13 @@ every_hold = pytest.mark.parametrize("law", HOLDING.values(), ids=HOLDING)
 every_place = pytest.mark.parametrize("place", ["friction_input", "friction_mesh", "friction_output"])
 
 
-def by_every_method(drive: sw.drives.PositionDrive, voltage: sw.scenario.Scenario, **others: Any) -> dict[str, sw.Recording]:
+def by_every_method(drive: sw.Drive, voltage: sw.scenario.Scenario, **others: Any) -> dict[str, sw.Recording]:
     runs: dict[str, sw.Recording] = {method: sw.simulate(drive, voltage, method=method, **others) for method in METHODS}
     runs["adaptive"] = sw.simulate_adaptively(drive, voltage, **{"sample": 2e-4} | others)
     return runs
 
 
-def in_a_pack(drive: sw.drives.PositionDrive, voltage: sw.scenario.Scenario, **others: Any) -> dict[str, sw.Recording]:
+def in_a_pack(drive: sw.Drive, voltage: sw.scenario.Scenario, **others: Any) -> dict[str, sw.Recording]:
     """Members that differ, so that the events of one fall into the rest of another."""
     inertia = {"load.inertia": np.linspace(0.4, 0.6, 11)}
     many = sw.simulate_many(drive, voltage, inertia, record=EVERY_OUTPUT, **others)

@@ -16,12 +16,12 @@ from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
 from tests.reference_drive import DRIVE, SMOOTH, STICKING, command
 from tests.strategies import suited
-from tests.tolerance import COLUMNS, Excited, difference, until, verdict
+from tests.tolerance import COLUMNS, Excited, at_limit, difference, until, verdict
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
 @pytest.mark.parametrize("drive", [SMOOTH, STICKING, DRIVE], ids=["smooth", "sticking", "reference"])
-def test_the_adaptive_method_keeps_its_tolerance_and_wastes_little(drive: sw.drives.PositionDrive, rtol: float) -> None:
+def test_the_adaptive_method_keeps_its_tolerance_and_wastes_little(drive: sw.Drive, rtol: float) -> None:
     exact = sw.simulate_adaptively(drive, command(0.3), rtol=1e-11)
     error = difference(sw.simulate_adaptively(drive, command(0.3), rtol=rtol), exact)
     assert 1e-4 * rtol < error < 10.0 * rtol
@@ -32,7 +32,7 @@ def steps_taken(run: sw.Run) -> int:
 
 
 @pytest.mark.parametrize("drive", [SMOOTH, STICKING, DRIVE], ids=["smooth", "sticking", "reference"])
-def test_what_is_tolerated_besides_is_kept_and_saves_steps(drive: sw.drives.PositionDrive) -> None:
+def test_what_is_tolerated_besides_is_kept_and_saves_steps(drive: sw.Drive) -> None:
     """Each angle, speed and torque within `rtol` of its largest plus `atol` in its own unit."""
     exact = sw.simulate_adaptively(drive, command(0.2), rtol=1e-10)
     runs = {atol: sw.simulate_adaptively(drive, command(0.2), rtol=1e-8, atol=atol) for atol in (1e-12, 1e-6, 1e-4, 1e-2)}
@@ -44,7 +44,7 @@ def test_what_is_tolerated_besides_is_kept_and_saves_steps(drive: sw.drives.Posi
     assert all(fewer < 0.75 * more for more, fewer in pairwise(steps))
 
 
-def resolvable(drive: sw.drives.PositionDrive, rtol: float, voltage: float = 12.0) -> sw.Run:
+def resolvable(drive: sw.Drive, rtol: float, voltage: float = 12.0) -> sw.Run:
     try:
         excited = sw.scenario.sine(voltage, 50.0, 0.02)
         return sw.simulate_adaptively(drive, excited, rtol=rtol, load_torque=2.0, most_steps=10_000)
@@ -57,7 +57,7 @@ def resolvable(drive: sw.drives.PositionDrive, rtol: float, voltage: float = 12.
         raise
 
 
-def check_tolerance(drive: sw.drives.PositionDrive) -> None:
+def check_tolerance(drive: sw.Drive) -> None:
     """The error is ten times the tolerance at most, or ten times what a change of the voltage by as much makes.
 
     A drive that is about to lock or to break away magnifies both.
@@ -95,7 +95,7 @@ def test_the_tolerance_is_kept_where_a_play_is_taken_up(least: float, most: floa
     loose = sw.Gear(
         stiffness=sw.stiffness.Piecewise(k1=10.0, k2=1e5, knee=1e-3), friction_input=sw.friction.Viscous(viscous=1e-5)
     )
-    drive = sw.drives.PositionDrive(gear=loose, load=sw.loads.Inertia(inertia=0.1))
+    drive = sw.Drive(gear=loose, load=sw.loads.Inertia(inertia=0.1))
     errors = []
     for load in np.linspace(least, most, 41):
         exact, run = (
@@ -109,13 +109,13 @@ def test_the_tolerance_is_kept_where_a_play_is_taken_up(least: float, most: floa
 LOCKING, PULL = 100.0, 6.0
 
 
-def self_locking() -> sw.drives.PositionDrive:
+def self_locking() -> sw.Drive:
     """A gear whose output bears a hundred times the torque that the gear transmits."""
     locking = sw.friction.LoadDependent(
         driving_forward=LOCKING, driving_reverse=LOCKING, backdriving_forward=LOCKING, backdriving_reverse=LOCKING
     )
     gear = sw.Gear(friction_input=sw.friction.Viscous(viscous=1e-4), friction_output=locking, damping=4.0)
-    return sw.drives.PositionDrive(gear=gear, load=sw.loads.Inertia(inertia=0.1))
+    return sw.Drive(gear=gear, load=sw.loads.Inertia(inertia=0.1))
 
 
 def slipping(rtol: float, sample: float) -> sw.Recording:
@@ -160,7 +160,7 @@ def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> Non
 
 @pytest.mark.parametrize("first", range(0, 60, 15))
 def test_what_fixed_steps_of_random_drives_approach_is_what_adaptive_ones_give(first: int) -> None:
-    """Another way to the same; of first order only where a controller at its limit switches."""
+    """Another way to the same; where a controller at its limit switches the error is that of when it does, within a step."""
     compared = 0
     for number in range(first, first + 15):
         random = Excited.drawn(number)
@@ -170,7 +170,8 @@ def test_what_fixed_steps_of_random_drives_approach_is_what_adaptive_ones_give(f
         except (ValueError, FloatingPointError):  # told, and not this test's matter
             continue
         errors = [difference(run, exact, random.columns) for run in (wide, narrow)]
-        assert errors[1] < max(0.7 * errors[0], 1e-5), number
+        if not at_limit(random.drive, exact):
+            assert errors[1] < max(0.7 * errors[0], 1e-5), number
         assert errors[1] < 0.02, number
         compared += 1
     assert compared >= 4

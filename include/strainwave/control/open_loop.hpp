@@ -1,6 +1,5 @@
 #pragma once
-#include <strainwave/control/reference.hpp>
-#include <strainwave/field.hpp>
+#include <strainwave/control/law.hpp>
 
 namespace strainwave::control {
 
@@ -9,14 +8,15 @@ struct OpenLoop {
     S gain{1.0};
 
     static constexpr auto name = "open_loop";
-    static constexpr auto command_unit = "V";
+    static constexpr auto command_unit = "";  // that of what the motor takes
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
-        No controller: the command, times a gain, is the motor's voltage.
+        No controller: the command, times a gain, is what the motor takes.
 
         .. math:: u = g r
 
-        with r the command [V], g = gain (an amplifier's).
+        with r the command, u the voltage [V] of a DC motor, the current [A] of a current source or the torque [N.m] of a
+        torque source, g = gain (an amplifier's). The command has the unit of u.
 
         >>> from strainwave.control import OpenLoop
         >>> OpenLoop().gain
@@ -24,13 +24,13 @@ struct OpenLoop {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, gain, "1", "Voltage per command"));
+        visit(SW_FIELD(m, gain, "1", "Actuation per command"));
     }
 
     using State = Stateless<S>;
 
-    constexpr S voltage(const State&, const Reference<S>& reference) const { return gain * reference.command; }
-    constexpr State rate(const State&, const Reference<S>&) const { return {}; }
+    constexpr S act(const State&, const Command<S>& command, const Measurement<S>&) const { return gain * command.value; }
+    constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
 };
 
 }  // namespace strainwave::control

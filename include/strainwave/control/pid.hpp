@@ -1,5 +1,5 @@
 #pragma once
-#include <strainwave/control/reference.hpp>
+#include <strainwave/control/law.hpp>
 #include <strainwave/field.hpp>
 #include <strainwave/math.hpp>
 
@@ -11,19 +11,24 @@ struct PID {
     S integral{0.0};
     S derivative{0.0};
     S limit{48.0};
+    Feedback feedback{Feedback::input};
 
     static constexpr auto name = "pid";
     static constexpr auto command_unit = "rad";
     static constexpr auto source = "AstromHagglund1995, chapter 3; anti-windup by conditional integration, section 3.5";
     static constexpr auto doc = R"(
-        Position controller at the input: proportional, integral, derivative, with the supply voltage as limit.
+        Position controller: proportional, integral, derivative, with the supply voltage as limit.
 
         .. math:: u = \operatorname{clip}(k_p \epsilon + k_i \textstyle\int \epsilon\,dt + k_d \dot\epsilon, \pm u_{max}), \qquad
-                  \epsilon = i r - \theta_{in}
+                  \epsilon = i r - \theta_{in} \text{ or } \epsilon = i\,(r - \theta_{out})
 
-        with r the commanded output angle [rad], i the signed ratio, theta_in the input angle, k_p = proportional,
-        k_i = integral, k_d = derivative, u_max = limit. The integral rests while the voltage is limited. The feedback is the
-        motor's encoder, so error and wind-up of the gear stay outside the loop.
+        with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
+        u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
+        kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
+        error is referred to the input, so that the gains mean the same. The integral rests while the voltage is limited.
+
+        u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
+        read A or N.m in place of V.
 
         >>> from strainwave.control import PID
         >>> PID(proportional=2.0, derivative=0.05, limit=48.0).integral
@@ -35,6 +40,7 @@ struct PID {
         visit(SW_FIELD(m, integral, "V/(rad.s)", "Voltage per integral of the input angle error", 0));
         visit(SW_FIELD(m, derivative, "V.s/rad", "Voltage per input speed error", 0));
         visit(SW_FIELD(m, limit, "V", "Largest voltage, of either sign", smallest));
+        visit(SW_FIELD(m, feedback, "1", "The shaft whose encoder the loop closes on"));
     }
 
     struct State {
@@ -46,16 +52,27 @@ struct PID {
         }
     };
 
-    constexpr S voltage(const State& x, const Reference<S>& reference) const {
-        return clip(unlimited(x, reference), -limit, limit);
+    constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
+        return clip(unlimited(x, error(command, measured)), -limit, limit);
     }
-    constexpr State rate(const State& x, const Reference<S>& reference) const {
-        return {select(abs(unlimited(x, reference)) < limit, reference.position_error, S(0.0))};
+    constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
+        const Error now = error(command, measured);
+        return {select(abs(unlimited(x, now)) < limit, now.angle, S(0.0))};
     }
 
 private:
-    constexpr S unlimited(const State& x, const Reference<S>& reference) const {
-        return proportional * reference.position_error + integral * x.error_integral + derivative * reference.speed_error;
+    /// Commanded minus measured, at the input.
+    struct Error {
+        S angle, speed;
+    };
+    constexpr Error error(const Command<S>& command, const Measurement<S>& measured) const {
+        if (feedback == Feedback::output)
+            return {command.ratio * (command.value - measured.output_angle),
+                    command.ratio * (command.rate - measured.output_speed)};
+        return {command.ratio * command.value - measured.input_angle, command.ratio * command.rate - measured.input_speed};
+    }
+    constexpr S unlimited(const State& x, const Error& now) const {
+        return proportional * now.angle + integral * x.error_integral + derivative * now.speed;
     }
 };
 

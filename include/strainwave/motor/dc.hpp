@@ -13,6 +13,7 @@ struct DC {
     S inertia{1e-5};
 
     static constexpr auto name = "dc";
+    static constexpr auto actuation = "voltage";
     static constexpr auto source = "document P, armature equation u = R i + L di/dt + K_b omega";
     static constexpr auto doc = R"(
         Armature-controlled DC motor.
@@ -21,8 +22,8 @@ struct DC {
 
         with u the voltage, omega the input speed, R = resistance, L = inductance, K_m = torque_constant, K_b = back_emf. With
         inductance = 0 the current follows at once, i = (u - K_b omega) / R, as document P assumes. Leaves out cogging, iron
-        losses, saturation and the warming of the winding. A torque source, as a current-controlled amplifier makes one, is
-        resistance = 1, back_emf = 0: the voltage then is the current.
+        losses, saturation and the warming of the winding. A motor whose current is controlled by its amplifier
+        is a CurrentSource.
 
         >>> from strainwave.motor import DC
         >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
@@ -46,25 +47,42 @@ struct DC {
         }
     };
 
+    struct Output {
+        S current, voltage;
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, current, "A", "Motor current"));
+            visit(SW_FIELD(m, voltage, "V", "Motor voltage"));
+        }
+    };
+
+    constexpr S torque(const State& x, const S& voltage, const S& speed) const { return compile().torque(x, voltage, speed); }
     constexpr S current(const State& x, const S& voltage, const S& speed) const { return compile().current(x, voltage, speed); }
+    constexpr Output output(const State& x, const S& voltage, const S& speed) const { return compile().output(x, voltage, speed); }
     constexpr State rate(const State& x, const S& voltage, const S& speed) const { return compile().rate(x, voltage, speed); }
-    /// How fast the current forgets itself [1/s].
+    /// How fast the current relaxes [1/s].
     constexpr State relaxation_rate() const { return compile().relaxation_rate(); }
-    constexpr S torque(const S& current) const { return compile().torque(current); }
 
     /// The same motor with its divisions done.
     struct Compiled {
         using State = typename DC::State;
+        using Output = typename DC::Output;
         S resistance, conductance, per_inductance, torque_constant, back_emf, inertia;
 
+        constexpr S torque(const State& x, const S& voltage, const S& speed) const {
+            return torque_constant * current(x, voltage, speed);
+        }
         constexpr S current(const State& x, const S& voltage, const S& speed) const {
             return select(per_inductance > S(0.0), x.current, (voltage - back_emf * speed) * conductance);
+        }
+        constexpr Output output(const State& x, const S& voltage, const S& speed) const {
+            return {current(x, voltage, speed), voltage};
         }
         constexpr State rate(const State& x, const S& voltage, const S& speed) const {
             return {(voltage - resistance * x.current - back_emf * speed) * per_inductance};
         }
         constexpr State relaxation_rate() const { return {resistance * per_inductance}; }
-        constexpr S torque(const S& current) const { return torque_constant * current; }
     };
 
     constexpr Compiled compile() const {

@@ -10,15 +10,15 @@ from typing import Any, ClassVar, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments, loads, scenario
+from strainwave import Drive, _core, arguments, loads, scenario
 from strainwave._core import Gear
-from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.identify.branches import monotone, slid, thinned, turning_points
 from strainwave.messages import listed, quoted
 from strainwave.recording import Recording, check_recording
 from strainwave.scenario import Scenario
-from strainwave.simulation import differentiate
+from strainwave.signals import command_unit, controls_position, outputs
+from strainwave.simulation import Excitation, differentiate
 
 Array = NDArray[np.float64]
 ENCODERS = ("input_angle", "output_angle")
@@ -283,14 +283,13 @@ class DriveLog(ComparedByFields):
     command: Scenario
     time: Array
     channels: tuple[str, ...]
+    units: tuple[str, ...]
     measured: Array
     dt: float
     samples: int
 
     @classmethod
-    def of(
-        cls, recording: Recording, drive: PositionDrive, channels: Sequence[str] | None = None, dt: float | None = None
-    ) -> DriveLog:
+    def of(cls, recording: Recording, drive: Drive, channels: Sequence[str] | None = None, dt: float | None = None) -> DriveLog:
         """From columns time, command and outputs; all that a simulation has too, unless `channels` names some.
 
         Steps of 0.2 ms, or the sample interval if that is a little shorter. Of a long log the first 100 000 steps are taken,
@@ -301,7 +300,7 @@ class DriveLog(ComparedByFields):
         for name in ("time", "command"):
             if name not in recording:
                 raise ValueError(f"a drive log needs a column {quoted(name)}; this one has {listed(recording.names)}")
-        known = {name: unit for name, unit, _ in _core.outputs if name != "command"}
+        known = {name: each.unit for name, each in outputs(drive).items() if name != "command"}
         wanted = [name for name in recording.names if name in known] if channels is None else channels
         chosen = tuple(arguments.names("channels", wanted))
         for name in chosen:
@@ -310,8 +309,8 @@ class DriveLog(ComparedByFields):
         if not chosen:
             raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
         _check_hanging(recording, drive, chosen)
-        command = recording.values("command", drive.control.command_unit)
-        if drive.control.command_unit == "rad":
+        command = recording.values("command", command_unit(drive))
+        if controls_position(drive):
             command = command - command[0]
         time = recording.time - recording.time[0]
         measured = np.stack([_sensible(recording, name, known[name]) for name in chosen])
@@ -325,15 +324,11 @@ class DriveLog(ComparedByFields):
             scenario.table(time, command),
             time[::every],
             chosen,
+            tuple(known[name] for name in chosen),
             measured[:, ::every],
             min(step, interval) if dt is None and interval > STEP / 2.0 else step,
             len(recording),
         )
-
-    @property
-    def units(self) -> tuple[str, ...]:
-        known = {name: unit for name, unit, _ in _core.outputs}
-        return tuple(known[name] for name in self.channels)
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
@@ -361,9 +356,9 @@ class DriveLog(ComparedByFields):
         spans = [(float(np.ptp(predicted[row])), float(np.ptp(self.measured[row]))) for row in moving]
         return bool(spans) and all(model < STILL * measured for model, measured in spans)
 
-    def predict(self, model: PositionDrive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        names = [name for name, _, _ in _core.outputs]
-        run, slopes = differentiate(model, self.command, numbers, self.dt, self.time)
+    def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        names = list(outputs(model))
+        run, slopes = differentiate(model, Excitation(self.command), numbers, self.dt, self.time)
         predicted = np.stack([run[name] for name in self.channels])
         by_zero = np.zeros((len(nuisances), *predicted.shape))
         encoders = [row for row, name in enumerate(self.channels) if name in ENCODERS]
@@ -385,7 +380,7 @@ def _sensible(recording: Recording, name: str, unit: str) -> Array:
     return values
 
 
-def _check_hanging(recording: Recording, drive: PositionDrive, channels: Sequence[str]) -> None:
+def _check_hanging(recording: Recording, drive: Drive, channels: Sequence[str]) -> None:
     """A run starts at output angle 0; under gravity, so must the log."""
     if not isinstance(drive.load, loads.Pendulum) or drive.load.gravity_torque == 0.0:
         return

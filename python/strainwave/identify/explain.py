@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.drives import PositionDrive
+from strainwave import Drive
 from strainwave.identify.branches import noise
 from strainwave.identify.experiment import ENCODERS, DriveLog, FrictionTable
 from strainwave.identify.fit import Fit
@@ -46,7 +46,7 @@ class Cause:
     what: str
     remedy: str
     recording: Recording
-    drive: PositionDrive
+    drive: Drive
 
 
 def unexplained(found: Fit) -> Array:
@@ -84,7 +84,7 @@ def allowed(found: Fit) -> Array:
     return np.array([LEFT_IN_LOOP])
 
 
-def causes(recording: Recording, drive: PositionDrive) -> list[Cause]:
+def causes(recording: Recording, drive: Drive) -> list[Cause]:
     """Likely mistakes in a drive log, those first that let the drive as it stands come nearest to the measurement.
 
     Signs, units, sides, and the ratio of the gear. The drive is run once for each, not fitted.
@@ -102,7 +102,7 @@ def causes(recording: Recording, drive: PositionDrive) -> list[Cause]:
     return [cause for _, cause in sorted(scored, key=lambda pair: pair[0])]
 
 
-def _likely(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
+def _likely(recording: Recording, drive: Drive) -> Iterator[Cause]:
     for name in recording.names:
         if name != "time":
             yield Cause(
@@ -114,7 +114,7 @@ def _likely(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
     yield from _ratio(recording, drive)
 
 
-def _units(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
+def _units(recording: Recording, drive: Drive) -> Iterator[Cause]:
     for name in recording.names:
         unit = recording.unit(name)
         for other in MISTAKEN.get(unit, ()):
@@ -124,7 +124,7 @@ def _units(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
             )  # fmt: skip
 
 
-def _sides(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
+def _sides(recording: Recording, drive: Drive) -> Iterator[Cause]:
     for quantity in ("angle", "speed"):
         sides = (f"input_{quantity}", f"output_{quantity}")
         present = [side for side in sides if side in recording]
@@ -138,7 +138,7 @@ def _sides(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
         yield Cause(what, f"name the columns the other way, as {remedy}", _renamed(recording, names), drive)
 
 
-def _ratio(recording: Recording, drive: PositionDrive) -> Iterator[Cause]:
+def _ratio(recording: Recording, drive: Drive) -> Iterator[Cause]:
     """Another ratio, where both encoders show one."""
     if not set(ENCODERS) <= set(recording.names):
         return

@@ -10,9 +10,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments
+from strainwave import Drive, _core, arguments
 from strainwave._core import Gear
-from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
 from strainwave.messages import shortened
@@ -88,7 +87,7 @@ class Fit(ComparedByFields):
     @property
     def gear(self) -> Gear:
         """The fitted gear."""
-        gear: Gear = self.model.gear if isinstance(self.model, PositionDrive) else self.model
+        gear: Gear = self.model.gear if isinstance(self.model, Drive) else self.model
         return gear
 
     @cached_property
@@ -126,7 +125,7 @@ class Fit(ComparedByFields):
 
 
 def fit(
-    model: Gear | PositionDrive,
+    model: Gear | Drive,
     recording: Recording | Experiment,
     free: Sequence[str],
     *,
@@ -193,7 +192,7 @@ def fit(
 
 
 def _check_kinds(model: object, recording: object, loss: object) -> None:
-    if not isinstance(model, Gear | PositionDrive):
+    if not isinstance(model, Gear | Drive):
         raise TypeError(f"model must be a Gear or a drive, not {shortened(model)}")
     if not isinstance(recording, Recording) and not hasattr(recording, "predict"):
         raise TypeError(f"recording must be a Recording, or an experiment made of one, not {shortened(recording)}")
@@ -221,14 +220,14 @@ def _check_motion(experiment: Experiment, predicted: Array) -> None:
 
 
 def experiment_of(
-    model: Gear | PositionDrive, recording: Recording, channels: Sequence[str] | None = None, dt: float | None = None
+    model: Gear | Drive, recording: Recording, channels: Sequence[str] | None = None, dt: float | None = None
 ) -> Experiment:
     """The experiment that a recording holds, told by its columns and the kind of model.
 
     Raises:
         ValueError: the columns fit no experiment
     """
-    if isinstance(model, PositionDrive):
+    if isinstance(model, Drive):
         return DriveLog.of(recording, model, channels, dt)
     if {"speed", "torque"} <= set(recording.names):
         return FrictionTable.of(recording)
@@ -252,7 +251,7 @@ class _Problem:
 
     def __init__(
         self,
-        model: Gear | PositionDrive,
+        model: Gear | Drive,
         experiment: Experiment,
         places: list[Parameter],
         training: NDArray[np.bool_] | None,

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, friction, kinematic_error
+from strainwave import Drive, _core, friction, kinematic_error
 from strainwave._core import Gear
-from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.identify.experiment import DriveLog
 from strainwave.identify.fit import Fit, fit
@@ -41,7 +40,7 @@ class LogFit(ComparedByFields):
     error: Array
 
 
-def fit_log(log: DriveLog, drive: PositionDrive, free: list[str]) -> LogFit:
+def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
     """Fits what a drive log can tell of a gear, by simulating the drive through the log's command.
 
     Args:
@@ -101,7 +100,7 @@ def _breakaway(gear: Gear, start: Gear) -> float | None:
     return float(max(law.breakaway, law.coulomb))
 
 
-def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool, torsion_known: bool) -> list[str]:
+def free_parameters(log: DriveLog, drive: Drive, *, friction_known: bool, torsion_known: bool) -> list[str]:
     """What a log can tell that no better measurement was given for.
 
     Friction at the input from any log, that of a law within `Cyclic` or `Thermal` too; the first stiffness and the kinematic
@@ -116,7 +115,7 @@ def free_parameters(log: DriveLog, drive: PositionDrive, *, friction_known: bool
     return free
 
 
-def prepared(log: DriveLog, drive: PositionDrive, *, friction_known: bool) -> PositionDrive:
+def prepared(log: DriveLog, drive: Drive, *, friction_known: bool) -> Drive:
     """The drive with a gear whose laws have the parameters that the log can tell, started near the measurement."""
     gear = drive.gear.replace(friction_input=_changed(drive.gear.friction_input, _with_coulomb))
     if {"input_angle", "output_angle"} <= set(log.channels):
@@ -125,7 +124,7 @@ def prepared(log: DriveLog, drive: PositionDrive, *, friction_known: bool) -> Po
     return drive if friction_known else _set_in_motion(log, drive)
 
 
-def _set_in_motion(log: DriveLog, drive: PositionDrive) -> PositionDrive:
+def _set_in_motion(log: DriveLog, drive: Drive) -> Drive:
     """The drive with so little dry friction that it moves under the command of the log; as it is, if it never does."""
     zeros = np.array([nuisance.start for nuisance in log.nuisances])
     tried = drive

@@ -10,9 +10,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from strainwave import arguments
+from strainwave import Drive, arguments
 from strainwave._core import Gear
-from strainwave.drives import PositionDrive
 from strainwave.equality import ComparedByFields
 from strainwave.gear_set import Entry, GearSet
 from strainwave.identify.evidence import Doubt, Evidence
@@ -281,9 +280,7 @@ def _shared(best: Candidate, gear: Gear, loop: TorsionLoop, friction_measured: b
     return {f"gear.{path}": why for path in paths}
 
 
-def _from_log(
-    drive: PositionDrive, recording: Recording, source: str, measured: set[Kind], sources: Mapping[str, Entry]
-) -> Evidence:
+def _from_log(drive: Drive, recording: Recording, source: str, measured: set[Kind], sources: Mapping[str, Entry]) -> Evidence:
     log = DriveLog.of(recording, drive)
     drive = prepared(log, drive, friction_known="friction" in measured)
     free = free_parameters(log, drive, friction_known="friction" in measured, torsion_known="torsion" in measured)
@@ -349,7 +346,7 @@ def _not_explained(found: Fit) -> Iterator[tuple[str, str]]:
         )
 
 
-def _with_cause(what: str, found: Fit, recording: Recording, drive: PositionDrive, free: list[str]) -> tuple[str, str]:
+def _with_cause(what: str, found: Fit, recording: Recording, drive: Drive, free: list[str]) -> tuple[str, str]:
     """The doubt with the mistake that would explain it, if one does."""
     before = float(unexplained(found).max())
     for cause in causes(recording, drive)[:TRIED]:

@@ -41,7 +41,7 @@ class Experiment:
         ValueError: there is no run, a run lacks a column, or a figure has not one value for each run
 
     >>> import strainwave as sw
-    >>> drive = sw.drives.PositionDrive(load=sw.loads.Inertia(inertia=0.01))
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
     >>> experiment = Experiment("step", runs=(("twin", run),), figures=(Figure("largest speed", "rad/s", (0.3,)),))
     >>> experiment.figures[0].published is None

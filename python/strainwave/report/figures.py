@@ -16,12 +16,13 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core
+from strainwave import Drive
 from strainwave.identify.branches import turning_points
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
 from strainwave.recording import envelope
 from strainwave.report import typeset
 from strainwave.report.experiment import Experiment
+from strainwave.signals import outputs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -211,8 +212,8 @@ def gaps(loop: TorsionLoop) -> list[int]:
 
 def output_name(column: str) -> str:
     """What a column of a simulation is called in words."""
-    words: dict[str, str] = {name: meaning for name, _, meaning in _core.outputs}
-    return words.get(column, column.replace("_", " "))
+    known = outputs(Drive())
+    return known[column].doc if column in known else column.replace("_", " ")
 
 
 # ---- Parts of drawings -----------------------------------------------------------------------------------------------

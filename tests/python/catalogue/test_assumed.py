@@ -167,7 +167,7 @@ def breakaway_at_output(gear: sw.Gear) -> float:
 
 def under_waves(gear: sw.Gear, peak: float) -> sw.Run:
     """Ten waves of load between zero and `peak` in a second, on a disc so light that it follows them."""
-    drive = sw.drives.PositionDrive(
+    drive = sw.Drive(
         gear=gear,
         motor=sw.motor.DC(inertia=gear.input_inertia),
         control=sw.control.OpenLoop(gain=1.0),

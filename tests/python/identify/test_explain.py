@@ -20,8 +20,8 @@ GEAR = sw.Gear(
 MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4)
 
 
-def drive(gear: sw.Gear = GEAR, inertia: float = 0.3) -> sw.drives.PositionDrive:
-    return sw.drives.PositionDrive(gear=gear, motor=MOTOR, load=sw.loads.Inertia(inertia=inertia))
+def drive(gear: sw.Gear = GEAR, inertia: float = 0.3) -> sw.Drive:
+    return sw.Drive(gear=gear, motor=MOTOR, load=sw.loads.Inertia(inertia=inertia))
 
 
 @cache

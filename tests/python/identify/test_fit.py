@@ -24,8 +24,8 @@ def gear(**changes: object) -> sw.Gear:
     return sw.Gear(friction_input=LAW.replace(coulomb=0.1, viscous=1e-5)).replace(**changes)
 
 
-def drive(**changes: float) -> sw.drives.PositionDrive:
-    return sw.drives.PositionDrive(
+def drive(**changes: float) -> sw.Drive:
+    return sw.Drive(
         gear=sw.Gear(
             kinematics=sw.kinematics.StrainWave(),
             stiffness=sw.stiffness.Cubic(a1=changes.get("a1", 1.5e4), a3=1e9),
@@ -110,7 +110,7 @@ def test_a_density_within_preisachs_law_comes_back_from_a_loop(density: Any, fre
 
 @pytest.mark.parametrize(("density", "free"), DENSITIES.values(), ids=DENSITIES)
 def test_a_density_within_preisachs_law_comes_back_from_a_log(density: Any, free: list[str]) -> None:
-    def with_density(changed: Any) -> sw.drives.PositionDrive:
+    def with_density(changed: Any) -> sw.Drive:
         return drive().replace(gear=drive().gear.replace(hysteresis=sw.hysteresis.Preisach(density=changed)))
 
     samples = np.linspace(0.0, 0.3, 301)

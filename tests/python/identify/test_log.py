@@ -17,8 +17,8 @@ TRUTH = sw.Gear(
 )
 
 
-def drive(gear: sw.Gear) -> sw.drives.PositionDrive:
-    return sw.drives.PositionDrive(
+def drive(gear: sw.Gear) -> sw.Drive:
+    return sw.Drive(
         gear=gear,
         motor=sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4),
         load=sw.loads.Pendulum(inertia=0.3, gravity_torque=8.0),

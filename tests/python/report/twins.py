@@ -48,6 +48,7 @@ def with_drive(start: GearSet) -> GearSet:
         f"{part}.{member['name']}": Entry("data sheet", uncertainty=0.0)
         for part, model in rest.items()
         for member in model.fields
+        if member["kind"] != "choice"
     }
     return replace(start, sources={**start.sources, **numbers}, **rest)
 

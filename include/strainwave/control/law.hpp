@@ -1,0 +1,132 @@
+#pragma once
+#include <strainwave/field.hpp>
+
+/// What every controller is given and asked. A law of control turns a command and a measurement into the motor's actuation: its
+/// voltage, current or torque, whatever the motor takes. It has
+///
+///     State                                 what changes continuously; Stateless if nothing does
+///     act(state, command, measurement)      -> actuation
+///     rate(state, command, measurement)     -> State
+///
+/// A law that acts at instants only has besides
+///
+///     Discrete                              what changes at its instants only
+///     held(discrete)                        -> actuation, in place of act
+///     due(discrete, within)                 -> whether this is an instant, in any lane, or one is within so many seconds
+///     sampled(discrete, within, command, measurement) -> Discrete, where it is due
+///     elapsed(discrete, dt)                 -> Discrete, `dt` [s] later
+///     schedule(discrete)                    -> Schedule
+namespace strainwave::control {
+
+/// What is asked of a drive at one instant.
+template <class S>
+struct Command {
+    S value{0.0};  ///< As the scenario gives it
+    S rate{0.0};   ///< Its time derivative
+    S ratio{1.0};  ///< Signed, of the gear: input angle per output angle
+};
+
+/// What a controller knows of its drive, each number through its sensor.
+template <class S>
+struct Measurement {
+    S input_angle{0.0}, input_speed{0.0}, output_angle{0.0}, output_speed{0.0}, current{0.0}, torque{0.0};
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, input_angle, "rad", "Input angle"));
+        visit(SW_FIELD(m, input_speed, "rad/s", "Input speed"));
+        visit(SW_FIELD(m, output_angle, "rad", "Output angle"));
+        visit(SW_FIELD(m, output_speed, "rad/s", "Output speed"));
+        visit(SW_FIELD(m, current, "A", "Motor current, under the actuation that a sampled controller holds"));
+        visit(SW_FIELD(m, torque, "N.m", "Torque transmitted, at the output"));
+    }
+};
+
+/// The encoder that a position loop closes on.
+enum class Feedback { input, output };
+constexpr Array<const char*, 2> choices(Feedback) { return {{"input", "output"}}; }
+
+/// When a sampled law acts next [s from now]: at the first instant, and on in periods. A period of 0: it acts all the time.
+template <class S>
+struct Schedule {
+    S first{0.0}, period{0.0}, delay{0.0};
+};
+
+namespace detail {
+template <class S, class Law>
+struct DiscreteOf {
+    using type = Stateless<S>;
+};
+template <class S, class Law>
+    requires requires { typename Law::Discrete; }
+struct DiscreteOf<S, Law> {
+    using type = typename Law::Discrete;
+};
+}  // namespace detail
+/// What changes at the instants of a law only; nothing, for a law that acts all the time.
+template <class S, class Law>
+using DiscreteOf = typename detail::DiscreteOf<S, Law>::type;
+
+template <class S, class Law, class State, class Discrete>
+constexpr S actuation(const Law& law, const State& x, const Discrete& held, const Command<S>& command,
+                      const Measurement<S>& measured) {
+    if constexpr (requires { law.actuation(x, held, command, measured); })
+        return law.actuation(x, held, command, measured);
+    else if constexpr (requires { typename Law::Discrete; })
+        return law.held(held);
+    else
+        return law.act(x, command, measured);
+}
+
+/// The actuation that a law holds from its last instant; 0 of one that acts all the time.
+template <class S, class Law, class Discrete>
+constexpr S held(const Law& law, const Discrete& x) {
+    if constexpr (requires { law.held(x); })
+        return law.held(x);
+    else
+        return S(0.0);
+}
+
+template <class S, class Law, class Discrete>
+constexpr Discrete sampled(const Law& law, const Discrete& x, const S& within, const Command<S>& command,
+                           const Measurement<S>& measured) {
+    if constexpr (requires { law.sampled(x, within, command, measured); })
+        return law.sampled(x, within, command, measured);
+    else
+        return x;
+}
+
+template <class S, class Law, class Discrete>
+constexpr Discrete elapsed(const Law& law, const Discrete& x, const S& dt) {
+    if constexpr (requires { law.elapsed(x, dt); })
+        return law.elapsed(x, dt);
+    else
+        return x;
+}
+
+/// Whether a law changes something at this instant, in any lane.
+template <class S, class Law, class Discrete>
+constexpr bool due(const Law& law, const Discrete& x, const S& within) {
+    if constexpr (requires { law.due(x, within); })
+        return law.due(x, within);
+    else
+        return false;
+}
+
+template <class S, class Law>
+constexpr auto initial_discrete(const Law& law) {
+    if constexpr (requires { law.initial_discrete(); })
+        return law.initial_discrete();
+    else
+        return DiscreteOf<S, Law>{};
+}
+
+template <class S, class Law, class Discrete>
+constexpr Schedule<S> schedule(const Law& law, const Discrete& x) {
+    if constexpr (requires { law.schedule(x); })
+        return law.schedule(x);
+    else
+        return {};
+}
+
+}  // namespace strainwave::control

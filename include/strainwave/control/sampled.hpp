@@ -1,0 +1,93 @@
+#pragma once
+#include <strainwave/control/pid.hpp>
+
+namespace strainwave::control {
+
+template <class S, class Law_ = PID<S>>
+struct Sampled {
+    using Law = Law_;
+
+    Law law{};
+    S period{1e-3};
+    S delay{0.0};
+
+    static constexpr auto name = "sampled";
+    static constexpr auto source = "AstromWittenmark1997, chapter 8: zero-order hold, integrals by forward differences";
+    static constexpr auto doc = R"(
+        A controller that runs in a computer: it acts at instants and holds its output between them.
+
+        .. math:: u(t) = u_k, \quad t_k + d \le t < t_{k+1} + d, \qquad u_k = \text{law}(x_k, r_k, y_k), \qquad
+                  x_{k+1} = x_k + T \dot x_k
+
+        with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
+        t_k, x_k the numbers of the law, such as an integral. Before the first output the actuation is 0. Steps end at each t_k
+        and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not sampled itself.
+
+        In an ensemble, period and delay are the same for all members. They have no derivatives: time is not among the numbers.
+
+        >>> from strainwave.control import PID, Sampled
+        >>> Sampled(law=PID(proportional=2.0, derivative=0.05), period=1e-3, delay=2e-4).law.proportional
+        2.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, law, "What is worked out at each instant"));
+        visit(SW_FIELD(m, period, "s", "Time from one sample to the next", smallest));
+        visit(SW_FIELD(m, delay, "s", "Time from a sample to the output that is worked out from it", 0));
+    }
+
+    constexpr const char* problem() const { return all(delay <= period) ? nullptr : "delay must not exceed period"; }
+
+    using State = Stateless<S>;
+    constexpr State initial_state() const { return {}; }
+
+    /// Zero before the first sample, which is then taken at once.
+    struct Discrete {
+        typename Law::State law{};
+        S actuation{0.0};
+        S pending{0.0};
+        S until_sample{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_PART(m, law, "State of the law"));
+            visit(SW_FIELD(m, actuation, "1", "What the motor is given, in its unit"));
+            visit(SW_FIELD(m, pending, "1", "What it is given once it is computed"));
+            visit(SW_FIELD(m, until_sample, "s", "Time until the next sample"));
+        }
+    };
+
+    constexpr S held(const Discrete& x) const { return x.actuation; }
+    constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
+    constexpr Discrete elapsed(const Discrete& x, const S& dt) const {
+        Discrete later = x;
+        later.until_sample = x.until_sample - dt;
+        return later;
+    }
+    constexpr bool due(const Discrete& x, const S& within) const {
+        return any(sample_is_due(x, within)) || any(output_is_due(x, within) & !(x.actuation == x.pending));
+    }
+    constexpr Discrete sampled(const Discrete& before, const S& within, const Command<S>& command,
+                               const Measurement<S>& measured) const {
+        const Discrete x = with_output(before, within);  // a delay of a whole period ends where the next sample begins
+        const auto now = sample_is_due(x, within);
+        const auto rate = flattened<S>(law.rate(x.law, command, measured));
+        auto numbers = flattened<S>(x.law);
+        for (int i = 0; i < numbers.size(); ++i) numbers[i] = select(now, numbers[i] + period * rate[i], numbers[i]);
+        const S pending = select(now, law.act(x.law, command, measured), x.pending);
+        const S until_sample = select(now, x.until_sample + period, x.until_sample);
+        return with_output({refilled(x.law, numbers), x.actuation, pending, until_sample}, within);
+    }
+    constexpr Schedule<S> schedule(const Discrete& x) const { return {x.until_sample, period, delay}; }
+
+private:
+    constexpr auto sample_is_due(const Discrete& x, const S& within) const { return within >= x.until_sample; }
+    constexpr auto output_is_due(const Discrete& x, const S& within) const { return within >= x.until_sample - (period - delay); }
+    constexpr Discrete with_output(const Discrete& x, const S& within) const {
+        Discrete after = x;
+        after.actuation = select(output_is_due(x, within), x.pending, x.actuation);
+        return after;
+    }
+};
+
+}  // namespace strainwave::control

@@ -1,0 +1,156 @@
+#pragma once
+#include <strainwave/drive.hpp>
+#include <strainwave/quasi_static.hpp>
+
+/// States that a run can begin in, from a few quantities that are known.
+namespace strainwave::initial {
+
+enum Quantity { input_angle, output_angle, input_speed, output_speed, twist, torque, current, quantities };
+
+inline constexpr Field fields[quantities]{
+    {"input_angle", "rad", "Input angle"},
+    {"output_angle", "rad", "Output angle"},
+    {"input_speed", "rad/s", "Input speed"},
+    {"output_speed", "rad/s", "Output speed"},
+    {"twist", "rad", "Elastic twist of the gear, at the output"},
+    {"torque", "N.m", "Torque transmitted, at the output"},
+    {"current", "A", "Motor current"},
+};
+
+/// Quantities, of which some are known.
+template <class S>
+struct Known {
+    S value[quantities]{};
+    bool given[quantities]{};
+
+    constexpr bool knows(Quantity q) const { return given[q]; }
+    constexpr const S& operator[](Quantity q) const { return value[q]; }
+    constexpr void set(Quantity q, const S& x) {
+        value[q] = x;
+        given[q] = true;
+    }
+};
+
+namespace detail {
+
+/// The search for the state: rounds, each of which brings every quantity closer to the others.
+template <class S, class Drive>
+class Search {
+    const Drive& drive;
+    const Known<S>& known;
+    const Input<S>& u;
+    const QuasiStatic<S, decltype(Drive{}.gear)> spring;
+    typename Drive::State x;
+
+public:
+    constexpr Search(const Drive& drive_, const Known<S>& known_, const Input<S>& u_)
+        : drive(drive_), known(known_), u(u_), spring(drive_.gear), x(drive_.initial_state()) {}
+
+    /// Its transmission error is infinite where the rounds do not come to an end.
+    constexpr typename Drive::State found() {
+        constexpr int most = 500, more = 3;  // derivatives are a round or two behind the values
+        constexpr double rounding = 1e-15;
+        S before(unbounded);
+        int settled = 0;
+        for (int i = 0; i < most && settled < more; ++i) {
+            const S twist = round();
+            const auto& y = x.continuous;
+            const S output = (y.input_angle + S(2.0 * pi) * x.turns) * drive.gear.kinematics.inverse_ratio();
+            settled = S(rounding) * max(abs(output), abs(twist)) >= abs(twist - before) ? settled + 1 : 0;
+            before = twist;
+        }
+        drive.advance_hysteresis(x, before);
+        settle();
+        if (settled < more) x.continuous.transmission_error = S(unbounded) * S(10.0);
+        return x;
+    }
+
+private:
+    /// Takes the angles from the twist, the speeds from each other, and returns the twist.
+    constexpr S round() {
+        auto& y = x.continuous;
+        const S inverse = drive.gear.kinematics.inverse_ratio();
+        const auto mesh = drive.geometry(x, y);
+        move(mesh.per_input);
+        const S total_input = y.input_angle + S(2.0 * pi) * x.turns;
+        if (known.knows(input_angle) && known.knows(output_angle)) {
+            place(known[input_angle], known[input_angle] * inverse - known[output_angle]);
+        } else {
+            const S error = mesh.error + wanted_twist(mesh);
+            const S input = known.knows(input_angle)    ? known[input_angle]
+                            : known.knows(output_angle) ? (known[output_angle] + error) / inverse
+                                                        : total_input;
+            place(input, error);
+        }
+        return drive.geometry(x, y).twist;
+    }
+    constexpr void place(const S& input, const S& transmission_error) {
+        x.turns = rint(input * S(0.5 / pi));
+        x.continuous.input_angle = input - x.turns * S(2.0 * pi);
+        x.continuous.transmission_error = transmission_error;
+    }
+    /// Of speeds one gives the other as if the twist stayed as it is.
+    constexpr void move(const S& per_input) {
+        auto& y = x.continuous;
+        y.input_speed = known.knows(input_speed)    ? known[input_speed]
+                        : known.knows(output_speed) ? known[output_speed] / per_input
+                                                    : S(0.0);
+        y.output_speed = known.knows(output_speed) ? known[output_speed] : per_input * y.input_speed;
+    }
+    constexpr S wanted_twist(const typename decltype(Drive{}.gear)::Mesh& mesh) {
+        if (known.knows(twist)) return known[twist];
+        if (!known.knows(torque) && prescribes(drive.load)) return S(0.0);
+        const S transmitted = known.knows(torque) ? known[torque] : balancing_torque();
+        const S rate = mesh.per_input * x.continuous.input_speed - x.continuous.output_speed;
+        return spring.twist(transmitted - drive.gear.damping * rate);
+    }
+    /// What the gear must transmit so that load and friction do not accelerate the output.
+    constexpr S balancing_torque() {
+        settle_friction();
+        const auto now = drive.derivatives(x, x.continuous, u);
+        return now.load_torque + now.friction_output;
+    }
+
+    constexpr void settle_friction() {
+        const auto fresh = drive.initial_state();
+        x.continuous.friction_input = fresh.continuous.friction_input;
+        x.continuous.friction_mesh = fresh.continuous.friction_mesh;
+        x.continuous.friction_output = fresh.continuous.friction_output;
+        x = drive.aged(drive.consistent(x), u, S(1e30));
+    }
+    /// Friction, a sampled controller, the motor and the sensors, in this order: each as those before have it.
+    constexpr void settle() {
+        settle_friction();
+        auto at = drive.evaluate(x, u);
+        at = system::up_to_date(drive, at, u, S(0.0));  // before the first sample none is due but that
+        x = at.state;
+        settle_motor(at.derivatives);
+        x.continuous.sensors = drive.sensors.settled(drive.measurable(x, x.continuous, at.derivatives.mesh.torque));
+    }
+    constexpr void settle_motor(const typename Drive::Derivatives& now) {
+        auto numbers = flattened<S>(x.continuous.motor);
+        const auto rate = flattened<S>(now.rate.motor), relaxation = flattened<S>(drive.motor.relaxation_rate());
+        for (int i = 0; i < numbers.size(); ++i) {
+            const auto relaxes = relaxation[i] > S(0.0);
+            numbers[i] = select(relaxes, numbers[i] + rate[i] / max(relaxation[i], S(smallest)), numbers[i]);
+            if (i == 0 && known.knows(current)) numbers[i] = known[current];
+        }
+        refill(x.continuous.motor, numbers);
+    }
+};
+
+}  // namespace detail
+
+/// The state of a drive of which some quantities are known. The rest follows: the input angle is 0 if no angle is known, speeds
+/// are 0 if none is; the twist is the one at which the output does not accelerate, reached from no history; friction, motor and
+/// sensors have settled. Its transmission error is not finite where there is no such state.
+template <class S, class Drive>
+constexpr typename Drive::State state(const Drive& drive, Known<S> known, const Input<S>& u) {
+    if (prescribes(drive.load)) {
+        known.set(output_angle, u.load);
+        known.set(output_speed, u.load_rate);
+    }
+    return detail::Search<S, Drive>(drive, known, u).found();
+}
+
+}  // namespace strainwave::initial

@@ -1,0 +1,49 @@
+#pragma once
+#include <strainwave/field.hpp>
+
+namespace strainwave::motor {
+
+template <class S>
+struct CurrentSource {
+    S torque_constant{0.05};
+    S inertia{1e-5};
+
+    static constexpr auto name = "current_source";
+    static constexpr auto actuation = "current";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        A motor behind a fast current controller: the current is what it is asked to be, at once and at any speed.
+
+        .. math:: i = u, \qquad \tau = K_m i
+
+        with u what the controller asks for [A], K_m = torque_constant. Leaves out that the supply limits the current as the
+        speed grows.
+
+        >>> from strainwave.motor import CurrentSource
+        >>> CurrentSource(torque_constant=0.1).torque_constant
+        0.1)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per current K_m", 0));
+        visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
+    }
+
+    using State = Stateless<S>;
+    struct Output {
+        S current;
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, current, "A", "Motor current"));
+        }
+    };
+
+    constexpr S torque(const State&, const S& asked, const S&) const { return torque_constant * asked; }
+    constexpr S current(const State&, const S& asked, const S&) const { return asked; }
+    constexpr Output output(const State&, const S& asked, const S&) const { return {asked}; }
+    constexpr State rate(const State&, const S&, const S&) const { return {}; }
+    constexpr State relaxation_rate() const { return {}; }
+};
+
+}  // namespace strainwave::motor

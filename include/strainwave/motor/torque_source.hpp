@@ -1,0 +1,46 @@
+#pragma once
+#include <strainwave/field.hpp>
+
+namespace strainwave::motor {
+
+template <class S>
+struct TorqueSource {
+    S inertia{1e-5};
+
+    static constexpr auto name = "torque_source";
+    static constexpr auto actuation = "motor_torque";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        A motor that gives the torque it is asked for, at once and at any speed.
+
+        .. math:: \tau = u
+
+        with u what the controller asks for [N.m]. For studies of the gear alone, and for drives whose motor is not known.
+
+        >>> from strainwave.motor import TorqueSource
+        >>> TorqueSource(inertia=2e-5).inertia
+        2e-05)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
+    }
+
+    using State = Stateless<S>;
+    struct Output {
+        S motor_torque;
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, motor_torque, "N.m", "Torque of the motor"));
+        }
+    };
+
+    constexpr S torque(const State&, const S& asked, const S&) const { return asked; }
+    constexpr S current(const State&, const S&, const S&) const { return S(0.0); }
+    constexpr Output output(const State&, const S& asked, const S&) const { return {asked}; }
+    constexpr State rate(const State&, const S&, const S&) const { return {}; }
+    constexpr State relaxation_rate() const { return {}; }
+};
+
+}  // namespace strainwave::motor

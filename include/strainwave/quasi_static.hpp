@@ -1,0 +1,48 @@
+#pragma once
+#include <strainwave/field.hpp>
+
+namespace strainwave {
+
+/// Spring and hysteresis of a gear whose input is held, twisted slowly from `begin` on, where it has no history.
+template <class S, class Gear>
+class QuasiStatic {
+    const Gear& gear;
+    typename decltype(Gear{}.hysteresis)::State held;
+    S at;
+
+public:
+    constexpr explicit QuasiStatic(const Gear& gear_, const S& begin = S(0.0))
+        : gear(gear_), held(initial_state(gear_.hysteresis)), at(begin) {}
+
+    /// At a twist [rad] that is reached without turning back on the way, N.m.
+    constexpr S torque(const S& twist) const { return gear.stiffness.torque(twist) + gear.hysteresis.torque(held, twist - at); }
+    constexpr void move(const S& twist) {
+        held = gear.hysteresis.advance(held, twist - at);
+        at = twist;
+    }
+
+    /// The twist at which `wanted` [N.m] is reached without turning back on the way; not a finite number if there is none. The
+    /// torque rises with the twist, so that a bracket closes.
+    constexpr S twist(const S& wanted) const {
+        const S away = wanted < torque(at) ? S(-1.0) : S(1.0);
+        S low = at, high = at, reach = max(abs(at), S(1e-9)) * away;
+        while (away * (torque(high) - wanted) < S(0.0)) {
+            low = high;
+            reach = reach * S(2.0);
+            high = at + reach;
+            if (!(abs(high) < S(unbounded))) return high;
+        }
+        for (int i = 0; i < 2000; ++i) {
+            const S middle = low + S(0.5) * (high - low);
+            if (middle == low || middle == high) break;
+            (away * (torque(middle) - wanted) < S(0.0) ? low : high) = middle;
+        }
+        const S root = abs(torque(low) - wanted) < abs(torque(high) - wanted) ? low : high;
+        if constexpr (differentiates<S>)
+            return moving_root([&](const S& x) { return torque(x) - wanted; }, root);
+        else
+            return root;
+    }
+};
+
+}  // namespace strainwave

@@ -1,0 +1,108 @@
+#pragma once
+#include <strainwave/compiled.hpp>
+#include <strainwave/control/law.hpp>
+
+namespace strainwave {
+
+template <class S, class Sensor>
+struct Sensors {
+    Sensor input_angle{};
+    Sensor input_speed{};
+    Sensor output_angle{};
+    Sensor output_speed{};
+    Sensor current{};
+    Sensor torque{};
+
+    static constexpr auto name = "sensors";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        What the controller of a drive sees: one sensor for each quantity.
+
+        Recordings show the quantities themselves, not what sensors make of them.
+
+        >>> import strainwave as sw
+        >>> sensors = sw.Sensors(output_angle=sw.sensor.FirstOrder(time_constant=2e-3))
+        >>> sensors.output_angle.time_constant
+        0.002)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, input_angle, "Sensor of the input angle: the motor's encoder"));
+        visit(SW_PART(m, input_speed, "Sensor of the input speed"));
+        visit(SW_PART(m, output_angle, "Sensor of the output angle"));
+        visit(SW_PART(m, output_speed, "Sensor of the output speed"));
+        visit(SW_PART(m, current, "Sensor of the motor current"));
+        visit(SW_PART(m, torque, "Sensor of the torque transmitted, at the output"));
+    }
+
+    constexpr auto compile() const {
+        return Sensors<S, decltype(compiled(torque))>{compiled(input_angle),  compiled(input_speed), compiled(output_angle),
+                                                      compiled(output_speed), compiled(current),     compiled(torque)};
+    }
+
+    struct States {
+        typename Sensor::State input_angle{}, input_speed{}, output_angle{}, output_speed{}, current{}, torque{};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_PART(m, input_angle, "State of that sensor"));
+            visit(SW_PART(m, input_speed, "State of that sensor"));
+            visit(SW_PART(m, output_angle, "State of that sensor"));
+            visit(SW_PART(m, output_speed, "State of that sensor"));
+            visit(SW_PART(m, current, "State of that sensor"));
+            visit(SW_PART(m, torque, "State of that sensor"));
+        }
+    };
+    static constexpr bool stateless = size_of<S, typename Sensor::State> == 0;
+    using State = typename detail::Either<stateless, Stateless<S>, States>::type;
+    using Measurement = control::Measurement<S>;
+
+    constexpr State initial_state() const {
+        return each([](const Sensor& sensor, const auto&) { return strainwave::initial_state(sensor); }, Measurement{});
+    }
+    /// What the sensors show of what there is.
+    constexpr Measurement shown(const State& x, const Measurement& actual) const {
+        return {shown(input_angle, x, &States::input_angle, actual.input_angle),
+                shown(input_speed, x, &States::input_speed, actual.input_speed),
+                shown(output_angle, x, &States::output_angle, actual.output_angle),
+                shown(output_speed, x, &States::output_speed, actual.output_speed),
+                shown(current, x, &States::current, actual.current),
+                shown(torque, x, &States::torque, actual.torque)};
+    }
+    constexpr State rate(const State& x, const Measurement& actual) const {
+        if constexpr (stateless)
+            return {};
+        else
+            return {input_angle.rate(x.input_angle, actual.input_angle),
+                    input_speed.rate(x.input_speed, actual.input_speed),
+                    output_angle.rate(x.output_angle, actual.output_angle),
+                    output_speed.rate(x.output_speed, actual.output_speed),
+                    current.rate(x.current, actual.current),
+                    torque.rate(x.torque, actual.torque)};
+    }
+    constexpr State relaxation_rate() const {
+        return each([](const Sensor& sensor, const S&) { return sensor.relaxation_rate(); }, Measurement{});
+    }
+    /// The state in which they show what there is.
+    constexpr State settled(const Measurement& actual) const {
+        return each([](const Sensor& sensor, const S& value) { return sensor.settled(value); }, actual);
+    }
+
+private:
+    static constexpr S shown(const Sensor& sensor, const State& x, typename Sensor::State States::* own, const S& value) {
+        if constexpr (stateless)
+            return sensor.shown({}, value);
+        else
+            return sensor.shown(x.*own, value);
+    }
+    template <class F>
+    constexpr State each(const F& f, const Measurement& of) const {
+        if constexpr (stateless)
+            return {};
+        else
+            return {f(input_angle, of.input_angle),   f(input_speed, of.input_speed), f(output_angle, of.output_angle),
+                    f(output_speed, of.output_speed), f(current, of.current),         f(torque, of.torque)};
+    }
+};
+
+}  // namespace strainwave
