@@ -57,7 +57,7 @@ template <class S, class MotorState, class ControlState, class SensorsState, cla
 struct Continuous {
     MotorState motor{};
     ControlState control{};
-    SensorsState sensors{};
+    [[no_unique_address]] SensorsState sensors{};  // most have no state
     S input_angle{0.0};
     S input_speed{0.0};
     S transmission_error{0.0};
@@ -84,7 +84,7 @@ struct Continuous {
 /// What changes at instants only.
 template <class S, class ControlDiscrete>
 struct Discrete {
-    ControlDiscrete control{};
+    [[no_unique_address]] ControlDiscrete control{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -96,7 +96,7 @@ struct Discrete {
 template <class S, class Continuous, class Discrete, class HysteresisState>
 struct State {
     Continuous continuous{};
-    Discrete discrete{};
+    [[no_unique_address]] Discrete discrete{};
     HysteresisState hysteresis{};
     S held_twist{0.0};
     S held_rate{0.0};

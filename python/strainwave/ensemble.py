@@ -143,7 +143,7 @@ class _Plan(ComparedByFields):
     initial: Known | None
     course: Course
     inputs: Array
-    recorded: dict[str, Output]
+    recorded: Mapping[str, Output]
     threads: int
 
     @classmethod

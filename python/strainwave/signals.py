@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,21 +33,29 @@ class Output:
         return f"{self.part}.{self.name}" if self.part else self.name
 
 
-def outputs(drive: Drive) -> dict[str, Output]:
+def outputs(drive: Drive) -> Mapping[str, Output]:
     """All that a drive shows of itself, by name.
 
     >>> from strainwave import motor
     >>> "voltage" in outputs(Drive()), "voltage" in outputs(Drive(motor=motor.CurrentSource()))
     (True, False)
     """
-    found = [Output(*each) for each in _core.outputs(drive)]
-    return {each.name: each for each in found}
+    return _outputs_with(drive.motor.name)
+
+
+@cache
+def _outputs_with(motor: str) -> Mapping[str, Output]:
+    """Drives differ in what their motors show; whatever its numbers, a motor shows the same."""
+    kind = _core.families["motor"][motor]
+    required = {field["name"]: field["default"] for field in kind.fields if field["required"]}
+    found = [Output(*each) for each in _core.outputs(Drive(motor=kind(**required)))]
+    return MappingProxyType({each.name: each for each in found})
 
 
 TWIST = outputs(Drive())["twist"].channel
 
 
-def chosen(drive: Drive, record: Sequence[str]) -> dict[str, Output]:
+def chosen(drive: Drive, record: Sequence[str]) -> Mapping[str, Output]:
     """The outputs that `record` names, in its order: each by its name, or with that of its part in front.
 
     Raises:
@@ -54,7 +64,7 @@ def chosen(drive: Drive, record: Sequence[str]) -> dict[str, Output]:
     """
     names = arguments.names("record", record)
     known = outputs(drive)
-    paths = known | {each.path: each for each in known.values()}
+    paths = dict(known) | {each.path: each for each in known.values()}
     if not names or not set(names) <= set(paths):
         raise ValueError(f"record = {shortened(names)} must list outputs of this drive: {', '.join(known)}")
     return {paths[name].name: paths[name] for name in names}

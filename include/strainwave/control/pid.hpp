@@ -66,10 +66,10 @@ private:
         S angle, speed;
     };
     constexpr Error error(const Command<S>& command, const Measurement<S>& measured) const {
-        if (feedback == Feedback::output)
-            return {command.ratio * (command.value - measured.output_angle),
-                    command.ratio * (command.rate - measured.output_speed)};
-        return {command.ratio * command.value - measured.input_angle, command.ratio * command.rate - measured.input_speed};
+        const bool on_output = feedback == Feedback::output;
+        const S angle = on_output ? command.ratio * measured.output_angle : measured.input_angle;
+        const S speed = on_output ? command.ratio * measured.output_speed : measured.input_speed;
+        return {command.ratio * command.value - angle, command.ratio * command.rate - speed};
     }
     constexpr S unlimited(const State& x, const Error& now) const {
         return proportional * now.angle + integral * x.error_integral + derivative * now.speed;
