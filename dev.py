@@ -155,14 +155,19 @@ CHECKS: dict[str, tuple[Sequence[str], dict[str, str], Sequence[str]]] = {
         {"ASAN_OPTIONS": "detect_leaks=0"},  # the interpreter's own
         [
             *("tests/laws", "tests/agreement", "tests/published"),
-            *(f"tests/python/test_{of}.py" for of in ("methods", "tolerances", "sticking", "sensitivity", "linear", "steady")),
+            *(f"tests/python/simulation/test_{of}.py" for of in ("methods", "tolerances", "sticking")),
+            "tests/python/analysis",
             *("-k", "not compilers and not cuda and not chatter and not event_is_found"),  # not those that compile themselves
         ],
     ),
     "thread": (
         ["libtsan.so"],
         {"TSAN_OPTIONS": "ignore_noninstrumented_modules=1:halt_on_error=1"},  # interpreter and numpy are not compiled for it
-        ["tests/python/test_ensemble.py", "-k", "not instruction_set and not stopped and not memory"],  # those in this process
+        [
+            "tests/python/simulation/test_ensemble.py",
+            "-k",
+            "not instruction_set and not stopped and not memory",
+        ],  # those in this process
     ),
 }
 

@@ -22,8 +22,9 @@ from reference_drive import DURATION, OUTPUT_INERTIA, SAMPLE
 from report import Column, figure, save, save_figure, tell, three_digits
 from rich.console import Console
 from strainwave import _core
-from strainwave.signals import outputs
-from strainwave.simulation import Excitation, differentiate
+from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.run import differentiate
+from strainwave.simulation.signals import outputs
 
 STEP = 2e-4  # s
 FEW = 3  # steps

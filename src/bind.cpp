@@ -5,7 +5,7 @@ using namespace strainwave;
 
 namespace strainwave::host {
 
-void bind_course(nb::module_& core);
+void bind_inputs(nb::module_& core);
 void bind_drives(nb::module_& core);
 void bind_runs(nb::module_& core);
 
@@ -65,7 +65,7 @@ NB_MODULE(_core, core) {
     bind_family(core, "control", "What turns the command into the motor's voltage, current or torque.", control::Models{});
     bind_family(core, "loads", "What the output shaft carries.", load::Models{});
     bind_family(core, "sensor", "What a controller sees a quantity by.", sensor::Models{});
-    bind_course(core);
+    bind_inputs(core);
     bind_drives(core);
     bind_runs(core);
 }

@@ -97,7 +97,7 @@ nb::list outputs_of(const Drive& drive) {
     };
     const Drive::Output output{};
     Drive::Output::fields(output, [&]<class T>(const T&, const Field& field) {
-        if constexpr (is_slots<T>) {
+        if constexpr (is_storage<T>) {
             const int first = channel;
             drive.motor.visit([&]<class Motor>(const Motor&) {
                 const typename Motor::Output own{};
@@ -212,7 +212,7 @@ void bind_drives(nb::module_& core) {
     const Bound<Gear> gear{bind<Gear>(core, "Gear", "gear"), description_of<Gear>("Gear", "gear")};
     verb(gear, "save", {{"path", "str | pathlib.Path"}, {"*", ""}, {"name", "str"}, {"source", "str"}}, "None",
          "Writes a gear file, as `strainwave.save` does.", [](const Gear& self, const Call& call) {
-             nb::module_::import_("strainwave.gear_set")
+             nb::module_::import_("strainwave.files.gear_set")
                  .attr("save")(self, call["path"], nb::arg("name") = call["name"], nb::arg("source") = call["source"]);
          });
     verb(gear, "trace", {{"twist", SW_NUMBERS}}, SW_ARRAY,
@@ -226,13 +226,13 @@ void bind_drives(nb::module_& core) {
     bind<AnySensors<double>>(core, "Sensors", "sensors");
     const Bound<Drive> drive{bind<Drive>(core, "Drive", "drive"), description_of<Drive>("Drive", "drive")};
     const auto as_state = [](const Drive& self, const Values& numbers) {
-        return nb::module_::import_("strainwave.state").attr("State").attr("of")(self, numbers);
+        return nb::module_::import_("strainwave.simulation.state").attr("State").attr("of")(self, numbers);
     };
-    verb(drive, "rest", {}, "strainwave.state.State", "The state at rest, untwisted and without history, input angle 0.",
+    verb(drive, "rest", {}, "strainwave.simulation.state.State", "The state at rest, untwisted and without history, input angle 0.",
          [as_state](const Drive& self, const Call&) { return as_state(self, array_of(self, kernels().rest(self))); });
     verb(
         drive, "step",
-        {{"state", "strainwave.state.State"},
+        {{"state", "strainwave.simulation.state.State"},
          {"*", ""},
          {"command", "float", "0.0"},
          {"command_rate", "float", "0.0"},
@@ -241,14 +241,14 @@ void bind_drives(nb::module_& core) {
          {"output_speed", "float", "0.0"},
          {"temperature", "float", "293.15"},
          {"dt", "float"}},
-        "strainwave.state.State",
+        "strainwave.simulation.state.State",
         "The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, "
         "that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of "
         "another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; "
         "`FloatingPointError` if the step diverges.",
         [as_state](const Drive& self, const Call& call) {
             const nb::object given =
-                nb::module_::import_("strainwave.state").attr("start_of")(self, call["state"], "state").attr("numbers");
+                nb::module_::import_("strainwave.simulation.state").attr("start_of")(self, call["state"], "state").attr("numbers");
             const Drive::State state = state_from(self, nb::cast<Numbers>(given));
             const double dt = call.real("dt");
             const Interval<Input<double>> u = inputs_of_step(self, call, dt);
@@ -260,7 +260,7 @@ void bind_drives(nb::module_& core) {
             return as_state(self, numbers);
         });
 
-    core.attr("channels") = output_count;
+    core.attr("output_count") = output_count;
     core.def("outputs", &outputs_of, nb::arg("drive"), nb::sig("def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]"),
              "Name, unit, doc, part and channel of each number that a drive shows of itself.");
     core.def("load_input", &load_input, nb::arg("drive"), nb::sig("def load_input(drive: Drive) -> tuple[str, str, str]"),
@@ -281,17 +281,17 @@ void bind_drives(nb::module_& core) {
         nb::sig("def schedule(drive: Drive, state: " SW_ARRAY ") -> tuple[float, float, float]"),
         "When a sampled controller acts: time to its next sample, period and delay [s]. A period of 0: it acts all the time.");
     core.def(
-        "vibration", [](const Drive& drive, double twist) { return kernels().vibration(drive, std::abs(twist)); }, nb::arg("drive"),
-        nb::arg("twist"), nb::sig("def vibration(drive: Drive, twist: float) -> float"),
+        "natural_frequency", [](const Drive& drive, double twist) { return kernels().natural_frequency(drive, std::abs(twist)); },
+        nb::arg("drive"), nb::arg("twist"), nb::sig("def natural_frequency(drive: Drive, twist: float) -> float"),
         "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
     core.def(
-        "fastest", [](const Drive& drive, double twist) { return kernels().fastest(drive, std::abs(twist)); }, nb::arg("drive"),
-        nb::arg("twist"), nb::sig("def fastest(drive: Drive, twist: float) -> float"),
+        "max_rate", [](const Drive& drive, double twist) { return kernels().max_rate(drive, std::abs(twist)); }, nb::arg("drive"),
+        nb::arg("twist"), nb::sig("def max_rate(drive: Drive, twist: float) -> float"),
         "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's "
         "vibration, or the decay of speeds.");
     core.def(
-        "bristle_vibration", [](const Drive& drive) { return kernels().bristle_vibration(drive); }, nb::arg("drive"),
-        nb::sig("def bristle_vibration(drive: Drive) -> float"),
+        "bristle_frequency", [](const Drive& drive) { return kernels().bristle_frequency(drive); }, nb::arg("drive"),
+        nb::sig("def bristle_frequency(drive: Drive) -> float"),
         "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
              nb::sig("def now(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),

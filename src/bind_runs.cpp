@@ -12,14 +12,14 @@ namespace strainwave::host {
 namespace {
 
 struct Request {
-    Course course;
+    InputSchedule schedule;
     std::size_t kept = 0;
 
     Request(const Numbers& instants, const Numbers& inputs, const Flags& keep)
-        : course{instants.data(), inputs.data(), keep.data(), keep.size()} {
-        if (course.steps == 0 || instants.size() != course.steps + 1 || inputs.size() != 3 * input_count * course.steps)
-            throw nb::value_error("a course of n > 0 steps has n + 1 instants, inputs of shape (n, 3, 6) and n flags");
-        for (std::size_t i = 0; i < course.steps; ++i) kept += keep.data()[i] != 0;
+        : schedule{instants.data(), inputs.data(), keep.data(), keep.size()} {
+        if (schedule.steps == 0 || instants.size() != schedule.steps + 1 || inputs.size() != 3 * input_count * schedule.steps)
+            throw nb::value_error("a schedule of n > 0 steps has n + 1 instants, inputs of shape (n, 3, 6) and n flags");
+        for (std::size_t i = 0; i < schedule.steps; ++i) kept += keep.data()[i] != 0;
     }
 };
 
@@ -53,13 +53,13 @@ Values run_one(const Drive& drive, const Numbers& start, const Numbers& instants
     Drive::State state = state_from(drive, start);
     {
         nb::gil_scoped_release free;
-        state = simulate(drive, state, request.course, method, rows, pause);
+        state = simulate(drive, state, request.schedule, method, rows, pause);
     }
     return array_of(drive, state);
 }
 
 nb::tuple run_adaptively(const Drive& drive, const Numbers& start, const Signal& command, const Signal& load,
-                         const Signal& temperature, const Numbers& ends, double relative, double absolute, long most_steps,
+                         const Signal& temperature, const Numbers& ends, double relative, double absolute, long max_steps,
                          const Numbers& samples, const std::vector<int>& recorded, const Outputs& out, std::size_t first,
                          const nb::object& progress) {
     if (ends.size() < 2) throw nb::value_error("steps lead from one instant to another");
@@ -71,7 +71,7 @@ nb::tuple run_adaptively(const Drive& drive, const Numbers& start, const Signal&
     {
         nb::gil_scoped_release free;
         state = simulate(drive, state, {{&command, &load, &temperature}}, {ends.data(), ends.size()}, {relative, absolute},
-                         most_steps, {samples.data(), samples.size()}, rows, steps, pause);
+                         max_steps, {samples.data(), samples.size()}, rows, steps, pause);
     }
     return nb::make_tuple(array_of(drive, state), steps.accepted, steps.rejected);
 }
@@ -84,9 +84,9 @@ std::string text_of(const OutOfBounds& error) {
 std::string text_of(const StepsSpent& error) {
     char text[256];
     std::snprintf(text, sizeof text,
-                  "all steps that most_steps allows lead to t = %.6g s only; loosen rtol, give simulate_adaptively more steps, or "
+                  "all steps that max_steps allows lead to t = %.6g s only; loosen rtol, give simulate_adaptively more steps, or "
                   "check the parameters: the gear vibrates at %.4g rad/s at rest, a shaft on its bristles at %.4g rad/s",
-                  error.at, error.vibration, error.bristle_vibration);
+                  error.at, error.natural_frequency, error.bristle_frequency);
     return text;
 }
 
@@ -104,7 +104,7 @@ Start start_from(const nb::object& known, std::size_t members) {
 
 nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Numbers& values, const nb::object& known,
                    const Numbers& instants, const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded,
-                   double fastest, int threads, const Series& out, const nb::object& progress) {
+                   double max_rate, int threads, const Series& out, const nb::object& progress) {
     const Request request(instants, inputs, keep);
     if (values.ndim() != 2 || values.shape(0) != numbers.size())
         throw nb::value_error("values of n numbers and m members have shape (n, m)");
@@ -114,22 +114,22 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
         throw nb::value_error("outputs of m members have shape (recorded, m, 1 + kept)");
     const Pause pause = pausing(progress);
     const auto simulate_many = kernels().simulate_many;
-    std::vector<Verdict> verdicts;
+    std::vector<MemberResult> results;
     {
         nb::gil_scoped_release free;
-        verdicts =
-            simulate_many(drive, variation, start, request.course, recorded, fastest, threads, out.data(), request.kept, pause);
+        results =
+            simulate_many(drive, variation, start, request.schedule, recorded, max_rate, threads, out.data(), request.kept, pause);
     }
     auto sound = array<bool>({variation.members});
     Values twists = array({variation.members}), rates = array({variation.members}), on_bristles = array({variation.members});
     nb::dict refusals;
-    for (std::size_t m = 0; m < verdicts.size(); ++m) {
-        sound.data()[m] = verdicts[m].sound;
-        twists.data()[m] = verdicts[m].twist;
-        rates.data()[m] = verdicts[m].fastest;
-        on_bristles.data()[m] = verdicts[m].bristle_vibration;
-        if (verdicts[m].refusal) refusals[nb::int_(m)] = text_of(*verdicts[m].refusal);
-        if (!verdicts[m].problem.empty()) refusals[nb::int_(m)] = verdicts[m].problem;
+    for (std::size_t m = 0; m < results.size(); ++m) {
+        sound.data()[m] = results[m].sound;
+        twists.data()[m] = results[m].twist;
+        rates.data()[m] = results[m].max_rate;
+        on_bristles.data()[m] = results[m].bristle_frequency;
+        if (results[m].refusal) refusals[nb::int_(m)] = text_of(*results[m].refusal);
+        if (!results[m].problem.empty()) refusals[nb::int_(m)] = results[m].problem;
     }
     return nb::make_tuple(sound, twists, rates, on_bristles, refusals);
 }
@@ -144,7 +144,7 @@ nb::tuple run_derivatives(const Drive& drive, const nb::object& known, const Num
     const auto differentiate = kernels().differentiate;
     {
         nb::gil_scoped_release free;
-        differentiate(drive, start, request.course, parameters, out.data(), slopes.data(), request.kept, pause);
+        differentiate(drive, start, request.schedule, parameters, out.data(), slopes.data(), request.kept, pause);
     }
     return nb::make_tuple(out, slopes);
 }
@@ -185,27 +185,27 @@ void bind_runs(nb::module_& core) {
                      ") -> " SW_ARRAY),
              "The state at the end; the outputs go to `out`, shape (recorded, samples), from sample `first` on.");
     core.def("simulate_adaptively", &run_adaptively, nb::arg("drive"), nb::arg("start"), nb::arg("command"), nb::arg("load"),
-             nb::arg("temperature"), nb::arg("ends"), nb::arg("relative"), nb::arg("absolute"), nb::arg("most_steps"),
+             nb::arg("temperature"), nb::arg("ends"), nb::arg("relative"), nb::arg("absolute"), nb::arg("max_steps"),
              nb::arg("samples"), nb::arg("recorded"), nb::arg("out").noconvert(), nb::arg("first"),
              nb::arg("progress").none() = nb::none(),
              nb::sig("def simulate_adaptively(drive: Drive, start: " SW_ARRAY ", command: Signal, "
                      "load: Signal, temperature: Signal, ends: " SW_ARRAY
-                     ", relative: float, absolute: float, most_steps: int, samples: " SW_ARRAY ", " SW_OUTPUTS SW_PROGRESS
+                     ", relative: float, absolute: float, max_steps: int, samples: " SW_ARRAY ", " SW_OUTPUTS SW_PROGRESS
                      ") -> tuple[" SW_ARRAY ", int, int]"),
              "The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; "
              "the outputs at `samples` [s] go to `out`, shape (recorded, samples), from sample `first` on.");
     core.def(
         "simulate_many", &run_many, nb::arg("drive"), nb::arg("numbers"), nb::arg("values"), nb::arg("initial").none(),
-        nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"), nb::arg("recorded"), nb::arg("fastest"), nb::arg("threads"),
+        nb::arg("instants"), nb::arg("inputs"), nb::arg("keep"), nb::arg("recorded"), nb::arg("max_rate"), nb::arg("threads"),
         nb::arg("out").noconvert(), nb::arg("progress").none() = nb::none(),
         nb::sig("def simulate_many(drive: Drive, numbers: collections.abc.Sequence[int], values: " SW_ARRAY
                 ", initial: tuple[collections.abc.Sequence[int], " SW_ARRAY "] | None, " SW_COURSE
-                ", recorded: collections.abc.Sequence[int], fastest: float, threads: int, out: " SW_ARRAY SW_PROGRESS
+                ", recorded: collections.abc.Sequence[int], max_rate: float, threads: int, out: " SW_ARRAY SW_PROGRESS
                 ") -> tuple[numpy.typing.NDArray[numpy.bool_], " SW_ARRAY ", " SW_ARRAY ", " SW_ARRAY ", dict[int, str]]"),
         "Runs members, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no "
         "output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to "
         "there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape "
-        "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at "
+        "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `max_rate` at "
         "rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin "
         "at rest if there is none.");
     core.def("instruction_set", &instruction_set, "The instruction set that the loops over time are compiled for.");

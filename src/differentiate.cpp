@@ -72,25 +72,25 @@ initial::Known<S> known_of(const Start& start) {
 
 /// One run that gives the derivatives by `n` parameters, number `first` and following.
 template <int n>
-void differentiate_by(const Parts& parts, const Start& start, const Course& course, const std::vector<int>& parameters,
+void differentiate_by(const Parts& parts, const Start& start, const InputSchedule& schedule, const std::vector<int>& parameters,
                       std::size_t first, double* out, double* slopes, std::size_t kept, const Pause& pause) {
     using Scalar = Dual<n>;
     const auto dual = seeded<AnyDrive, n>(parts, parameters, first).compile();
     Writer<n> record(first, parameters.size(), kept + 1, out, slopes);
-    const Input<Scalar> at_start = interval<Scalar>(course.inputs).start;
+    const Input<Scalar> at_start = interval<Scalar>(schedule.inputs).start;
     const auto from = start.at_rest ? dual.rest() : initial::state(dual, known_of<Scalar>(start), at_start);
-    record(shown<Scalar>(dual, begun(dual, from, at_start, Scalar(missed(course.first_step()))), at_start));
-    run<Scalar>(dual, from, course, record, [&](std::size_t i) { pause(first * course.steps + n * i); });
+    record(shown<Scalar>(dual, begun(dual, from, at_start, Scalar(missed(schedule.first_step()))), at_start));
+    run<Scalar>(dual, from, schedule, record, [&](std::size_t i) { pause(first * schedule.steps + n * i); });
     record.flush();
 }
 
 }  // namespace
 
-void differentiate(const Drive& drive, const Start& start, const Course& course, const std::vector<int>& parameters, double* out,
-                   double* slopes, std::size_t kept, const Pause& pause) {
+void differentiate(const Drive& drive, const Start& start, const InputSchedule& schedule, const std::vector<int>& parameters,
+                   double* out, double* slopes, std::size_t kept, const Pause& pause) {
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width)
-        differentiate_by<width>(parts, start, course, parameters, first, out, slopes, kept, pause);
+        differentiate_by<width>(parts, start, schedule, parameters, first, out, slopes, kept, pause);
 }
 
 void differentiate_rates(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {

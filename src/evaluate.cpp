@@ -63,11 +63,11 @@ Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval
     }
 }
 
-double vibration(const Drive& drive, double twist) { return drive.compile().vibration(twist); }
+double natural_frequency(const Drive& drive, double twist) { return drive.compile().natural_frequency(twist); }
 
-double fastest(const Drive& drive, double twist) { return drive.compile().fastest(twist); }
+double max_rate(const Drive& drive, double twist) { return drive.compile().max_rate(twist); }
 
-double bristle_vibration(const Drive& drive) { return drive.compile().bristle_vibration(); }
+double bristle_frequency(const Drive& drive) { return drive.compile().bristle_frequency(); }
 
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
     const auto compiled = drive.compile();

@@ -20,7 +20,7 @@ namespace strainwave::host {
 inline constexpr int input_count = size_of<double, Input<double>>;
 
 /// The command over `steps` steps: instants[0..steps], and per step the inputs at its start, middle and end.
-struct Course {
+struct InputSchedule {
     const double* instants;
     const double* inputs;      ///< (steps, 3, input_count): what `Input` holds
     const std::uint8_t* keep;  ///< (steps): whether to record the end of the step
@@ -152,46 +152,46 @@ inline constexpr double missed(double dt) { return 0.5 * dt; }
 /// `advance` takes a step. Returns the state at the end. What a step returns is made where it stays: to copy it would take a
 /// twentieth of the step. A drive that has diverged, in all lanes, stays where that is noticed, and so do its outputs.
 template <class S, class Drive, class Record, class Advance>
-typename Drive::State run_compiled(const Drive& drive, const typename Drive::State& start, const Course& course, Record& record,
-                                   const Pause& pause, const Advance& advance) {
+typename Drive::State run_compiled(const Drive& drive, const typename Drive::State& start, const InputSchedule& schedule,
+                                   Record& record, const Pause& pause, const Advance& advance) {
     const bool has_bounds = drive.has_bounds();
     Pauses pauses(pause);
-    Interval<Input<S>> u = interval<S>(course.inputs);
+    Interval<Input<S>> u = interval<S>(schedule.inputs);
     using Evaluation = typename Drive::Evaluation;
-    Evaluation places[2]{begun(drive, start, u.start, S(missed(course.first_step()))), {}}, *here = places, *there = places + 1;
-    if (has_bounds) check_bounds<S>(drive, *here, course.instants[0]);
+    Evaluation places[2]{begun(drive, start, u.start, S(missed(schedule.first_step()))), {}}, *here = places, *there = places + 1;
+    if (has_bounds) check_bounds<S>(drive, *here, schedule.instants[0]);
     bool lost = false;
-    for (std::size_t i = 0; i < course.steps; ++i) {
+    for (std::size_t i = 0; i < schedule.steps; ++i) {
         pauses(i, i);
         if (i % 64 == 0) lost = lost || !any(soundness(shown<S>(drive, *here, u.end)) > S(0.0));
         if (lost) {
-            if (course.keep[i]) record(shown<S>(drive, *here, u.end));
+            if (schedule.keep[i]) record(shown<S>(drive, *here, u.end));
             continue;
         }
         if (i > 0) {
-            const double *const inputs = course.inputs + 3 * input_count * i, *const before = inputs - input_count;
+            const double *const inputs = schedule.inputs + 3 * input_count * i, *const before = inputs - input_count;
             u = interval<S>(inputs);
             const bool jump = !std::equal(inputs, inputs + input_count, before);
             if (jump) *here = drive.evaluate(here->state, u.start);
-            const S within(missed(course.instants[i + 1] - course.instants[i]));
+            const S within(missed(schedule.instants[i + 1] - schedule.instants[i]));
             if (system::due(drive, here->state, within)) *here = system::sampled(drive, *here, u.start, within);
         }
-        new (there) Evaluation(advance(drive, *here, u, S(course.instants[i + 1] - course.instants[i])));
+        new (there) Evaluation(advance(drive, *here, u, S(schedule.instants[i + 1] - schedule.instants[i])));
         std::swap(here, there);
-        if (has_bounds) check_bounds<S>(drive, *here, course.instants[i + 1]);
-        if (course.keep[i]) record(shown<S>(drive, *here, u.end));
+        if (has_bounds) check_bounds<S>(drive, *here, schedule.instants[i + 1]);
+        if (schedule.keep[i]) record(shown<S>(drive, *here, u.end));
     }
     return here->state;
 }
 
 /// Runs `drive`, or the same drive of a usual type, with `step` as the step without events.
 template <class S, class Drive, class Record, class Step>
-typename Drive::State run_stepwise(const Drive& drive, const typename Drive::State& start, const Course& course, Record& record,
-                                   const Pause& pause, const Step& step) {
+typename Drive::State run_stepwise(const Drive& drive, const typename Drive::State& start, const InputSchedule& schedule,
+                                   Record& record, const Pause& pause, const Step& step) {
     const auto advance = [&](const Drive& moved, const typename Drive::Evaluation& at, const Interval<Input<S>>& u, const S& dt) {
         return strainwave::step(moved, at, u, dt, step);
     };
-    return run_compiled<S>(drive, start, course, record, pause, advance);
+    return run_compiled<S>(drive, start, schedule, record, pause, advance);
 }
 
 /// Whether `drive` fits a special type; then calls run(special drive, its state) and sets `end`.
@@ -224,12 +224,12 @@ inline constexpr bool inlines =
 /// Runs `drive` in steps of fourth order, with events, and calls record(outputs) at the end of each step to be kept.
 template <class S, class Record>
 typename CompiledDrive<S>::State run(const CompiledDrive<S>& drive, const typename CompiledDrive<S>::State& start,
-                                     const Course& course, Record&& record, const Pause& pause) {
+                                     const InputSchedule& schedule, Record&& record, const Pause& pause) {
     return run_specialised<S>(drive, start, [&]<class Special>(const Special& special, const typename Special::State& from) {
         if constexpr (inlines<S, Special>)
-            return run_stepwise<S>(special, from, course, record, pause, inlined_step<S, Special>);
+            return run_stepwise<S>(special, from, schedule, record, pause, inlined_step<S, Special>);
         else
-            return run_stepwise<S>(special, from, course, record, pause, called_step<S, Special>);
+            return run_stepwise<S>(special, from, schedule, record, pause, called_step<S, Special>);
     });
 }
 
@@ -238,17 +238,17 @@ template <class S>
 struct Tally {
     S twist{0.0};              ///< largest recorded, rad
     S max_rate{0.0};           ///< what steps had to follow up to that twist, rad/s
-    S bristle_vibration{0.0};  ///< the fastest of a shaft on its bristles, rad/s
+    S bristle_frequency{0.0};  ///< the fastest of a shaft on its bristles, rad/s
     S sound{0.0};              ///< 1 where all outputs at all samples are numbers up to the largest
 };
 
 /// Runs a drive from start(drive, input) and calls record(outputs) there, too. Where the gear vibrates faster than `max_rate`
 /// [rad/s] at rest only that is told, with a twist of 0; where it does in all lanes nothing is run.
 template <class S, class Start, class Record>
-Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const Course& course, double max_rate, Record&& record,
+Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const InputSchedule& schedule, double max_rate, Record&& record,
                   const Pause& pause) {
     const CompiledDrive<S> drive = given.compile();
-    const S at_rest = drive.fastest(S(0.0)), on_bristles = drive.bristle_vibration();
+    const S at_rest = drive.max_rate(S(0.0)), on_bristles = drive.bristle_frequency();
     const auto too_fast = at_rest > S(max_rate);
     if (all(too_fast)) return {S(0.0), at_rest, on_bristles, S(0.0)};
     S twist{0.0}, sound{1.0};
@@ -257,11 +257,11 @@ Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const Course& co
         sound = min(sound, soundness(values));
         twist = max(twist, abs(values[twist_channel]));
     };
-    const Input<S> at_start = interval<S>(course.inputs).start;
+    const Input<S> at_start = interval<S>(schedule.inputs).start;
     const auto from = start(drive, at_start);
-    note(shown<S>(drive, begun(drive, from, at_start, S(missed(course.first_step()))), at_start));
-    run<S>(drive, from, course, note, pause);
-    return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.fastest(twist)), on_bristles, sound};
+    note(shown<S>(drive, begun(drive, from, at_start, S(missed(schedule.first_step()))), at_start));
+    run<S>(drive, from, schedule, note, pause);
+    return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.max_rate(twist)), on_bristles, sound};
 }
 
 }  // namespace strainwave::host

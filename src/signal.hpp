@@ -44,7 +44,7 @@ public:
     }
 };
 
-/// The inputs of a course through instants[0..steps], as `Course` holds them: the right limits at the start of a step, the left at
+/// The inputs through instants[0..steps], as `InputSchedule` holds them: the right limits at the start of a step, the left at
 /// its end.
 void lay_out(const Signals& signals, const double* instants, std::size_t steps, double* inputs);
 

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-/// The ways to run a course, compiled once for every instruction set.
+/// The ways to run a drive, compiled once for every instruction set.
 namespace strainwave::host {
 
 using Drive = AnyDrive<double>;
 
-/// How many members of a crowd take every step together, and how many derivatives a run gives: those of one register. Whatever
+/// How many members of a ensemble take every step together, and how many derivatives a run gives: those of one register. Whatever
 /// the number, each has the bits that it has alone.
 inline constexpr int lanes = strainwave::detail::register_width;
 /// The most there can be.
@@ -40,10 +40,10 @@ struct Start {
 };
 
 /// How the run of a member went.
-struct Verdict {
+struct MemberResult {
     double twist = 0.0;                    ///< largest recorded, rad
-    double fastest = 0.0;                  ///< what steps had to follow up to that twist, rad/s
-    double bristle_vibration = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
+    double max_rate = 0.0;                 ///< what steps had to follow up to that twist, rad/s
+    double bristle_frequency = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
     bool sound = false;                    ///< whether it ran, and all outputs at all samples are numbers up to the largest
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
     std::string problem{};                 ///< why it did not begin, if it did not
@@ -59,8 +59,8 @@ struct Rows {
     std::size_t samples;
 };
 
-/// One trajectory in the steps of its course.
-Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, const Rows& rows,
+/// One trajectory in the steps of its schedule.
+Drive::State simulate(const Drive& drive, const Drive::State& start, const InputSchedule& schedule, Method method, const Rows& rows,
                       const Pause& pause);
 
 /// No step was short enough to keep the tolerance, between two instants [s].
@@ -71,7 +71,7 @@ struct ToleranceMissed {
 /// All steps that were allowed led no further than to an instant [s]; the vibrations that steps must follow [rad/s]: of the gear at
 /// rest, and of a shaft on its bristles.
 struct StepsSpent {
-    double at, vibration, bristle_vibration;
+    double at, natural_frequency, bristle_frequency;
 };
 
 /// How many steps were taken, and how many given up for shorter ones.
@@ -94,11 +94,11 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
 
 /// Members side by side, several to a pack and packs on several threads. Writes their `recorded` channels, beginning
 /// with the start: channel c of sample k of member m to out[(c * members + m) * (kept + 1) + k]. A member that ends early leaves
-/// not-a-number behind. Of a member whose gear vibrates faster than `fastest` [rad/s] at rest only that is told, with a twist of
+/// not-a-number behind. Of a member whose gear vibrates faster than `max_rate` [rad/s] at rest only that is told, with a twist of
 /// 0. `pause` is called with the number of steps done, on this thread.
-std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Start& start, const Course& course,
-                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
-                                   const Pause& pause);
+std::vector<MemberResult> simulate_many(const Drive& drive, const Variation& variation, const Start& start,
+                                        const InputSchedule& schedule, const std::vector<int>& recorded, double max_rate,
+                                        int threads, double* out, std::size_t kept, const Pause& pause);
 
 // A drive at one instant.
 
@@ -124,23 +124,23 @@ Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval
 // How fast a drive moves by itself, as angular frequencies [rad/s], at twists up to one [rad].
 
 /// Of the gear on its spring.
-double vibration(const Drive& drive, double twist);
+double natural_frequency(const Drive& drive, double twist);
 /// That, or the decay of speeds: what fixed steps must follow.
-double fastest(const Drive& drive, double twist);
+double max_rate(const Drive& drive, double twist);
 /// Of a shaft on its bristles.
-double bristle_vibration(const Drive& drive);
+double bristle_frequency(const Drive& drive);
 
 /// The outputs of a drive in state `x`.
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
 
 /// A member that runs alone; writes its outputs through `record`.
-Tally<double> simulate_member(const Drive& drive, const Drive::State& start, const Course& course, double max_rate,
+Tally<double> simulate_member(const Drive& drive, const Drive::State& start, const InputSchedule& schedule, double max_rate,
                               const std::function<void(const Outputs<double>&)>& record, const Pause& pause);
 
 /// One trajectory and its derivatives with respect to the numbered parameters of the drive.
 /// Writes values, beginning with the start, to out[c * (kept + 1) + k], derivatives to slopes[(p * channels + c) * (kept + 1) + k].
-void differentiate(const Drive& drive, const Start& start, const Course& course, const std::vector<int>& parameters, double* out,
-                   double* slopes, std::size_t kept, const Pause& pause);
+void differentiate(const Drive& drive, const Start& start, const InputSchedule& schedule, const std::vector<int>& parameters,
+                   double* out, double* slopes, std::size_t kept, const Pause& pause);
 
 /// The rates of the n continuous numbers of a state, its memory held, and then the outputs: value i in out[i], its derivative with
 /// respect to continuous number p, and then to the inputs, in slopes[p * (n + channels) + i].
@@ -168,9 +168,9 @@ struct Kernels {
     decltype(&host::advance_hysteresis) advance_hysteresis;
     decltype(&host::break_away) break_away;
     decltype(&host::step_once) step_once;
-    decltype(&host::vibration) vibration;
-    decltype(&host::fastest) fastest;
-    decltype(&host::bristle_vibration) bristle_vibration;
+    decltype(&host::natural_frequency) natural_frequency;
+    decltype(&host::max_rate) max_rate;
+    decltype(&host::bristle_frequency) bristle_frequency;
     decltype(&host::observe) observe;
     decltype(&host::simulate) simulate;
     decltype(&host::simulate_adaptively) simulate_adaptively;

@@ -63,39 +63,39 @@ public:
 };
 
 /// A run of many members: what all threads share.
-class Crowd {
+class EnsembleRun {
     const Parts parts;
     const Variation& variation;
     const Start& start;
-    const Course& course;
+    const InputSchedule& schedule;
     const std::vector<int>& recorded;
-    const double fastest;
+    const double max_rate;
     double* const out;
     const std::size_t samples;
     std::vector<int> place_of;  // of each number in the variation, or -1
-    std::vector<Verdict> verdicts;
+    std::vector<MemberResult> results;
     std::atomic<std::size_t> next{0}, done{0};
     std::atomic<bool> stopping{false};
 
 public:
-    Crowd(const Drive& drive, const Variation& variation_, const Start& start_, const Course& course_,
-          const std::vector<int>& recorded_, double fastest_, double* out_, std::size_t kept)
+    EnsembleRun(const Drive& drive, const Variation& variation_, const Start& start_, const InputSchedule& schedule_,
+                const std::vector<int>& recorded_, double max_rate_, double* out_, std::size_t kept)
         : parts(parts_of(drive)),
           variation(variation_),
           start(start_),
-          course(course_),
+          schedule(schedule_),
           recorded(recorded_),
-          fastest(fastest_),
+          max_rate(max_rate_),
           out(out_),
           samples(kept + 1),
           place_of(parts.numbers.size(), -1),
-          verdicts(variation.members) {
+          results(variation.members) {
         for (std::size_t p = 0; p < variation.numbers.size(); ++p) place_of[variation.numbers[p]] = int(p);
     }
 
     std::size_t packs() const { return (variation.members + lanes - 1) / lanes; }
     std::size_t steps_done() const { return done; }
-    std::vector<Verdict> result() { return std::move(verdicts); }
+    std::vector<MemberResult> result() { return std::move(results); }
     void stop() { stopping = true; }
 
     /// Runs packs until none is left.
@@ -104,7 +104,7 @@ public:
             const std::size_t first = pack * lanes, count = std::min<std::size_t>(lanes, variation.members - first);
             if (!run_together(first, count))
                 for (std::size_t member = first; member < first + count; ++member) run_alone(member);
-            done += count * course.steps;
+            done += count * schedule.steps;
         }
     }
 
@@ -130,7 +130,7 @@ private:
 
     /// Where a member begins.
     Drive::State beginning(const Drive& drive, std::size_t member) const {
-        return start.at_rest ? rest(drive) : started(drive, start.of(member), interval<double>(course.inputs).start);
+        return start.at_rest ? rest(drive) : started(drive, start.of(member), interval<double>(schedule.inputs).start);
     }
     /// Why a member cannot begin; empty if it can.
     static std::string problem_at(const Drive::State& from) {
@@ -173,19 +173,19 @@ private:
         const Tally<S> tally = [&] {
             const auto drive = assembled_from<S>(first, count);
             if constexpr (std::is_same_v<S, double>)
-                return simulate_member(drive, from, course, fastest, record, pause);
+                return simulate_member(drive, from, schedule, max_rate, record, pause);
             else
-                return run_from<S>(drive, [&](const auto&, const auto&) { return from; }, course, fastest, record, pause);
+                return run_from<S>(drive, [&](const auto&, const auto&) { return from; }, schedule, max_rate, record, pause);
         }();
         rows.flush();
         if (rows.empty()) clear(first, count);
         for (std::size_t i = 0; i < count; ++i)
-            verdicts[first + i] = {lane_of(tally.twist, i),
-                                   lane_of(tally.max_rate, i),
-                                   lane_of(tally.bristle_vibration, i),
-                                   lane_of(tally.sound, i) > 0.0,
-                                   {},
-                                   {}};
+            results[first + i] = {lane_of(tally.twist, i),
+                                  lane_of(tally.max_rate, i),
+                                  lane_of(tally.bristle_frequency, i),
+                                  lane_of(tally.sound, i) > 0.0,
+                                  {},
+                                  {}};
     }
 
     /// Leaves not-a-number in the rows of members.
@@ -199,37 +199,37 @@ private:
     void run_alone(std::size_t member) {
         clear(member, 1);
         const Drive drive = assembled_from<double>(member, 1);
-        verdicts[member].problem = problem_of(drive);
-        if (!verdicts[member].problem.empty()) return;
+        results[member].problem = problem_of(drive);
+        if (!results[member].problem.empty()) return;
         const Drive::State from = beginning(drive, member);
-        verdicts[member].problem = problem_at(from);
-        if (!verdicts[member].problem.empty()) return;
+        results[member].problem = problem_at(from);
+        if (!results[member].problem.empty()) return;
         try {
             run_members<double>(member, 1, from);
         } catch (const OutOfBounds& error) {
-            verdicts[member].refusal = error;
+            results[member].refusal = error;
         }
     }
 };
 
 }  // namespace
 
-std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variation, const Start& start, const Course& course,
-                                   const std::vector<int>& recorded, double fastest, int threads, double* out, std::size_t kept,
-                                   const Pause& pause) {
-    Crowd crowd(drive, variation, start, course, recorded, fastest, out, kept);
+std::vector<MemberResult> simulate_many(const Drive& drive, const Variation& variation, const Start& start,
+                                        const InputSchedule& schedule, const std::vector<int>& recorded, double max_rate,
+                                        int threads, double* out, std::size_t kept, const Pause& pause) {
+    EnsembleRun ensemble(drive, variation, start, schedule, recorded, max_rate, out, kept);
     std::mutex lock;
     std::condition_variable ended;
     std::exception_ptr failure;
-    std::size_t working = std::min<std::size_t>(std::max(threads, 1), crowd.packs());
+    std::size_t working = std::min<std::size_t>(std::max(threads, 1), ensemble.packs());
     const auto work = [&] {
         std::exception_ptr caught;
         try {
-            crowd.work();
+            ensemble.work();
         } catch (const Stopped&) {
         } catch (...) {
             caught = std::current_exception();
-            crowd.stop();
+            ensemble.stop();
         }
         const std::lock_guard held(lock);
         if (caught) failure = caught;
@@ -240,22 +240,22 @@ std::vector<Verdict> simulate_many(const Drive& drive, const Variation& variatio
     try {
         for (std::size_t i = working; i > 0; --i) team.emplace_back(work);
     } catch (...) {  // no more threads to be had
-        crowd.stop();
+        ensemble.stop();
         throw;
     }
     std::unique_lock held(lock);
     while (!ended.wait_for(held, std::chrono::milliseconds(50), [&] { return working == 0; })) {
         held.unlock();
         try {
-            pause(crowd.steps_done());
+            pause(ensemble.steps_done());
         } catch (...) {
-            crowd.stop();
+            ensemble.stop();
             throw;  // the threads are joined on the way
         }
         held.lock();
     }
     if (failure) std::rethrow_exception(failure);
-    return crowd.result();
+    return ensemble.result();
 }
 
 }  // namespace strainwave::host

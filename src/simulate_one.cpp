@@ -17,18 +17,18 @@ struct Writer {
 
 }  // namespace
 
-Drive::State simulate(const Drive& drive, const Drive::State& start, const Course& course, Method method, const Rows& rows,
+Drive::State simulate(const Drive& drive, const Drive::State& start, const InputSchedule& schedule, Method method, const Rows& rows,
                       const Pause& pause) {
     Writer record{rows};
     const auto compiled = drive.compile();
-    if (method == Method::exponential) return run<double>(compiled, start, course, record, pause);
+    if (method == Method::exponential) return run<double>(compiled, start, schedule, record, pause);
     return run_specialised<double>(compiled, start, [&](const auto& special, const auto& from) {
         if (method == Method::rosenbrock)
-            return run_stepwise<double>(special, from, course, record, pause,
+            return run_stepwise<double>(special, from, schedule, record, pause,
                                         [](const auto& moved, const auto& at, const auto& u, double dt) {
                                             return moved.evaluate(integrate::rosenbrock_step(moved, at, u, dt), u.end);
                                         });
-        return run_compiled<double>(special, from, course, record, pause,
+        return run_compiled<double>(special, from, schedule, record, pause,
                                     [](const auto& moved, const auto& at, const auto& u, double dt) {
                                         return moved.evaluate(integrate::moreau_jean_step(moved, at, u, dt), u.end);
                                     });
@@ -56,7 +56,7 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
         const Evaluation start = system::up_to_date(drive, drive.evaluate(x, u.at(0.0, dt)), u.at(0.0, dt), missed(dt));
         if (has_bounds) check_bounds<double>(drive, start, begin);
         const auto within = [&](double done, double to, const Evaluation& end, const auto& standing_at) {
-            if (taken == most) throw StepsSpent{begin + done * dt, drive.vibration(0.0), drive.bristle_vibration()};
+            if (taken == most) throw StepsSpent{begin + done * dt, drive.natural_frequency(0.0), drive.bristle_frequency()};
             pauses(taken++, i);
             if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : ends.at[i + 1];
@@ -83,9 +83,9 @@ Drive::State simulate_adaptively(const Drive& drive, const Drive::State& start, 
     });
 }
 
-Tally<double> simulate_member(const Drive& drive, const Drive::State& start, const Course& course, double max_rate,
+Tally<double> simulate_member(const Drive& drive, const Drive::State& start, const InputSchedule& schedule, double max_rate,
                               const std::function<void(const Outputs<double>&)>& record, const Pause& pause) {
-    return run_from<double>(drive, [&](const auto&, const auto&) { return start; }, course, max_rate, record, pause);
+    return run_from<double>(drive, [&](const auto&, const auto&) { return start; }, schedule, max_rate, record, pause);
 }
 
 }  // namespace strainwave::host

@@ -22,7 +22,7 @@ public:
 
     template <class T>
     void operator()(T& member, const Field& field) const {
-        if constexpr (is_slots<std::remove_const_t<T>>) {
+        if constexpr (is_storage<std::remove_const_t<T>>) {
             const std::string place = path + field.name;
             drive.stateful_parts([&](const char* part, const auto& law) {
                 if (place == part) of_model(law, member, place);
@@ -38,11 +38,11 @@ public:
 
 private:
     template <class Law, class S, int n, Holds what, int few>
-    void of_model(const Law& law, const Slots<S, n, what, few>& slots, const std::string& part) const {
+    void of_model(const Law& law, const Storage<S, n, what, few>& slots, const std::string& part) const {
         of_model<what>(law, slots.slot, part);
     }
     template <class Law, class S, int n, Holds what, int few>
-    void of_model(const Law& law, Slots<S, n, what, few>& slots, const std::string& part) const {
+    void of_model(const Law& law, Storage<S, n, what, few>& slots, const std::string& part) const {
         of_model<what>(law, slots.slot, part);
     }
     template <Holds what, class Law, class Slot>
@@ -60,13 +60,13 @@ private:
             }
         }
     }
-    /// The numbers of a law, of which slots hold those from number `i` on.
+    /// The numbers of a law, of which storage hold those from number `i` on.
     template <Holds what, class Law, class Slot>
     void each(const Law& law, Slot& slot, int& i, const std::string& part, const std::string& before) const {
         using X = strainwave::detail::KeptIn<what, std::remove_cvref_t<decltype(slot[0])>, Law>;
         X names{};
         X::fields(names, [&]<class T>(const T& member, const Field& field) {
-            if constexpr (is_slots<T>) {  // of the law that this one holds: as many numbers as there is room for
+            if constexpr (is_storage<T>) {  // of the law that this one holds: as many numbers as there is room for
                 const int first = i;
                 law.law.visit([&](const auto& inner) { each<Holds::state>(inner, slot, i, part, before + field.name + "."); });
                 i = first + member.slot.size();

@@ -21,8 +21,9 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from strainwave import _core
-from strainwave.signals import outputs
-from strainwave.simulation import METHODS, Excitation, differentiate
+from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.run import METHODS, differentiate
+from strainwave.simulation.signals import outputs
 
 from tests.stress import MOST_STEPS, STEPS, acting_on, model, neighbours, step
 from tests.workers import answers
@@ -46,7 +47,7 @@ def digest(number: int) -> dict[str, str]:
     runs: dict[str, Callable[[], Any]] = {
         method: partial(sw.simulate, drive, volts, dt, method=method, **course) for method in METHODS
     }
-    runs["adaptive"] = partial(sw.simulate_adaptively, drive, volts, 1e-5, most_steps=MOST_STEPS, **course)
+    runs["adaptive"] = partial(sw.simulate_adaptively, drive, volts, 1e-5, max_steps=MOST_STEPS, **course)
     runs["many"] = partial(sw.simulate_many, drive, volts, varied, dt, record=list(outputs(drive)), **course)
     runs["derivatives"] = partial(differentiate, drive, Excitation(volts), free, dt, sample)
     return {kind: bits(run) for kind, run in runs.items()}

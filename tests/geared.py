@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import strainwave as sw
-from strainwave import _core, signals
-from strainwave.state import State
+from strainwave import _core
+from strainwave.simulation import signals
+from strainwave.simulation.state import State
 
 K, RATIO = 1e4, 20.0
 MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.12, inertia=1e-4)

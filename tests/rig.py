@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.gear_set import Entry, GearSet
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
 from strainwave.identify.measurement import read_measurement
 from strainwave.identify.twin import Twin
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from strainwave import _core
-from strainwave.signals import outputs
+from strainwave.simulation.signals import outputs
 
 
 def side_by_side(drives: Sequence[sw.Drive], command: sw.scenario.Scenario, dt: float, **others: Any) -> sw.Ensemble:

@@ -28,8 +28,9 @@ import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave import _core
-from strainwave.signals import load_input, outputs
-from strainwave.simulation import METHODS, Excitation
+from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.run import METHODS
+from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import has_memory, passive, speeds
 from tests.strategies import AROUND_ONE, TYPICAL, Field, kinds_of
@@ -111,7 +112,7 @@ def step(drive: sw.Drive, random: np.random.Generator) -> float:
     """As users take it [s], or so that it follows the gear's vibration, mostly."""
     if random.random() < 0.5:
         return float(10.0 ** random.uniform(-5.0, -3.5))
-    return float(10.0 ** random.uniform(-2.0, 0.2)) / _core.vibration(drive, 0.0)
+    return float(10.0 ** random.uniform(-2.0, 0.2)) / _core.natural_frequency(drive, 0.0)
 
 
 @dataclass(frozen=True)
@@ -137,13 +138,13 @@ def outcome(number: int) -> Outcome:
     acting = {"inputs": acting_on(drive, random)}
     course: dict[str, Any] = {**acting, "sample": 20.0 * dt}
     excitation = Excitation.of(drive, volts, **acting)
-    inputs = excitation.over(excitation.course(dt, None))[-1, -1]
+    inputs = excitation.over(excitation.time_grid(dt, None))[-1, -1]
     method: Any = (*METHODS, None)[random.integers(len(METHODS) + 1)]
     began = time.perf_counter()
     said = {method or "chosen": words(lambda: check(drive, sw.simulate(drive, volts, dt, method=method, **course), inputs))}
     if number % 5 == 0:
         rtol = float(10.0 ** random.uniform(-8.0, -3.0))
-        options = {"most_steps": MOST_STEPS, **course}
+        options = {"max_steps": MOST_STEPS, **course}
         said["adaptive"] = words(lambda: check(drive, sw.simulate_adaptively(drive, volts, rtol, **options), inputs))
     if number % 5 == 1:
         said["many"] = words(lambda: beside_others(drive, neighbours(drive, random), volts, dt, course))

@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from strainwave import _core
-from strainwave.signals import actuation, load_input, outputs
+from strainwave.simulation.signals import actuation, load_input, outputs
 
 from tests.laws.test_gear import PLACES, cannot_create_energy, has_memory
 from tests.stress import model
@@ -64,11 +64,11 @@ class Excited:
         acting = random.uniform(1.0, 48.0), random.uniform(10.0, 100.0), random.normal(0.0, 10.0)
         return cls(drive, *acting, math.exp(random.uniform(math.log(TIGHTEST), math.log(LOOSEST))))
 
-    def run(self, share: float = 1.0, change: float = 0.0, most_steps: int = MOST_STEPS) -> sw.Recording:
+    def run(self, share: float = 1.0, change: float = 0.0, max_steps: int = MOST_STEPS) -> sw.Recording:
         """To a share of the tolerance, its inputs changed by a share."""
         command = sw.scenario.sine(self.amplitude * (1.0 + change), self.frequency, DURATION)
         load = self.load_torque * (1.0 - change)
-        limits: dict[str, Any] = {"rtol": self.rtol * share, "atol": ATOL, "most_steps": most_steps}
+        limits: dict[str, Any] = {"rtol": self.rtol * share, "atol": ATOL, "max_steps": max_steps}
         return sw.simulate_adaptively(self.drive, command, sample=1e-3, inputs=self.acting(load), **limits)
 
     def run_in_steps(self, dt: float) -> sw.Recording:
@@ -96,7 +96,7 @@ def at_limit(drive: sw.Drive, run: sw.Recording) -> bool:
 
 def calm(drive: sw.Drive) -> bool:
     """Whether its gear reduces the speed, makes no energy, and vibrates with its bristles no faster than `FASTEST`."""
-    fastest = max(_core.vibration(drive, 1e-3), _core.bristle_vibration(drive))
+    fastest = max(_core.natural_frequency(drive, 1e-3), _core.bristle_frequency(drive))
     return 30.0 <= abs(drive.gear.kinematics.ratio) <= 320.0 and fastest < FASTEST and cannot_create_energy(drive.gear)
 
 

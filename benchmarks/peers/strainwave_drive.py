@@ -17,7 +17,7 @@ from peers import Crowd, Peer
 
 if TYPE_CHECKING:
     import strainwave as sw
-    from strainwave.simulation import Method
+    from strainwave.simulation.run import Method
 
     Task = Callable[[], tuple[sw.Drive, sw.scenario.Scenario]]
 

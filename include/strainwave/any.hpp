@@ -13,12 +13,12 @@
 /// the models, not with their product.
 namespace strainwave {
 
-/// What numbers of a model slots hold: those that change continuously or that it remembers, at instants only, or for recordings.
+/// What numbers of a model storage hold: those that change continuously or that it remembers, at instants only, or for recordings.
 enum class Holds { state, discrete, output };
 
 /// Numbers of whichever model was chosen, of which it has at most n. Up to `few` are all carried along; of more, those it has.
 template <class S, int n, Holds what = Holds::state, int few = 4>
-struct Slots {
+struct Storage {
     std::conditional_t<(n <= few), Array<S, (n > 0 ? n : 1)>, Counted<S, n>> slot{};
 
     template <class Self, class Visit>
@@ -28,9 +28,9 @@ struct Slots {
 };
 
 template <class T>
-inline constexpr bool is_slots = false;
+inline constexpr bool is_storage = false;
 template <class S, int n, Holds what, int few>
-inline constexpr bool is_slots<Slots<S, n, what, few>> = true;
+inline constexpr bool is_storage<Storage<S, n, what, few>> = true;
 
 template <class S, class... Law>
 struct Choice;
@@ -124,9 +124,9 @@ struct Choice {
     std::variant<Law...> model{};
 
     template <Holds what, int few = 4>
-    using SlotsFor = Slots<S, std::max({detail::kept_size<what, S, Law>()...}), what, few>;
-    using State = SlotsFor<Holds::state, (detail::mostly_stateless<Law> || ...) ? 0 : 4>;
-    using Output = SlotsFor<Holds::output>;
+    using StorageFor = Storage<S, std::max({detail::kept_size<what, S, Law>()...}), what, few>;
+    using State = StorageFor<Holds::state, (detail::mostly_stateless<Law> || ...) ? 0 : 4>;
+    using Output = StorageFor<Holds::output>;
 
     /// f of the model chosen. A chain of comparisons, which inlines where a table of functions would not.
     template <int i = 0, class F>
@@ -210,11 +210,11 @@ struct Choice {
     constexpr Discrete sampled(const Discrete& x, const S& within, const control::Command<S>& command,
                                const control::Measurement<S>& measured) const {
         return visit(
-            [&](const auto& law) { return slotted<Discrete>(control::sampled(law, own(law, x), within, command, measured)); });
+            [&](const auto& law) { return put_in<Discrete>(control::sampled(law, own(law, x), within, command, measured)); });
     }
     template <class Discrete>
     constexpr Discrete elapsed(const Discrete& x, const S& dt) const {
-        return visit([&](const auto& law) { return slotted<Discrete>(control::elapsed(law, own(law, x), dt)); });
+        return visit([&](const auto& law) { return put_in<Discrete>(control::elapsed(law, own(law, x), dt)); });
     }
     template <class Discrete>
     constexpr bool due(const Discrete& x, const S& within) const {
@@ -226,12 +226,12 @@ struct Choice {
     }
     constexpr auto initial_discrete() const {
         using Discrete = control::DiscreteOf<S, Choice>;
-        return visit([]<class Chosen>(const Chosen&) { return slotted<Discrete>(control::DiscreteOf<S, Chosen>{}); });
+        return visit([]<class Chosen>(const Chosen&) { return put_in<Discrete>(control::DiscreteOf<S, Chosen>{}); });
     }
 
     // What a motor shows of itself in recordings.
     constexpr Output output(const State& x, const S& actuation, const S& speed) const {
-        return visit([&](const auto& law) { return slotted<Output>(law.output(own(law, x), actuation, speed)); });
+        return visit([&](const auto& law) { return put_in<Output>(law.output(own(law, x), actuation, speed)); });
     }
 
     // Friction, modulated or not.
@@ -287,18 +287,18 @@ struct Choice {
     }
 
 private:
-    // A state is nothing but scalars, so it fits the slots as it lies in memory. Slots that hold none stand for no history.
+    // A state is nothing but scalars, so it fits the slots as it lies in memory. Storage that hold none stand for no history.
     template <class Model, class T>
     static auto own(const Model&, const T& argument) {
-        if constexpr (is_slots<T>)
-            return from_slots<Model>(argument);
+        if constexpr (is_storage<T>)
+            return taken_from<Model>(argument);
         else
             return argument;
     }
     template <class Model, int n, Holds what, int few>
-    static auto from_slots(const Slots<S, n, what, few>& slots) {
+    static auto taken_from(const Storage<S, n, what, few>& slots) {
         using X = detail::KeptIn<what, S, Model>;
-        if constexpr (std::is_same_v<X, Slots<S, n, what, few>>) {  // a law that varies another has its state
+        if constexpr (std::is_same_v<X, Storage<S, n, what, few>>) {  // a law that varies another has its state
             return slots;
         } else {
             X x{};
@@ -314,10 +314,10 @@ private:
         if constexpr (std::is_same_v<Result, State> || !requires { requires std::is_same_v<Result, typename Model::State>; })
             return result;
         else
-            return slotted<State>(result);
+            return put_in<State>(result);
     }
     template <class Filled, class X>
-    static Filled slotted(const X& x) {
+    static Filled put_in(const X& x) {
         Filled slots{};
         if constexpr (std::is_same_v<Filled, X>) {
             slots = x;
@@ -386,7 +386,7 @@ namespace control::detail {
 template <class S, class... Law>
     requires(requires { typename Law::Discrete; } || ...)
 struct DiscreteOf<S, Choice<S, Law...>> {
-    using type = typename Choice<S, Law...>::template SlotsFor<Holds::discrete>;
+    using type = typename Choice<S, Law...>::template StorageFor<Holds::discrete>;
 };
 }  // namespace control::detail
 

@@ -57,7 +57,7 @@ template <class S, class MotorState, class ControlState, class SensorsState, cla
 struct Continuous {
     MotorState motor{};
     ControlState control{};
-    [[no_unique_address]] SensorsState sensors{};  // most have no state
+    SensorsState sensors{};
     S input_angle{0.0};
     S input_speed{0.0};
     S transmission_error{0.0};
@@ -84,7 +84,7 @@ struct Continuous {
 /// What changes at instants only.
 template <class S, class ControlDiscrete>
 struct Discrete {
-    [[no_unique_address]] ControlDiscrete control{};
+    ControlDiscrete control{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -96,7 +96,7 @@ struct Discrete {
 template <class S, class Continuous, class Discrete, class HysteresisState>
 struct State {
     Continuous continuous{};
-    [[no_unique_address]] Discrete discrete{};
+    Discrete discrete{};
     HysteresisState hysteresis{};
     S held_twist{0.0};
     S held_rate{0.0};
@@ -418,7 +418,7 @@ struct Drive {
     }
 
     /// The fastest angular frequency [rad/s] of the gear's own vibration at twists up to `twist` [rad].
-    constexpr S vibration(const S& twist) const {
+    constexpr S natural_frequency(const S& twist) const {
         const S inverse = gear.kinematics.inverse_ratio();
         return sqrt(gear.steepest(twist) * (S(1.0) / output_inertia() + inverse * inverse / input_inertia()));
     }
@@ -443,10 +443,10 @@ struct Drive {
 
     /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the gear's own vibration at twists up to `twist`
     /// [rad], or the decay of speeds. Of the latter a Runge-Kutta step of fourth order bears 2.78 times its length.
-    constexpr S fastest(const S& twist) const { return max(vibration(twist), damping() / S(2.5)); }
+    constexpr S max_rate(const S& twist) const { return max(natural_frequency(twist), damping() / S(2.5)); }
 
     /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
-    constexpr S bristle_vibration() const {
+    constexpr S bristle_frequency() const {
         const S inverse = gear.kinematics.inverse_ratio();
         const S input = presliding_stiffness(gear.friction_input) + presliding_stiffness(gear.friction_mesh) * inverse * inverse;
         return sqrt(max(input / input_inertia(), presliding_stiffness(gear.friction_output) / output_inertia()));

@@ -29,47 +29,50 @@ from strainwave._core import (
 )
 
 if TYPE_CHECKING:
-    from strainwave import scenario
-    from strainwave.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
-    from strainwave.gear_set import GearSet, catalogue, load, save
+    from strainwave.analysis.linear import Linearisation, linearise
+    from strainwave.analysis.response import FrequencyResponse, frequency_response
+    from strainwave.analysis.sensitivity import Derivatives, derivatives
+    from strainwave.analysis.steady import equilibrium
+    from strainwave.files.entries import Entry, Quantity
+    from strainwave.files.gear_set import GearSet, catalogue, load, save
+    from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
+    from strainwave.files.recording import Recording
     from strainwave.identify.fit import Fit, fit
     from strainwave.identify.twin import Twin, twin
-    from strainwave.linear import LinearView, linearise
-    from strainwave.ratings import RatingCheck, RatingWarning, check_ratings
-    from strainwave.recording import Recording
-    from strainwave.response import FrequencyResponse, frequency_response
-    from strainwave.sensitivity import Derivatives, derivatives
-    from strainwave.simulation import Run, simulate, simulate_adaptively
-    from strainwave.steady import equilibrium
+    from strainwave.simulation import scenario
+    from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
+    from strainwave.simulation.run import Run, simulate, simulate_adaptively
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
-    "Derivatives": "sensitivity",
-    "Ensemble": "ensemble",
-    "EnsembleWarning": "ensemble",
+    "Derivatives": "analysis.sensitivity",
+    "Ensemble": "simulation.ensemble",
+    "Entry": "files.entries",
+    "EnsembleWarning": "simulation.ensemble",
     "Fit": "identify.fit",
-    "FrequencyResponse": "response",
-    "GearSet": "gear_set",
-    "LinearView": "linear",
-    "RatingCheck": "ratings",
-    "RatingWarning": "ratings",
-    "Recording": "recording",
-    "Run": "simulation",
+    "FrequencyResponse": "analysis.response",
+    "GearSet": "files.gear_set",
+    "Linearisation": "analysis.linear",
+    "RatingCheck": "files.ratings",
+    "RatingWarning": "files.ratings",
+    "Quantity": "files.entries",
+    "Recording": "files.recording",
+    "Run": "simulation.run",
     "Twin": "identify.twin",
-    "catalogue": "gear_set",
-    "check_ratings": "ratings",
-    "derivatives": "sensitivity",
-    "equilibrium": "steady",
+    "catalogue": "files.gear_set",
+    "check_ratings": "files.ratings",
+    "derivatives": "analysis.sensitivity",
+    "equilibrium": "analysis.steady",
     "fit": "identify.fit",
-    "frequency_response": "response",
-    "linearise": "linear",
-    "load": "gear_set",
-    "save": "gear_set",
-    "scenario": "scenario",
-    "simulate": "simulation",
-    "simulate_adaptively": "simulation",
-    "simulate_many": "ensemble",
-    "simulate_to": "ensemble",
+    "frequency_response": "analysis.response",
+    "linearise": "analysis.linear",
+    "load": "files.gear_set",
+    "save": "files.gear_set",
+    "scenario": "simulation.scenario",
+    "simulate": "simulation.run",
+    "simulate_adaptively": "simulation.run",
+    "simulate_many": "simulation.ensemble",
+    "simulate_to": "simulation.ensemble",
     "twin": "identify.twin",
 }
 
@@ -78,12 +81,14 @@ __all__ = [
     "Drive",
     "Ensemble",
     "EnsembleWarning",
+    "Entry",
     "Fit",
     "FrequencyResponse",
     "Gear",
     "GearSet",
-    "LinearView",
+    "Linearisation",
     "PassivityWarning",
+    "Quantity",
     "RatingCheck",
     "RatingWarning",
     "Recording",
@@ -122,7 +127,7 @@ def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'strainwave' has no attribute {name!r}")
     module = import_module(f"strainwave.{_LAZY[name]}")
-    return module if _LAZY[name] == name else getattr(module, name)
+    return module if name == "scenario" else getattr(module, name)
 
 
 def __dir__() -> list[str]:

@@ -27,7 +27,7 @@ import strainwave.kinematics
 import strainwave.loads
 import strainwave.motor
 import strainwave.sensor
-import strainwave.state
+import strainwave.simulation.state
 import strainwave.stiffness
 
 
@@ -59,7 +59,7 @@ def grid(step: float, duration: float, tolerance: float) -> numpy.typing.NDArray
     0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.
     """
 
-def course(steps: numpy.typing.NDArray[numpy.float64], samples: numpy.typing.NDArray[numpy.float64], breaks: numpy.typing.NDArray[numpy.float64], tolerance: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8], float]:
+def time_grid(steps: numpy.typing.NDArray[numpy.float64], samples: numpy.typing.NDArray[numpy.float64], breaks: numpy.typing.NDArray[numpy.float64], tolerance: float) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8], float]:
     """
     All instants in order, whatever is within `tolerance` of its neighbour being one, which of them are samples, and the longest step from one to the next.
     """
@@ -351,15 +351,15 @@ class Drive:
 
     fields: tuple[dict[str, Any], ...]
 
-    def rest(self) -> strainwave.state.State:
+    def rest(self) -> strainwave.simulation.state.State:
         """The state at rest, untwisted and without history, input angle 0."""
 
-    def step(self, state: strainwave.state.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, output_angle: float = 0.0, output_speed: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave.state.State:
+    def step(self, state: strainwave.simulation.state.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, output_angle: float = 0.0, output_speed: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave.simulation.state.State:
         """
         The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
         """
 
-channels: int = 16
+output_count: int = 16
 
 def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]:
     """
@@ -382,17 +382,17 @@ def schedule(drive: Drive, state: numpy.typing.NDArray[numpy.float64]) -> tuple[
     When a sampled controller acts: time to its next sample, period and delay [s]. A period of 0: it acts all the time.
     """
 
-def vibration(drive: Drive, twist: float) -> float:
+def natural_frequency(drive: Drive, twist: float) -> float:
     """
     The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].
     """
 
-def fastest(drive: Drive, twist: float) -> float:
+def max_rate(drive: Drive, twist: float) -> float:
     """
     The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's vibration, or the decay of speeds.
     """
 
-def bristle_vibration(drive: Drive) -> float:
+def bristle_frequency(drive: Drive) -> float:
     """
     The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
     """
@@ -481,14 +481,14 @@ def simulate(drive: Drive, start: numpy.typing.NDArray[numpy.float64], instants:
     The state at the end; the outputs go to `out`, shape (recorded, samples), from sample `first` on.
     """
 
-def simulate_adaptively(drive: Drive, start: numpy.typing.NDArray[numpy.float64], command: Signal, load: Signal, temperature: Signal, ends: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, most_steps: int, samples: numpy.typing.NDArray[numpy.float64], recorded: Sequence[int], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], int, int]:
+def simulate_adaptively(drive: Drive, start: numpy.typing.NDArray[numpy.float64], command: Signal, load: Signal, temperature: Signal, ends: numpy.typing.NDArray[numpy.float64], relative: float, absolute: float, max_steps: int, samples: numpy.typing.NDArray[numpy.float64], recorded: Sequence[int], out: numpy.typing.NDArray[numpy.float64], first: int, progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], int, int]:
     """
     The state at the end, steps taken and steps given up. Steps end at all of `ends` [s], between which no signal jumps; the outputs at `samples` [s] go to `out`, shape (recorded, samples), from sample `first` on.
     """
 
-def simulate_many(drive: Drive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], initial: tuple[Sequence[int], numpy.typing.NDArray[numpy.float64]] | None, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], fastest: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
+def simulate_many(drive: Drive, numbers: Sequence[int], values: numpy.typing.NDArray[numpy.float64], initial: tuple[Sequence[int], numpy.typing.NDArray[numpy.float64]] | None, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], recorded: Sequence[int], max_rate: float, threads: int, out: numpy.typing.NDArray[numpy.float64], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], dict[int, str]]:
     """
-    Runs members, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `fastest` at rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin at rest if there is none.
+    Runs members, whose outputs go to `out`, shape (recorded, members, 1 + kept). Of each: whether it ran and no output, recorded or not, is beyond `largest`, its largest twist [rad], the fastest that steps had to follow up to there, and the vibration of a shaft on its bristles [rad/s]; and why members ended early, if any did. `values`, shape (numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `max_rate` at rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin at rest if there is none.
     """
 
 def instruction_set() -> str:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
 
-from strainwave.messages import one_line, unquoted
+from strainwave.messages import one_line, unquoted, with_options
 
 if TYPE_CHECKING:
-    from strainwave.gear_set import GearSet
+    from strainwave.files.gear_set import GearSet
     from strainwave.identify.measurement import Kind
     from strainwave.identify.twin import Twin
     from strainwave.report.twin import Provenance
@@ -82,13 +82,15 @@ def twin(
     can, a part of it is held out to validate, and the report says what remains unknown. Where a measurement cannot be what it
     is taken for, or the model does not explain it, that is said first, no gear is written, and the exit code is 3.
     """
-    from strainwave.gear_set import GearSet
+    from strainwave.files.gear_set import GearSet
     from strainwave.identify.measurement import COLUMNS, columns_in, read_measurements, unused_columns
     from strainwave.identify.twin import twin as identify
     from strainwave.report.twin import twin_report
 
     given: dict[Kind, Path | None] = {"friction": friction, "torsion": torsion, "log": log}
     files = {kind: path for kind, path in given.items() if path is not None}
+    if not files:
+        raise ValueError(f"twin needs at least one measurement: {', '.join(f'--{kind} FILE' for kind in given)}")
     known = {name for kind in files for name in COLUMNS[kind]}
     columns, units = _pairs("--column", column, known), _pairs("--unit", unit, known)
     with _stages() as stage:
@@ -140,7 +142,7 @@ def gears(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> 
     """List the catalogue sets."""
     from difflib import get_close_matches
 
-    from strainwave.gear_set import catalogue
+    from strainwave.files.gear_set import catalogue
 
     names = catalogue()
     found = [name for name in names if part.lower() in name]
@@ -194,8 +196,8 @@ def _provenance(files: Iterable[Path]) -> Provenance:
 
 def _write(folder: Path, gear_set: GearSet | None, report: str) -> None:
     """Both files or none, the gear only if there is one. An interrupt that comes while they are written changes nothing."""
-    from strainwave import gear_file
-    from strainwave.files import making, write_all
+    from strainwave.files import gear_file
+    from strainwave.files.writing import making, write_all
 
     contents = {folder / "report.html": report}
     if gear_set is not None:
@@ -250,7 +252,7 @@ def main() -> None:
         with redirect_stdout(said):
             app()
     except (ValueError, TypeError, OSError, FloatingPointError) as error:
-        _print(f"strainwave: {one_line(str(error))}\n", sys.stderr)
+        _print(f"strainwave: {one_line(with_options(str(error)))}\n", sys.stderr)
         sys.exit(REFUSED)
     finally:
         _print(said.getvalue(), sys.stdout)

@@ -10,12 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from strainwave import Drive, scenario
+from strainwave import Drive
+from strainwave.files.recording import Recording
 from strainwave.identify.twin import Twin, twin
-from strainwave.recording import Recording
-from strainwave.report.experiment import Experiment, Figure
-from strainwave.scenario import Scenario
-from strainwave.simulation import simulate
+from strainwave.report.experiment import Figure, SimulatedExperiment
+from strainwave.simulation import scenario
+from strainwave.simulation.run import simulate
+from strainwave.simulation.scenario import Scenario
 
 PUBLISHED = Path(__file__).with_name("published")
 
@@ -60,7 +61,7 @@ def torsion_rig() -> Twin:
     )
 
 
-def experiments(found: Twin) -> list[Experiment]:
+def experiments(found: Twin) -> list[SimulatedExperiment]:
     """Document P's experiments with the twin, with the friction that contradicts it, and with document P's own drive."""
     drive, printed = found.gear_set.drive, found.start.drive
     earlier = drive.gear.replace(friction_input=printed.gear.friction_input)
@@ -72,11 +73,11 @@ def experiments(found: Twin) -> list[Experiment]:
     return [_experiment(name, command, drives) for name, command in commands().items()]
 
 
-def _experiment(name: str, command: Scenario, drives: dict[str, Drive]) -> Experiment:
+def _experiment(name: str, command: Scenario, drives: dict[str, Drive]) -> SimulatedExperiment:
     runs = tuple((label, simulate(drive, command, sample=2e-3)) for label, drive in drives.items())
     figures = zip(*(_figures(run) for _, run in runs), strict=True)
     names = (("root mean square error", "rad"), ("largest error", "rad"), ("correlation coefficient", "1"))
-    return Experiment(
+    return SimulatedExperiment(
         name=name,
         remark=REMARK,
         runs=runs,

@@ -5,6 +5,7 @@ All messages that repeat something from a file, a command line or an argument us
 
 from __future__ import annotations
 
+import re
 import reprlib
 import shlex
 from collections.abc import Iterable
@@ -71,6 +72,19 @@ def as_option(option: str, name: str, value: str) -> str:
     """
     command = shlex.quote(f"{unquoted(name)}={unquoted(value)}")
     return f"--{option} {command} (in Python {option}s={{{quoted(name)}: {quoted(value)}}})"
+
+
+def with_options(message: str) -> str:
+    """A message as the command line says it: with options and commands in place of arguments and functions of Python.
+
+    >>> print(with_options("name it like " + as_option("column", "speed", "v")))
+    name it like --column speed=v
+    >>> print(with_options('side = "middle" must be one of input, output'))
+    --side middle must be one of input, output
+    """
+    told = re.sub(r" \(in Python \w+=\{.*?\}\)", "", message)
+    told = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", told)
+    return told.replace("strainwave.catalogue() lists all", "`strainwave gears` lists all")
 
 
 def _escaped(character: str) -> str:

@@ -16,8 +16,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
-from strainwave.signals import load_input, outputs
-from strainwave.simulation import Excitation, differentiate
+from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.run import differentiate
+from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import DRIVE, EVERY_PART, cannot_create_energy, laws, reduced_gears
 from tests.side_by_side import side_by_side

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
-from strainwave.signals import outputs
-from strainwave.simulation import Excitation, differentiate
+from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.run import differentiate
+from strainwave.simulation.signals import outputs
 
 from tests.reference_drive import DRIVE, command
 from tests.side_by_side import side_by_side

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import strainwave as sw
-from strainwave.simulation import Excitation
+from strainwave.simulation.excitation import Excitation
 
 from tests.stress import WRONG, check, outcome, outcomes
 from tests.workers import HANGS
@@ -44,7 +44,7 @@ def test_a_recording_that_contradicts_itself_is_told(column: str, said: str) -> 
     """A run that is right, and the same with a column turned round; its end too but where the end is looked at."""
     volts = Excitation(sw.scenario.constant(1.0, 0.01))
     run = sw.simulate(SLIDING, volts.command, 1e-4)
-    inputs = volts.over(volts.course(1e-4, None))[-1, -1]
+    inputs = volts.over(volts.time_grid(1e-4, None))[-1, -1]
     check(SLIDING, run, inputs)
     turned = {name: -run[name] if name == column else run[name].copy() for name in run.names}
     if column != "current":
@@ -58,4 +58,4 @@ def test_what_sticks_and_moves_is_told() -> None:
     run = sw.simulate(SLIDING, volts.command, 1e-4)
     held = sw.Run({name: run[name] for name in run.names}, run.units, run.end.replace(input_slip_direction=0.0), run.method)
     with pytest.raises(AssertionError, match=r"^WRONG: the input sticks and moves$"):
-        check(SLIDING, held, volts.over(volts.course(1e-4, None))[-1, -1])
+        check(SLIDING, held, volts.over(volts.time_grid(1e-4, None))[-1, -1])

@@ -104,6 +104,14 @@ def test_a_fast_one_is_the_law_itself() -> None:
     assert errors[0] == pytest.approx(2.0 * errors[1], rel=0.2)  # of first order in the period
 
 
+def test_a_run_shorter_than_a_period_ends_when_it_should() -> None:
+    slow = drive(period=0.5, delay=0.1)
+    run = sw.simulate(slow, sw.scenario.constant(0.1, 0.01), initial={"output_angle": 0.1})
+    assert run.time[-1] == 0.01
+    assert run.end["control.until_sample"] == pytest.approx(0.49)
+    assert not run["voltage"].any()
+
+
 @pytest.mark.parametrize("path", ["control.period", "control.delay"])
 def test_time_is_no_number_of_a_run(path: str) -> None:
     with pytest.raises(ValueError, match="must be that of the drive for all members"):

@@ -18,21 +18,24 @@ from typing import Any, NamedTuple
 import numpy as np
 import strainwave as sw
 from numpy.random import Generator
-from strainwave.gear_set import Quantity
+from strainwave.files.entries import Quantity
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
 from tests.strategies import made as usual_of
 
-MODULES = ("units", "gear_set", "parameters", "scenario", "recording", "identify.experiment", "identify.inverse_dynamics")
+MODULES = (
+    *("files.units", "files.gear_set", "files.entries", "files.recording", "parameters", "simulation.scenario"),
+    *("identify.experiment", "identify.inverse_dynamics"),
+)
 LAWS = ("friction", "hysteresis", "kinematic_error", "stiffness")
 METHODS = ("__getitem__", "__contains__", "__eq__", "__add__", "__sub__", "__mul__", "__rmul__")
 # Results, which only the package makes; what it says to itself; and what has a kind of its own.
-RESULTS = ("Derivatives", "Ensemble", "Fit", "FrequencyResponse", "LinearView", "RatingCheck", "Run", "Twin")
+RESULTS = ("Derivatives", "Ensemble", "Fit", "FrequencyResponse", "Linearisation", "RatingCheck", "Run", "Twin")
 NOT_CALLED = {
     *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning", "twin")),
-    *(f"gear_set.{name}" for name in ("own_paths", "parameters", "parts", "Part", "Parameter", "default_of")),
+    "files.entries.check_line",
     *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter")),
     *(
         f"identify.experiment.{name}"
@@ -43,8 +46,8 @@ NOT_CALLED = {
     *(f"experiment.{name}.predict" for name in ("DriveLog", "FrictionTable", "TorsionLoop")),
     "experiment.TorsionLoop.path",
     "fit.Fit.rms",
-    "scenario.Wave",
-    *(f"recording.{name}" for name in ("envelope", "check_recording")),
+    "simulation.scenario.Wave",
+    *(f"files.recording.{name}" for name in ("envelope", "check_recording")),
 }
 
 SCALARS = (
@@ -93,8 +96,8 @@ def valid() -> Mapping[str, Any]:
     return {
         "drive": drive, "command": command, "parameters": ["load.inertia"], "dt": 1e-3, "sample": 2e-3, "load_torque": 0.1,
         "temperature": 300.0, "start": drive.rest(), "state": drive.rest(), "method": "exponential", "progress": False,
-        "rtol": 1e-6, "atol": 1e-9, "most_steps": 500, "record": ["torque"], "threads": 1, "folder": "members",
-        "frequency": 50.0, "amplitude": 0.1, "input": "command", "tolerance": 1e-2, "most_periods": 3, "command_rate": 0.0,
+        "rtol": 1e-6, "atol": 1e-9, "max_steps": 500, "record": ["torque"], "threads": 1, "folder": "members",
+        "frequency": 50.0, "amplitude": 0.1, "input": "command", "tolerance": 1e-2, "max_periods": 3, "command_rate": 0.0,
         "duration": 1.0, "value": 1.0, "rate": 1.0, "phase": 0.0, "offset": 0.0, "start_frequency": 1.0, "stop_frequency": 2.0,
         "period": 0.1, "width": 0.05, "time": [0.0, 0.5, 1.0], "unit": "s", "to": "min", "values": [1.0, 2.0], "name": "speed",
         "names": ["speed"], "stop": 1.0, "columns": {"time": [0.0, 1.0]}, "units": {"time": "s"}, "title": "run",

@@ -11,7 +11,7 @@ import numpy as np
 import strainwave as sw
 from numpy.random import Generator
 from strainwave import _core
-from strainwave.simulation import METHODS
+from strainwave.simulation.run import METHODS
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
@@ -64,7 +64,7 @@ def _run(drive: Any, random: Generator, inputs: dict[str, float]) -> sw.Run:
 
 def _run_adaptively(drive: Any, random: Generator, inputs: dict[str, float]) -> sw.Run:
     dt = _step(drive, random)
-    return sw.simulate_adaptively(drive, sw.scenario.sine(5.0, 0.05 / dt, 20.0 * dt), sample=dt, most_steps=300, **inputs)
+    return sw.simulate_adaptively(drive, sw.scenario.sine(5.0, 0.05 / dt, 20.0 * dt), sample=dt, max_steps=300, **inputs)
 
 
 def _run_many(drive: Any, random: Generator, inputs: dict[str, float]) -> sw.Ensemble:
@@ -89,7 +89,7 @@ def _linearise(drive: Any, random: Generator, inputs: dict[str, float]) -> Any:
 
 
 def _respond(drive: Any, random: Generator, inputs: dict[str, float]) -> Any:
-    answer = sw.frequency_response(drive, 10.0, abs(_size(random)), most_periods=3, dt=1e-3, **inputs)
+    answer = sw.frequency_response(drive, 10.0, abs(_size(random)), max_periods=3, dt=1e-3, **inputs)
     return list(answer.responses.values())
 
 
@@ -101,7 +101,7 @@ _LOOKS: tuple[tuple[str, Callable[[Any, Generator, dict[str, float]], Any]], ...
 
 def _step(drive: Any, random: Generator) -> float:
     """One that follows the drive as it lies at rest, mostly, as long as that is no step of no use."""
-    fastest = _core.fastest(drive, 0.0)
+    fastest = _core.max_rate(drive, 0.0)
     return float(np.clip(0.1 / fastest, 1e-9, 1e-2)) if fastest > 0.0 and random.random() < 0.8 else 2e-4
 
 

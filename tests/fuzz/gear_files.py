@@ -8,7 +8,8 @@ from tempfile import TemporaryDirectory
 
 import strainwave as sw
 from numpy.random import Generator
-from strainwave.gear_set import CATALOGUE, Entry, Quantity
+from strainwave.files.entries import Entry, Quantity
+from strainwave.files.gear_set import CATALOGUE
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import encoded, mutated, picked

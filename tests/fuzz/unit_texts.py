@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from numpy.random import Generator
-from strainwave import units
+from strainwave.files import units
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import TEXTS, picked

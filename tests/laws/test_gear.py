@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.friction import LuGre, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
-from strainwave.signals import outputs
+from strainwave.simulation.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
 from tests.strategies import built, drives, gears, made, models, suited
@@ -375,4 +375,4 @@ def test_what_sticks_holds_no_more_than_its_breakaway(
 @given(drives, st.floats(0.0, 1e9))
 def test_a_drive_is_never_slower_at_large_twists_than_at_rest(drive: Drive, twist: float) -> None:
     """Else a run away to them would be taken for one that its steps can follow."""
-    assert _core.fastest(drive, twist) >= _core.fastest(drive, 0.0)
+    assert _core.max_rate(drive, twist) >= _core.max_rate(drive, 0.0)

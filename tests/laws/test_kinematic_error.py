@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.kinematic_error import Fourier
-from strainwave.signals import outputs
+from strainwave.simulation.signals import outputs
 
 from tests.strategies import built, models
 

@@ -16,7 +16,8 @@ import pytest
 import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
-from strainwave import _core, units
+from strainwave import _core
+from strainwave.files import units
 
 from tests.strategies import Field, drives, gears, models, usual
 

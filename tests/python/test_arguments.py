@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import arguments
-from strainwave.state import start_of
+from strainwave.simulation.state import start_of
 
 DRIVE = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
 COMMAND = sw.scenario.step(0.1, 0.01)
@@ -151,7 +151,7 @@ def functions(**given: Any) -> list[Callable[[], object]]:
         sw.simulate_many: ((DRIVE, COMMAND, MEMBERS), {"dt", "sample", "threads"}),
         sw.frequency_response: (
             (DRIVE, 20.0) + (() if name == "amplitude" else (0.01,)),
-            {"amplitude", "command", "load_torque", "temperature", "dt", "tolerance", "most_periods", "start"},
+            {"amplitude", "command", "load_torque", "temperature", "dt", "tolerance", "max_periods", "start"},
         ),
         sw.equilibrium: ((DRIVE,), {"command", "load_torque", "temperature", "start"}),
         sw.linearise: ((DRIVE,), {"state", "command", "command_rate", "load_torque", "temperature"}),
@@ -177,7 +177,7 @@ def test_every_function_wants_numbers_that_are_some(name: str) -> None:
             call()
 
 
-@pytest.mark.parametrize(("name", "low"), [("threads", 1), ("most_periods", 2)])
+@pytest.mark.parametrize(("name", "low"), [("threads", 1), ("max_periods", 2)])
 def test_every_function_wants_whole_numbers_where_it_counts(name: str, low: int) -> None:
     for call in functions(**{name: 3.5}):
         with pytest.raises(TypeError, match=exactly(f"{name} must be a whole number, not 3.5")):

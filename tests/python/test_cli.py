@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave import _core, cli, gear_set
+from strainwave import _core, cli
 from strainwave.cli import main
+from strainwave.files import gear_set
 
 GOOD_TABLE = "speed [rad/s],torque [N.m]\n1,0.021\n5,0.024\n10,0.026\n20,0.031\n50,0.046\n100,0.07\n"
 GOOD_LOOP = "twist [mrad],torque [N.m]\n" + "".join(

@@ -16,10 +16,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from strainwave import _core
+from strainwave.analysis.steady import Rates
 from strainwave.equality import ComparedByFields, equal
-from strainwave.report.experiment import Experiment, Figure
-from strainwave.simulation import Excitation
-from strainwave.steady import Rates
+from strainwave.report.experiment import Figure, SimulatedExperiment
+from strainwave.simulation.excitation import Excitation
 
 from tests.strategies import made as usual
 
@@ -33,14 +33,14 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "Run": lambda: RUN,
     "Scenario": lambda: COMMAND,
     "Excitation": lambda: Excitation(COMMAND),
-    "Course": lambda: Excitation(COMMAND).course(1e-3, 2e-3),
+    "TimeGrid": lambda: Excitation(COMMAND).time_grid(1e-3, 2e-3),
     "Ensemble": lambda: sw.simulate_many(DRIVE, COMMAND, {"load.inertia": [0.1, 0.2]}),
     "Derivatives": lambda: sw.derivatives(DRIVE, COMMAND, ["load.inertia"]),
-    "LinearView": lambda: sw.linearise(DRIVE),
+    "Linearisation": lambda: sw.linearise(DRIVE),
     "FrequencyResponse": lambda: sw.frequency_response(DRIVE, [20.0], 0.01),
     "Rates": lambda: Rates.of(DRIVE, DRIVE.rest().numbers, np.zeros(6)),
     "GearSet": lambda: sw.GearSet.read("hfuc-25-100"),
-    "Experiment": lambda: Experiment("step", (("twin", RUN),), (Figure("error", "rad", (0.1,), 0.2),)),
+    "SimulatedExperiment": lambda: SimulatedExperiment("step", (("twin", RUN),), (Figure("error", "rad", (0.1,), 0.2),)),
     "drive": lambda: DRIVE,
     "state": lambda: RUN.end,
 } | {name: partial(usual, kind) for family in _core.families.values() for name, kind in family.items()}

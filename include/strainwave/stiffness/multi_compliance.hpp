@@ -159,7 +159,7 @@ private:
         const S top = largest(), scale = S(1.0) / max(wave_generator.hardening, S(1e-30));
         S level = min(start(d), top), low = S(0.5) * min(linear(d), top), high = top + top;
         auto sought = top > S(0.0);  // everywhere
-        for (int i = 0; i < most_steps; ++i) {
+        for (int i = 0; i < max_steps; ++i) {
             const Given<S> given = at(level);
             const S off = missing(d, given), step = off / given.compliance;
             low = select(off > S(0.0), level, low);
@@ -174,7 +174,7 @@ private:
         }
         return min(level, top);
     }
-    static constexpr int most_steps = 64;
+    static constexpr int max_steps = 64;
     static constexpr double close = 2e-3;  // what a step e leaves is e^3, and e^6 after Newton's
 };
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
 from strainwave.identify.fit import Estimate, Fit
 from strainwave.identify.influence import Influence
 from strainwave.identify.measurement import Kind
-from strainwave.recording import Recording
 
 Array = NDArray[np.float64]
 

@@ -10,15 +10,17 @@ from typing import Any, ClassVar, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments, loads, scenario
+from strainwave import Drive, _core, arguments, loads
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording, check_recording
 from strainwave.identify.branches import monotone, slid, thinned, turning_points
 from strainwave.messages import listed, quoted
-from strainwave.recording import Recording, check_recording
-from strainwave.scenario import Scenario
-from strainwave.signals import command_unit, controls_position, outputs
-from strainwave.simulation import Excitation, differentiate
+from strainwave.simulation import scenario
+from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.run import differentiate
+from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.signals import command_unit, controls_position, outputs
 
 Array = NDArray[np.float64]
 ENCODERS = ("input_angle", "output_angle")
@@ -278,6 +280,7 @@ class DriveLog(ComparedByFields):
         measured: their values in the units of a simulation, shape (channels, n)
         dt: step of the simulation [s]
         samples: how many were measured; of more than are compared, every so many is
+        initial: what is known of its beginning; at rest if not given
     """
 
     command: Scenario
@@ -287,9 +290,17 @@ class DriveLog(ComparedByFields):
     measured: Array
     dt: float
     samples: int
+    initial: Mapping[str, float] | None = None
 
     @classmethod
-    def of(cls, recording: Recording, drive: Drive, channels: Sequence[str] | None = None, dt: float | None = None) -> DriveLog:
+    def of(
+        cls,
+        recording: Recording,
+        drive: Drive,
+        channels: Sequence[str] | None = None,
+        dt: float | None = None,
+        initial: Mapping[str, float] | None = None,
+    ) -> DriveLog:
         """From columns time, command and outputs; all that a simulation has too, unless `channels` names some.
 
         Steps of 0.2 ms, or the sample interval if that is a little shorter. Of a long log the first 100 000 steps are taken,
@@ -308,13 +319,15 @@ class DriveLog(ComparedByFields):
                 raise ValueError(f"a drive log cannot be compared by {quoted(name)}; it can by {', '.join(known)}")
         if not chosen:
             raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
-        _check_hanging(recording, drive, chosen)
+        if initial is None:
+            _check_hanging(recording, drive, chosen)
         command = recording.values("command", command_unit(drive))
-        if controls_position(drive):
+        if controls_position(drive) and initial is None:
             command = command - command[0]
         time = recording.time - recording.time[0]
         measured = np.stack([_sensible(recording, name, known[name]) for name in chosen])
-        _check_rest(time, dict(zip(chosen, measured, strict=True)))
+        if initial is None:
+            _check_rest(time, dict(zip(chosen, measured, strict=True)))
         step = STEP if dt is None else arguments.seconds("dt", dt)
         interval = float(np.min(np.diff(time)))
         rows = slice(None, int(np.searchsorted(time, STEPS * step, "right")), max(1, int(STEP / interval)))
@@ -328,10 +341,14 @@ class DriveLog(ComparedByFields):
             measured[:, ::every],
             min(step, interval) if dt is None and interval > STEP / 2.0 else step,
             len(recording),
+            initial,
         )
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
+        """The zeros of encoders, unless the beginning says where they count from."""
+        if self.initial is not None:
+            return ()
         return tuple(
             Nuisance(f"{name}_zero", "rad", float(self.measured[row, 0]))
             for row, name in enumerate(self.channels)
@@ -358,10 +375,10 @@ class DriveLog(ComparedByFields):
 
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         names = list(outputs(model))
-        run, slopes = differentiate(model, Excitation(self.command), numbers, self.dt, self.time)
+        run, slopes = differentiate(model, Excitation(self.command), numbers, self.dt, self.time, self.initial)
         predicted = np.stack([run[name] for name in self.channels])
         by_zero = np.zeros((len(nuisances), *predicted.shape))
-        encoders = [row for row, name in enumerate(self.channels) if name in ENCODERS]
+        encoders = [row for row, name in enumerate(self.channels) if name in ENCODERS and self.initial is None]
         for unknown, (row, zero) in enumerate(zip(encoders, nuisances, strict=True)):
             predicted[row] += zero
             by_zero[unknown, row] = 1.0

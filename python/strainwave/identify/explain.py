@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
+from strainwave.files.recording import Recording
+from strainwave.files.units import convert
 from strainwave.identify.branches import noise
 from strainwave.identify.experiment import ENCODERS, DriveLog, FrictionTable
 from strainwave.identify.fit import Fit
 from strainwave.kinematics import StrainWave
-from strainwave.recording import Recording
-from strainwave.units import convert
 
 Array = NDArray[np.float64]
 

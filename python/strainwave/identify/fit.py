@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
 from strainwave.identify.experiment import DriveLog, Experiment, FrictionTable, TorsionLoop
 from strainwave.messages import shortened
 from strainwave.parameters import Parameter, parameters
-from strainwave.recording import Recording
-from strainwave.simulation import warn_of_bristles
+from strainwave.simulation.resolution import warn_of_bristles
 
 Array = NDArray[np.float64]
 ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
@@ -131,6 +131,7 @@ def fit(
     *,
     channels: Sequence[str] | None = None,
     dt: float | None = None,
+    initial: Mapping[str, float] | None = None,
     training: NDArray[np.bool_] | None = None,
     loss: Literal["linear", "soft_l1"] = "linear",
 ) -> Fit:
@@ -147,6 +148,8 @@ def fit(
             "hysteresis.stiffness[2]" is one element, "hysteresis.stiffness" all of them
         channels: columns of a drive log to compare; all that a simulation has too if not given
         dt: step of the simulation [s]
+        initial: of a drive log that does not begin at rest, what is known of its beginning, as for `simulate`; encoders then
+            count from where they say
         training: which samples take part, shape (n,); all if not given
         loss: "linear", or "soft_l1" where outliers are to be feared
 
@@ -173,7 +176,9 @@ def fit(
     (0.02, 0.0003)
     """
     _check_kinds(model, recording, loss)
-    experiment = experiment_of(model, recording, channels, dt) if isinstance(recording, Recording) else recording
+    if initial is not None and not (isinstance(model, Drive) and isinstance(recording, Recording)):
+        raise TypeError("initial is the beginning of a drive log: give a drive and a recording, or leave it out")
+    experiment = experiment_of(model, recording, channels, dt, initial) if isinstance(recording, Recording) else recording
     places = parameters("free", model, free)
     _check_branch(experiment, places)
     problem = _Problem(model, experiment, places, training)
@@ -220,7 +225,11 @@ def _check_motion(experiment: Experiment, predicted: Array) -> None:
 
 
 def experiment_of(
-    model: Gear | Drive, recording: Recording, channels: Sequence[str] | None = None, dt: float | None = None
+    model: Gear | Drive,
+    recording: Recording,
+    channels: Sequence[str] | None = None,
+    dt: float | None = None,
+    initial: Mapping[str, float] | None = None,
 ) -> Experiment:
     """The experiment that a recording holds, told by its columns and the kind of model.
 
@@ -228,7 +237,7 @@ def experiment_of(
         ValueError: the columns fit no experiment
     """
     if isinstance(model, Drive):
-        return DriveLog.of(recording, model, channels, dt)
+        return DriveLog.of(recording, model, channels, dt, initial)
     if {"speed", "torque"} <= set(recording.names):
         return FrictionTable.of(recording)
     if {"twist", "torque"} <= set(recording.names) or {"input_angle", "input_torque"} <= set(recording.names):

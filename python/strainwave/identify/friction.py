@@ -26,7 +26,7 @@ Law = friction.Viscous | friction.Coulomb | friction.Stribeck | friction.LuGre  
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate(ComparedByFields):
+class FrictionCandidate(ComparedByFields):
     """One set of free parameters fitted to a friction table.
 
     Attributes:
@@ -52,7 +52,7 @@ class Candidate(ComparedByFields):
         return self.fit.estimates[-1].value
 
 
-def fit_friction(table: FrictionTable, gear: Gear) -> list[Candidate]:
+def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
     """Fits the input friction of a gear to a table, with and without a fall of torque at low speed.
 
     The law of `gear.friction_input` is kept; a purely viscous one becomes Coulomb's, and Coulomb's becomes Stribeck's if the
@@ -99,7 +99,7 @@ def dissipating(law: Any) -> Any:
     return law if law.bristle_damping <= most else law.replace(bristle_damping=0.5 * most)
 
 
-def _straight(table: FrictionTable, gear: Gear, known: Law) -> Candidate:
+def _straight(table: FrictionTable, gear: Gear, known: Law) -> FrictionCandidate:
     """Coulomb and viscous friction, written into the law of the gear."""
     line = np.polynomial.polynomial.polyfit(np.abs(table.speed), np.abs(table.torque), 1)
     coulomb, viscous = max(float(line[0]), 1e-3 * float(np.abs(table.torque).max())), max(float(line[1]), 0.0)
@@ -113,7 +113,7 @@ def _straight(table: FrictionTable, gear: Gear, known: Law) -> Candidate:
     return replace(candidate, fit=replace(candidate.fit, model=gear.replace(friction_input=written)))
 
 
-def _falling(table: FrictionTable, gear: Gear, straight: Any) -> Candidate:
+def _falling(table: FrictionTable, gear: Gear, straight: Any) -> FrictionCandidate:
     """Stribeck's fall, in the law of the gear or, where that has none, in Stribeck's."""
     speed = np.abs(table.speed[table.speed != 0.0])
     middle = float(np.sqrt(speed.min() * speed.max()))
@@ -128,11 +128,11 @@ def _falling(table: FrictionTable, gear: Gear, straight: Any) -> Candidate:
     return replace(candidate, fit=replace(candidate.fit, model=found))
 
 
-def _candidate(name: str, table: FrictionTable, start: Gear, free: Sequence[str]) -> Candidate:
+def _candidate(name: str, table: FrictionTable, start: Gear, free: Sequence[str]) -> FrictionCandidate:
     paths = [f"friction_input.{parameter}" for parameter in free]
     fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(FOLDS, len(table.speed))
     held_out = np.empty(len(table.speed))
     for part in np.unique(fold):
         left_out = fold == part
         held_out[left_out] = fit(start, table, paths, training=~left_out).predicted[0, left_out]
-    return Candidate(name, fit(start, table, paths), held_out, float(np.sqrt(np.mean((table.torque - held_out) ** 2))))
+    return FrictionCandidate(name, fit(start, table, paths), held_out, float(np.sqrt(np.mean((table.torque - held_out) ** 2))))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
-from strainwave.gear_set import Entry
+from strainwave.files.entries import Entry
 from strainwave.identify.fit import Fit, correlation_length
 from strainwave.parameters import Parameter, every
 

@@ -30,8 +30,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import shortened
-from strainwave.recording import Recording, check_recording
 
 PARAMETERS = ("inertia", "viscous", "coulomb", "offset")
 

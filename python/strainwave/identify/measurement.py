@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Literal
 
 from strainwave import arguments
+from strainwave.files.recording import Recording
+from strainwave.files.tables import Label, labels
+from strainwave.files.units import convert
 from strainwave.messages import as_option, listed, one_line, quoted
-from strainwave.recording import Recording
-from strainwave.tables import Label, labels
-from strainwave.units import convert
 
 Kind = Literal["friction", "torsion", "log"]
 Units = tuple[str, ...]

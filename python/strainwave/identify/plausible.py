@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave._core import Gear
+from strainwave.files.recording import Recording
+from strainwave.files.units import convert
 from strainwave.identify.experiment import FrictionTable, TorsionLoop
 from strainwave.identify.explain import MISTAKEN
 from strainwave.identify.fit import Fit
-from strainwave.recording import Recording
-from strainwave.units import convert
 
 Array = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ def doubts_of_loop(recording: Recording, found: Fit, start: Gear) -> Iterator[tu
 
 
 def hint_of_ratio(found: Fit, start: Gear) -> Iterator[str]:
-    """That a loop from the input, whose stiffness is not that of the starting set, has it at another ratio."""
+    """That a loop from the input, whose stiffness is not that of the initial model, has it at another ratio."""
     loop = found.experiment
     assert isinstance(loop, TorsionLoop)
     half = 0.5 * float(np.ptp(loop.twist))

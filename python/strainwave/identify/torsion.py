@@ -37,7 +37,7 @@ Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose br
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate(ComparedByFields):
+class TorsionCandidate(ComparedByFields):
     """One kind of gear fitted to a loop.
 
     Attributes:
@@ -67,7 +67,7 @@ def held_out_blocks(n: int, blocks: int = 20, every: int = 4) -> NDArray[np.bool
 
 def fit_loop(
     loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None, *, friction_measured: bool = False
-) -> list[Candidate]:
+) -> list[TorsionCandidate]:
     """Fits each kind of spring to a loop, and beside it what the loop can tell.
 
     That is Maxwell-slip hysteresis, in parallel with the spring. Of a single branch it is nothing: the hysteresis of the gear
@@ -97,7 +97,7 @@ def fit_loop(
     return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
 
 
-def _simpler(best: Candidate, good: float, training: NDArray[np.bool_]) -> Iterator[Candidate]:
+def _simpler(best: TorsionCandidate, good: float, training: NDArray[np.bool_]) -> Iterator[TorsionCandidate]:
     """The best candidate with fewer and fewer Maxwell elements, as long as it stays good."""
     candidate = best
     while len(candidate.beside.elements(candidate.fit.gear)) > 1 and candidate.error <= good:
@@ -131,7 +131,7 @@ def _asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Besid
     return [Elements()] if friction_measured or not friction_inside else [Friction(), Elements()]
 
 
-def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str, beside: Beside) -> Candidate:
+def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: str, beside: Beside) -> TorsionCandidate:
     histories = [loop] if loop.single_branch else [loop, loop.virgin()]
     start = min((_start(gear, each, training, spring, beside) for each in histories), key=lambda start: start.error)
     twist_zero = loop.middle if spring == "linear" else loop.twist_zero
@@ -141,11 +141,11 @@ def _candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], sprin
 
 def _finished(
     start: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: str, beside: Beside, known: Gear
-) -> Candidate:
+) -> TorsionCandidate:
     found = beside.finished(_refined(start, loop, training, beside), known)
     held_out = found.rms(held_out=True)[0]
     name = f"{spring.replace('_', '-')} spring{beside.words(found.gear)}"
-    return Candidate(spring, beside, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+    return TorsionCandidate(spring, beside, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
 
 
 def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], beside: Beside) -> Fit:

@@ -13,7 +13,10 @@ import numpy as np
 from strainwave import Drive, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
-from strainwave.gear_set import Entry, GearSet
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import RatingCheck, check_ratings
+from strainwave.files.recording import Recording
 from strainwave.identify.evidence import Doubt, Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop, at_input
 from strainwave.identify.explain import BETTER, allowed, causes, unexplained
@@ -23,12 +26,10 @@ from strainwave.identify.influence import Influence, influence
 from strainwave.identify.log import fit_log, free_parameters, prepared
 from strainwave.identify.measurement import Kind, read_measurement
 from strainwave.identify.plausible import doubts_of_loop, doubts_of_table, hint_of_ratio
-from strainwave.identify.torsion import Candidate, Friction, Nothing, fit_loop, held_out_blocks
+from strainwave.identify.torsion import Friction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
 from strainwave.identify.verdict import MOST_TOLD, Verdict, estimated, judged, known, numbers, verdicts
 from strainwave.messages import shortened
-from strainwave.ratings import RatingCheck, check_ratings
-from strainwave.recording import Recording
-from strainwave.simulation import simulate
+from strainwave.simulation.run import simulate
 
 CONTRADICTION = 3.0  # standard deviations
 SURE = 0.9973002039367398  # the share of a normal distribution within three
@@ -44,7 +45,7 @@ class Contradiction:
     Attributes:
         path: the parameter
         unit: its unit
-        earlier: value in the starting set
+        earlier: value in the initial model
         known: where that came from, and how well it is known
         measured: value that the measurement gives
         sigma: its standard deviation
@@ -63,7 +64,7 @@ class Contradiction:
 
     @property
     def earlier_source(self) -> str:
-        """Where the value in the starting set came from."""
+        """Where the value in the initial model came from."""
         return self.known.source
 
 
@@ -76,7 +77,7 @@ class Twin(ComparedByFields):
         gear_set: the twin
         evidence: the measurements used
         verdicts: every parameter of the gear
-        contradictions: where measurement and starting set exclude each other
+        contradictions: where measurement and initial model exclude each other
         ratings: what the maker allows, beside what the gear went through in the measurements
     """
 
@@ -242,7 +243,7 @@ def _from_torsion(gear: Gear, recording: Recording, source: str, friction_measur
     )  # fmt: skip
 
 
-def _of_friction(loop: TorsionLoop, best: Candidate, gear: Gear, friction_measured: bool) -> Iterator[str]:
+def _of_friction(loop: TorsionLoop, best: TorsionCandidate, gear: Gear, friction_measured: bool) -> Iterator[str]:
     """What a loop from the input has inside, and what became of it."""
     if loop.input_ratio is None:
         return
@@ -264,7 +265,7 @@ def _of_friction(loop: TorsionLoop, best: Candidate, gear: Gear, friction_measur
         yield "no friction at the input is known: all of it is fitted as hysteresis, of which a turning gear shows nothing"
 
 
-def _shared(best: Candidate, gear: Gear, loop: TorsionLoop, friction_measured: bool) -> dict[str, str]:
+def _shared(best: TorsionCandidate, gear: Gear, loop: TorsionLoop, friction_measured: bool) -> dict[str, str]:
     """Parameters that a loop tells only together with what was kept."""
     if loop.single_branch:
         why = "a single branch tells the torque of spring and hysteresis together, and the hysteresis was kept"

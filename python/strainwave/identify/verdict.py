@@ -11,7 +11,8 @@ import numpy as np
 from strainwave import _core
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
-from strainwave.gear_set import Entry, GearSet
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
 from strainwave.identify.evidence import Evidence
 from strainwave.identify.fit import Estimate
 
@@ -32,12 +33,12 @@ class Verdict(ComparedByFields):
     Attributes:
         path: where it stands, as "gear.stiffness.k1"
         unit: its unit
-        start: value in the starting set; not-a-number where the set had none
+        start: value in the initial model; not-a-number where the set had none
         value: value in the twin
         sigma: standard deviation, with that of what other measurements of this twin told, the parameters kept taken as right
             but for those that it is told in combination with; not-a-number for one that was kept
         state: identified; identified in combination with another (each may be off, together they are not); not identified,
-            though fitted; or kept from the starting set
+            though fitted; or kept from the initial model
         why: the reason, or the source
     """
 
@@ -89,7 +90,7 @@ def estimated(evidence: Sequence[Evidence]) -> dict[str, tuple[Evidence, int, Es
 
 
 def known(start: GearSet, evidence: Sequence[Evidence]) -> dict[str, Entry]:
-    """What is known of each number: by the measurements of this twin, else by the starting set."""
+    """What is known of each number: by the measurements of this twin, else by the initial model."""
     told = {
         path: Entry(source=e.source, uncertainty=estimate.sigma)
         for path, (e, _, estimate) in estimated(evidence).items()

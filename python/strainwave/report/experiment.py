@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from strainwave.recording import Recording
+from strainwave.files.recording import Recording
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Experiment:
+class SimulatedExperiment:
     """A simulated experiment: one command, run through one or more models.
 
     Attributes:
@@ -43,7 +43,7 @@ class Experiment:
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
-    >>> experiment = Experiment("step", runs=(("twin", run),), figures=(Figure("largest speed", "rad/s", (0.3,)),))
+    >>> experiment = SimulatedExperiment("step", runs=(("twin", run),), figures=(Figure("largest speed", "rad/s", (0.3,)),))
     >>> experiment.figures[0].published is None
     True
     """

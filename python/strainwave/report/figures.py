@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
+from strainwave.files.recording import envelope
 from strainwave.identify.branches import turning_points
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
-from strainwave.recording import envelope
 from strainwave.report import typeset
-from strainwave.report.experiment import Experiment
-from strainwave.signals import outputs
+from strainwave.report.experiment import SimulatedExperiment
+from strainwave.simulation.signals import outputs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -147,23 +147,23 @@ def drive_log(evidence: Evidence, channel: int) -> str:
 
 
 def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
-    """The friction law of the starting set and the friction table that contradicts it: two data sets on one axis."""
+    """The friction law of the initial model and the friction table that contradicts it: two data sets on one axis."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
         earlier, fitted = twin.start.gear.friction_input, evidence.fit.gear.friction_input
-        _friction_law(axes, evidence, earlier, "starting set", color=LIGHT["earlier"], linestyle="--", linewidth=2.0)
+        _friction_law(axes, evidence, earlier, "initial model", color=LIGHT["earlier"], linestyle="--", linewidth=2.0)
         _friction_law(axes, evidence, fitted, "fitted to the table", color=LIGHT["model"])
         _friction_points(axes, evidence)
         axes.set_ylim(*_with_zero(axes.get_ylim()))
         _label(axes, "friction torque", "N.m", "input speed", "rad/s")
         _legend(figure, axes)
 
-    title = f"Two data sets: the friction law of the starting set, and {evidence.source}"
+    title = f"Two data sets: the friction law of the initial model, and {evidence.source}"
     return _inline(draw, (WIDTH, 3.0), "two-laws", title)
 
 
-def experiment(simulated: Experiment, name: str) -> str:
+def experiment(simulated: SimulatedExperiment, name: str) -> str:
     """Command, response and, where both are of one unit, their difference over time."""
     first, comparable = simulated.runs[0][1], simulated.comparable
     command_unit, response_unit = first.unit(simulated.command), first.unit(simulated.response)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from strainwave.files import replacing
+from strainwave.files.writing import replacing
 from strainwave.report import typeset
 
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
-from strainwave.gear_set import Entry, GearSet
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
 from strainwave.identify.branches import SAMPLES
 from strainwave.identify.evidence import Evidence
 from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
@@ -20,7 +21,7 @@ from strainwave.identify.fit import Fit
 from strainwave.identify.twin import Contradiction, Twin
 from strainwave.identify.verdict import State, Verdict, estimated, numbers
 from strainwave.report import figures
-from strainwave.report.experiment import Experiment
+from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import render
 from strainwave.report.typeset import number, quantity, uncertain, unit
 
@@ -53,7 +54,7 @@ class Provenance:
         return cls(date, command, digests)
 
 
-class Parameter(NamedTuple):
+class ParameterRow(NamedTuple):
     """A row of a table: a number of the twin and what is known of it, ready to print."""
 
     path: str
@@ -71,7 +72,7 @@ class Part(NamedTuple):
     name: str
     law: str
     source: str
-    parameters: list[Parameter]
+    parameters: list[ParameterRow]
 
     @property
     def absent(self) -> bool:
@@ -79,7 +80,7 @@ class Part(NamedTuple):
         return [parameter.state for parameter in self.parameters] == ["absent"]
 
 
-def twin_report(twin: Twin, experiments: Sequence[Experiment] = (), provenance: Provenance | None = None) -> str:
+def twin_report(twin: Twin, experiments: Sequence[SimulatedExperiment] = (), provenance: Provenance | None = None) -> str:
     """The report of a twin, as one HTML file that needs nothing else.
 
     Args:
@@ -142,20 +143,20 @@ def _measurement(twin: Twin, evidence: Evidence) -> dict[str, Any]:
     }
 
 
-def _estimates(twin: Twin, evidence: Evidence) -> Iterator[Parameter]:
+def _estimates(twin: Twin, evidence: Evidence) -> Iterator[ParameterRow]:
     """What was fitted to a measurement; a verdict is that of the last measurement that a parameter was fitted to."""
     verdicts, last, before = {v.path: v for v in twin.verdicts}, estimated(twin.evidence), numbers(twin.start.gear)
     free = len(evidence.fit.estimates) - len(evidence.fit.experiment.nuisances)
     for position, estimate in enumerate(evidence.fit.estimates):
         path, value, of = evidence.path(estimate), uncertain(estimate.value, estimate.sigma), unit(estimate.unit)
         if position >= free:
-            yield Parameter("", estimate.path.replace("_", " "), of, value, "", "of the measurement", "")
+            yield ParameterRow("", estimate.path.replace("_", " "), of, value, "", "of the measurement", "")
         elif path in verdicts and last[path][0] is evidence:
             start = _start(verdicts[path])
-            yield Parameter(path, _name(evidence.fit, path), of, value, start, verdicts[path].state, "")
+            yield ParameterRow(path, _name(evidence.fit, path), of, value, start, verdicts[path].state, "")
         else:
             start = number(before[path][0]) if path in before else ""
-            yield Parameter(path, _name(evidence.fit, path), of, value, start, "replaced by a later measurement", "")
+            yield ParameterRow(path, _name(evidence.fit, path), of, value, start, "replaced by a later measurement", "")
 
 
 def _title(evidence: Evidence) -> str:
@@ -280,27 +281,27 @@ def _inside(path: str, model: Any) -> Iterator[str]:
             yield from _inside(inner, getattr(model, member["name"]))
 
 
-def _parameter(gear_set: GearSet, path: str, verdict: Verdict | None) -> Parameter:
+def _parameter(gear_set: GearSet, path: str, verdict: Verdict | None) -> ParameterRow:
     entry, member = gear_set.sources[path], _member(gear_set, path)
     name, of, value = _name(gear_set, path), unit(member["unit"]), _value(gear_set, path)
     if verdict is None:
-        return Parameter(path, name, of, _known(value, entry), "", "given", entry.source)
+        return ParameterRow(path, name, of, _known(value, entry), "", "given", entry.source)
     start = _start(verdict)
     if verdict.state != "kept":
-        return Parameter(path, name, of, uncertain(value, verdict.sigma), start, verdict.state, verdict.why)
+        return ParameterRow(path, name, of, uncertain(value, verdict.sigma), start, verdict.state, verdict.why)
     if value != verdict.start:
-        return Parameter(path, name, of, number(value), start, "follows", verdict.why)
-    return Parameter(path, name, of, _known(value, entry), start, "kept", verdict.why)
+        return ParameterRow(path, name, of, number(value), start, "follows", verdict.why)
+    return ParameterRow(path, name, of, _known(value, entry), start, "kept", verdict.why)
 
 
-def _absent(gear_set: GearSet, part: str) -> Parameter:
+def _absent(gear_set: GearSet, part: str) -> ParameterRow:
     """What stands for the numbers of a part that the gear does without."""
     why = "not in the model; no measurement given tells it"
-    return Parameter(part, _name(gear_set, part), "", "none", "", "absent", why)
+    return ParameterRow(part, _name(gear_set, part), "", "none", "", "absent", why)
 
 
 def _start(verdict: Verdict) -> str:
-    """The value in the starting set; nothing where that has no such parameter."""
+    """The value in the initial model; nothing where that has no such parameter."""
     return "" if np.isnan(verdict.start) else number(verdict.start)
 
 
@@ -349,7 +350,7 @@ MANY = 3  # parameters of a part that are not listed where all of them share a f
 UNKNOWN = {
     "identified in combination": "Fitted, but determined only together with another parameter",
     "not identified": "Fitted, but not determined by the data",
-    "kept": "Not measured, kept from the starting set",
+    "kept": "Not measured, kept from the initial model",
     "follows": "Not measured, set by a rule from what was fitted",
     "absent": "Not measured, and not in the model",
 }
@@ -420,7 +421,7 @@ def _contradiction(twin: Twin, found: Contradiction) -> dict[str, str]:
 
 
 def _two_laws(twin: Twin) -> Markup | None:
-    """Both data sets on one axis, where the friction table contradicts the law of the starting set."""
+    """Both data sets on one axis, where the friction table contradicts the law of the initial model."""
     from markupsafe import Markup
 
     contradicted = any(found.path.startswith("gear.friction_input.") for found in twin.contradictions)
@@ -431,7 +432,7 @@ def _two_laws(twin: Twin) -> Markup | None:
 # ---- Experiments and sources -----------------------------------------------------------------------------------------
 
 
-def _experiments(experiments: Sequence[Experiment]) -> Iterator[dict[str, Any]]:
+def _experiments(experiments: Sequence[SimulatedExperiment]) -> Iterator[dict[str, Any]]:
     """Experiments with their figures; a remark that they share stands with the first."""
     from markupsafe import Markup
 

@@ -7,7 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.gear_set import Entry, GearSet
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
 from strainwave.identify.explain import causes, left
 
 TEETH = {"flexspline_teeth": 100, "circular_spline_teeth": 102}

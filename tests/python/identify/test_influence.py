@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.gear_set import Entry
+from strainwave.files.entries import Entry
 from strainwave.identify.experiment import TorsionLoop
 from strainwave.identify.fit import fit
 from strainwave.identify.influence import Influence, influence, uncertainty

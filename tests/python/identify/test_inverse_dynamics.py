@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy import signal
+from strainwave.files.recording import Recording
 from strainwave.identify.inverse_dynamics import Regression, RigidDrive, regression, rigid_drive, rigid_drive_of
-from strainwave.recording import Recording
 
 Array = NDArray[np.float64]
 TRUTH = np.array([0.02, 0.05, 0.3, -0.1])  # kg.m2, N.m.s/rad, N.m, N.m

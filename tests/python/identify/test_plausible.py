@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.gear_set import GearSet
+from strainwave.files.gear_set import GearSet
 
 RATIO = 80.0
 LAW = sw.friction.Stribeck(coulomb=0.047, breakaway=0.062, stribeck_speed=3.0, viscous=2.9e-4)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.demo import position_drive
-from strainwave.gear_set import Entry
+from strainwave.files.entries import Entry
 from strainwave.identify.verdict import State
 
 SPEED = np.geomspace(1.0, 200.0, 30)

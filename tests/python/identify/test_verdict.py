@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.gear_set import GearSet
+from strainwave.files.gear_set import GearSet
 
 from tests.python.identify.test_torsion import SPRINGS, at_the_input, loop
 

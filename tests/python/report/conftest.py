@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 import strainwave as sw
-from strainwave.gear_set import Entry, GearSet
-from strainwave.report.experiment import Experiment
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
+from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.twin import twin_report
 
 from tests.python.report.twins import HOSTILE, drive_log, friction_table, input_loop, swing, torsion_loop, with_drive
@@ -81,4 +82,4 @@ def each(request: pytest.FixtureRequest) -> sw.Twin:
 @pytest.fixture(scope="module")
 def html(each: sw.Twin) -> str:
     """The report of each twin, with two experiments of one name."""
-    return twin_report(each, [Experiment("sine", (("twin", swing(50)),))] * 2)
+    return twin_report(each, [SimulatedExperiment("sine", (("twin", swing(50)),))] * 2)

@@ -13,7 +13,7 @@ import strainwave as sw
 from strainwave.demo import position_drive, torsion_rig
 from strainwave.identify.experiment import TorsionLoop
 from strainwave.report import figures
-from strainwave.report.experiment import Experiment
+from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.twin import twin_report
 
 from tests.python.report.reading import Node, Page, points, section
@@ -43,7 +43,7 @@ def apart(one: Box, other: Box) -> bool:
 
 
 def drawings(found: sw.Twin) -> list[Node]:
-    long_names = Experiment("long names", ((LONG, swing(50)), (HOSTILE, swing(60))), response="output_angle")
+    long_names = SimulatedExperiment("long names", ((LONG, swing(50)), (HOSTILE, swing(60))), response="output_angle")
     return Page(twin_report(found, [long_names])).root.find("svg")
 
 

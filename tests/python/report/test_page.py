@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.report import figures
-from strainwave.report.experiment import Experiment
+from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import write
 from strainwave.report.twin import Provenance, twin_report
 
@@ -68,7 +68,7 @@ def test_a_long_record_stays_small_and_keeps_its_peak() -> None:
     run = swing(400_000)
     noisy = run["output_angle"] + 1e-3 * np.random.default_rng(1).normal(size=len(run))
     noisy[123_456] = 0.4
-    svg = figures.experiment(Experiment("long", (("twin", run.with_column("output_angle", noisy, "rad")),)), "long")
+    svg = figures.experiment(SimulatedExperiment("long", (("twin", run.with_column("output_angle", noisy, "rad")),)), "long")
     assert len(svg) < 80_000
     lines = [points(path) for path in Page(svg).root.find("path") if "--model" in path.attributes.get("style", "")]
     response = next(line for line in lines if len(line) > 100)

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.demo import position_drive
-from strainwave.gear_set import Entry, GearSet
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
 from strainwave.identify.evidence import Doubt
 from strainwave.identify.experiment import TorsionLoop
 from strainwave.report import figures
-from strainwave.report.experiment import Experiment, Figure
+from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.report.twin import twin_report
 
 from tests.python.report.reading import Node, Page, printed, section
@@ -135,7 +136,7 @@ def test_a_contradiction_shows_both_values_and_both_sources_and_no_average(contr
 def test_a_contradiction_of_friction_is_drawn_as_two_data_sets(contradicted: sw.Twin, from_friction: sw.Twin) -> None:
     assert len(section(twin_report(contradicted), "contradictions").find("svg")) == 1
     labels = [text.text for text in section(twin_report(contradicted), "contradictions").find("text")]
-    assert {"starting set", "measured", "fitted to the table"} <= set(labels)
+    assert {"initial model", "measured", "fitted to the table"} <= set(labels)
     assert 'id="contradictions"' not in twin_report(from_friction)
     assert "No contradiction found" in twin_report(from_friction)
 
@@ -237,7 +238,7 @@ def test_limits_of_the_maker_that_were_exceeded_stand_in_the_summary() -> None:
 
 def test_experiments_show_every_run_and_every_figure_beside_the_published_one(from_torsion: sw.Twin) -> None:
     error = Figure("largest error", "rad", (0.0123, 0.0456), published=0.0042)
-    experiment = Experiment(
+    experiment = SimulatedExperiment(
         "sine", (("_twin", swing(50)), (HOSTILE, swing(60))), (error,), remark="amplitude assumed", source="Table 4"
     )
     page = section(twin_report(from_torsion, [experiment]), "experiments")
@@ -255,7 +256,7 @@ def test_an_open_loop_experiment_draws_the_command_by_itself() -> None:
         {"time": [0.0, 1.0], "command": [0.0, 5.0], "output_angle": [0.0, 0.1]},
         {"time": "s", "command": "V", "output_angle": "rad"},
     )
-    drawn = Page(figures.experiment(Experiment("step", (("twin", run),)), "e")).root
+    drawn = Page(figures.experiment(SimulatedExperiment("step", (("twin", run),)), "e")).root
     labels = [text.text for text in drawn.find("text")]
     assert "command [V]" in labels
     assert not any("response" in label for label in labels)
@@ -263,8 +264,8 @@ def test_an_open_loop_experiment_draws_the_command_by_itself() -> None:
 
 def test_an_experiment_refuses_what_it_cannot_show() -> None:
     with pytest.raises(ValueError, match=r'^experiment "e" has no run$'):
-        Experiment("e", ())
+        SimulatedExperiment("e", ())
     with pytest.raises(ValueError, match=r'^experiment "e": run "a" has no column "torque"$'):
-        Experiment("e", (("a", swing(9)),), response="torque")
+        SimulatedExperiment("e", (("a", swing(9)),), response="torque")
     with pytest.raises(ValueError, match=r'^experiment "e": rms has 2 values for 1 runs$'):
-        Experiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))
+        SimulatedExperiment("e", (("a", swing(9)),), (Figure("rms", "rad", (1.0, 2.0)),))

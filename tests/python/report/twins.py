@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import strainwave as sw
-from strainwave.gear_set import Entry, GearSet
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
 
 HOSTILE = '<script>alert("x")</script> & <b>table</b>.csv'
 SPEED = np.concatenate((-np.geomspace(0.5, 150.0, 15)[::-1], np.geomspace(0.5, 150.0, 15)))

@@ -1,0 +1,259 @@
+r"""The linear view of a drive: how it answers signals so small that it does not change.
+
+.. math:: \dot x = A x + B u, \qquad y = C x + D u
+
+with x, u and y the deviations of the motion, the inputs and the outputs. The derivatives are exact to rounding (dual numbers).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import tau
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import Drive, _core, arguments
+from strainwave.analysis.steady import OVERFLOW, SLOWLY, averaged, constant_inputs, equilibrium
+from strainwave.equality import ComparedByFields
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
+from strainwave.simulation.memory import room_for
+from strainwave.simulation.signals import TWIST, check_continuous, command_unit, outputs, units
+from strainwave.simulation.state import Layout, State, start_of
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+INPUTS = ("command", "command_rate", "load_torque", "temperature")
+_COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation(ComparedByFields):
+    """A drive seen from close by: A, B, C, D of its small deviations from a state, for n states, 4 inputs and m outputs.
+
+    Unpacks to the four matrices, as ``control.StateSpace(*linear)`` of python-control wants them. `command_rate` is the rate
+    of `command`: whoever feeds a command from elsewhere feeds both; `response` does.
+
+    Args:
+        A: of the states [unit of the row / s / unit of the column], shape (n, n)
+        B: of the inputs, shape (n, 4)
+        C: of the outputs by the states, shape (m, n)
+        D: of the outputs by the inputs, shape (m, 4)
+        states: names; a part's own states begin with its place, as in "motor.current"
+        inputs: names
+        outputs: names, those of a recording's columns
+        units: unit of each name
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    units: dict[str, str]
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter((self.A, self.B, self.C, self.D))
+
+    @cached_property
+    def _eigen(self) -> tuple[Complex, Complex]:
+        poles, modes = np.linalg.eig(self.A)
+        order = np.lexsort((poles.imag, np.abs(poles)))
+        return poles[order].astype(np.complex128), modes[:, order].astype(np.complex128)
+
+    @property
+    def poles(self) -> Complex:
+        """Eigenvalues of A [rad/s], slowest first, shape (n,). One with a positive real part: the state is not stable."""
+        return self._eigen[0]
+
+    @property
+    def modes(self) -> Complex:
+        """How the states move in each mode: column k belongs to pole k, of length 1, shape (n, n)."""
+        return self._eigen[1]
+
+    @property
+    def eigenfrequencies(self) -> Array:
+        """Of each pole, undamped: its distance from 0 [rad/s], shape (n,)."""
+        size: Array = np.abs(self.poles)
+        return size
+
+    @property
+    def damping_ratios(self) -> Array:
+        """Of each pole: 1 decays without swinging, 0 swings without end, below 0 it grows; shape (n,). A pole at 0 has none."""
+        size = self.eigenfrequencies
+        ratios: Array = np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0)
+        return ratios
+
+    def response(self, frequency: ArrayLike, output: str = "output_angle", input: str = "command") -> Complex:
+        """Amplitude and phase of an output over those of an input that is a sine.
+
+        Args:
+            frequency: of the sine [Hz], shape (k,) or a number
+            output: name of the output
+            input: name of the input; "command" moves its rate along
+
+        Returns:
+            Transfer function at 2 pi i `frequency` [unit of the output / unit of the input], of the shape of `frequency`.
+
+        Raises:
+            ValueError: there is no such input or output, or a frequency is not finite or that of an undamped pole
+        """
+        frequencies = arguments.numbers("frequency", frequency)
+        if not np.isfinite(frequencies).all():
+            raise ValueError(f"frequency = {frequencies[~np.isfinite(frequencies)][0]} Hz must be finite")
+        row, column = _place(output, self.outputs, "output"), _place(input, self.inputs, "input")
+        each = 64.0 * len(self.A) ** 2
+        try:
+            with np.errstate(over="ignore", invalid="ignore"), room_for("frequencies", frequencies.size, each, "take fewer"):
+                at: Complex = np.asarray(tau * 1j * frequencies[..., None], dtype=np.complex128)
+                answer = self._transferred(at, row, column)
+        except np.linalg.LinAlgError:
+            answer = np.full(frequencies.shape, np.inf, dtype=np.complex128)
+        if not np.isfinite(answer).all():
+            raise ValueError("frequency is that of a pole without damping: the response has no bound there")
+        return answer
+
+    def _transferred(self, at: Complex, row: int, column: int) -> Complex:
+        """The transfer function at s, shape (…, 1), of the input in a column to the output in a row."""
+        b, d = self.B[:, column] + 0.0 * at, self.D[row, column] + 0.0 * at
+        if self.inputs[column] == "command":
+            rate = self.inputs.index("command_rate")
+            b, d = b + at * self.B[:, rate], d + at * self.D[row, rate]
+        states = np.linalg.solve(at[..., None] * np.eye(len(self.A)) - self.A, b[..., None])[..., 0]
+        answer: Complex = states @ self.C[row] + d[..., 0]
+        return answer
+
+
+def linearise(
+    drive: Drive,
+    state: State | None = None,
+    *,
+    command: float = 0.0,
+    command_rate: float = 0.0,
+    load_torque: float = 0.0,
+    temperature: float = ROOM_TEMPERATURE,
+) -> Linearisation:
+    """The drive as small deviations from a state see it.
+
+    Small means: so small that nothing else changes. A side that sticks does not move, and its states drop out; so does what
+    nothing depends on. Friction and hysteresis with memory answer each reversal with their initial stiffness, and what they
+    lose by sliding is of second order: this view knows none of it; `frequency_response` at amplitude does. Where a slope
+    differs between the senses of motion, it is the mean of both, after a small movement to and fro: the first harmonic that a
+    vanishing vibration sees. A drive that runs is seen without its kinematic error, as `equilibrium` sees it.
+
+    Args:
+        drive: the drive
+        state: where; `equilibrium` under the same inputs if not given
+        command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
+        command_rate: rate of the command [1/s], for a state of a drive that follows one
+        load_torque: torque that holds the output back [N.m], besides the load's own
+        temperature: of the gear [K]
+
+    Returns:
+        Matrices with the names of their rows and columns.
+
+    Raises:
+        TypeError: an argument is not of its kind
+        ValueError: an input is not finite, `temperature` is not positive, no state is given and there is no equilibrium, or
+            torques grow beyond all numbers
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(control=sw.control.PID(proportional=2.0, derivative=0.05))
+    >>> linear = sw.linearise(drive)
+    >>> linear.states
+    ('input_angle', 'input_speed', 'transmission_error', 'output_speed')
+    >>> [matrix.shape for matrix in linear]
+    [(4, 4), (4, 4), (16, 4), (16, 4)]
+    >>> round(float(abs(linear.response(0.0))), 12)  # it goes where it is told
+    1.0
+    """
+    check_continuous(arguments.drive(drive), "linearise")
+    inputs = constant_inputs(command, load_torque, temperature, command_rate)
+    if state is None:
+        state = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
+    given = start_of(drive, state, "state").numbers
+    state = State.of(drive, _core.consistent(drive, given))
+    if state.input_speed != 0.0:
+        drive = averaged(drive)
+    slopes = [_core.differentiate_rates(drive, _vibrating(state, drive, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
+    if not all(np.isfinite(each).all() for each in slopes):
+        raise ValueError(f"the drive cannot be linearised: {OVERFLOW}")
+    layout = Layout(drive)
+    count = layout.count
+    shown = outputs(drive)
+    rows = [*range(count), *(count + each.channel for each in shown.values())]
+    by_numbers, by_inputs = np.split((0.5 * slopes[0].T + 0.5 * slopes[1].T)[rows], [count], axis=1)
+    by_inputs = by_inputs[:, _COLUMNS]
+    kept = _moving(state, layout)
+    by_numbers = by_numbers @ _tied(state, layout)
+    while dead := [place for place in kept if not _matters(place, by_numbers, kept)]:
+        kept = [place for place in kept if place not in dead]
+    (a, c), (b, d) = np.split(by_numbers[:, kept], [count]), np.split(by_inputs, [count])
+    known = layout.units | units(drive, shown.values()) | _input_units(drive)
+    states = tuple(layout.names[place] for place in kept)
+    chosen = {name: known[name] for name in (*states, *INPUTS, *shown)}
+    return Linearisation(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen)
+
+
+def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array:
+    """`state` as a vibration finds it that is too small to change it and just passes in one `sense`, not for the first time."""
+    twist = _core.now(drive, state.numbers, inputs)[TWIST].item()
+    little, ratio = 1e-12 * max(abs(twist), 1e-3), abs(drive.gear.kinematics.ratio)
+    at_rest = state.input_speed == state.output_speed == 0.0
+
+    def passing(numbers: Array, way: float) -> Array:
+        """The same with the speeds of what rests but does not stick, `way` times a little within `SLOWLY`."""
+        speed = way * little / SLOWLY
+        return (
+            State.of(drive, numbers)
+            .replace(
+                input_speed=state.input_speed or (ratio * speed if state.input_slip_direction else 0.0),
+                output_speed=state.output_speed or (speed if state.output_slip_direction else 0.0),
+            )
+            .numbers
+        )
+
+    found = state.numbers
+    for way in (1.0, -2.0, 1.0):
+        twist += way * little
+        found = _core.advance_hysteresis(drive, found, twist)
+        if at_rest:
+            found = _core.aged(drive, passing(found, way), inputs, SLOWLY)
+    return passing(_core.advance_hysteresis(drive, found, twist - 0.5 * sense * little), sense)
+
+
+def _moving(state: State, layout: Layout) -> list[int]:
+    """The places of what moves: all but the numbers of a shaft that sticks."""
+    stuck = set[str]()
+    if state.input_slip_direction == 0.0:
+        stuck |= {"input_angle", "input_speed", "friction_input", "friction_mesh"}
+    if state.output_slip_direction == 0.0:
+        stuck |= {"output_speed", "friction_output", "transmission_error"}
+    return [place for place, name in enumerate(layout.names[: layout.count]) if name.partition(".")[0] not in stuck]
+
+
+def _tied(state: State, layout: Layout) -> Array:
+    """The numbers by those that move, columns: while the output sticks, the transmission error goes with the input."""
+    moved = np.eye(layout.count)
+    if state.output_slip_direction == 0.0:
+        moved[layout.places["transmission_error"], layout.places["input_angle"]] = 1.0 / state.drive.gear.kinematics.ratio
+    return moved
+
+
+def _matters(place: int, by_numbers: Array, kept: list[int]) -> bool:
+    """Whether another number or an output depends on a number."""
+    others = [row for row in kept if row != place]
+    return bool(by_numbers[others, place].any() or by_numbers[by_numbers.shape[1] :, place].any())
+
+
+def _input_units(drive: Drive) -> dict[str, str]:
+    return {"command_rate": f"{command_unit(drive)}/s", "load_torque": "N.m", "temperature": "K"}
+
+
+def _place(name: str, names: tuple[str, ...], kind: str) -> int:
+    return names.index(arguments.one_of(kind, name, names))

@@ -1,0 +1,368 @@
+"""The steady view of a drive: where nothing accelerates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import tau
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments, kinematic_error
+from strainwave.equality import ComparedByFields
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, check_temperature
+from strainwave.simulation.signals import TWIST, actuation, check_continuous, command_unit, controls_position
+from strainwave.simulation.state import Layout, State, start_of
+
+Array = NDArray[np.float64]
+SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
+_NOTHING = 1e-12  # rad/s2, A/s: a term so small takes no part
+OVERFLOW = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
+_FASTEST = 1e9  # rad/s at the input: what nothing has stopped by then, nothing will
+
+
+def equilibrium(
+    drive: Drive,
+    *,
+    command: float = 0.0,
+    load_torque: float = 0.0,
+    temperature: float = ROOM_TEMPERATURE,
+    start: State | None = None,
+) -> State:
+    """The state in which nothing accelerates under constant inputs: at rest if there is one, else in steady running.
+
+    Friction and hysteresis hold a drive in many states at rest. The one returned is reached from `start` by a slow motion of
+    each shaft one way. A side whose set-valued friction holds it where it is sticks there; one that breaks away comes to rest
+    where kinetic friction balances what drives it. Friction and hysteresis with memory remember the way.
+
+    A drive in open loop may run instead. Its state is that at the angles of `start`, at the lowest speed, counted from rest,
+    at which nothing accelerates, and without the kinematic error, which comes and goes with every turn.
+
+    Whether the state is stable, the poles of `linearise` tell.
+
+    Args:
+        command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
+        load_torque: torque that holds the output back [N.m], besides the load's own
+        temperature: of the gear [K]
+        start: where the way begins, taken at rest; at rest, untwisted, if not given
+
+    Returns:
+        A state, for `simulate` to start from or `linearise` to look around in.
+
+    Raises:
+        TypeError: an argument is not of its kind
+        ValueError: an input is not finite, `temperature` is not positive, there is no equilibrium, or torques grow beyond all
+            numbers; says why
+
+    >>> import strainwave as sw
+    >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
+    >>> held = sw.equilibrium(sw.Drive(load=arm), command=0.5)
+    >>> held.input_speed, held.output_speed
+    (0.0, 0.0)
+    """
+    check_continuous(arguments.drive(drive), "equilibrium")
+    inputs = constant_inputs(command, load_torque, temperature)
+    begin = _at_rest(drive, (drive.rest() if start is None else start_of(drive, start)).numbers)
+    resting = _resting(drive, begin, inputs)
+    found = State.of(drive, _running(averaged(drive), begin, inputs) if resting is None else resting)
+    turns = round(found.input_angle / tau)
+    return found.replace(input_angle=found.input_angle - tau * turns, turns=found.turns + turns)
+
+
+def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:
+    """The inputs in the order of the core, shape (6,), if they make sense."""
+    inputs = {"command": command, "command_rate": command_rate, "load_torque": load_torque, "temperature": temperature}
+    numbers = [arguments.number(name, value) for name, value in inputs.items()]
+    check_temperature(temperature)
+    command, command_rate, load_torque, temperature = numbers
+    return np.array([command, command_rate, load_torque, 0.0, temperature, 0.0])
+
+
+def averaged(drive: Drive) -> Drive:
+    """The same drive without kinematic error, which is periodic: what is left of it over many turns."""
+    gear = drive.gear.replace(kinematic_error=kinematic_error.Fourier(), kinematic_noise=kinematic_error.Stochastic())
+    return drive.replace(gear=gear)
+
+
+@dataclass(frozen=True, eq=False)
+class Rates(ComparedByFields):
+    """Rates of the n continuous numbers, what they and the outputs depend on, and the size of the terms a rate is the sum of.
+
+    All to first order: of `by_numbers`, shape (n + channels, n), and `by_inputs` the first n rows are those of the rates.
+    """
+
+    rate: Array
+    by_numbers: Array
+    by_inputs: Array
+    size: Array
+
+    @classmethod
+    @np.errstate(over="ignore", invalid="ignore")
+    def of(cls, drive: Drive, state: Array, inputs: Array) -> Rates:
+        values, slopes = _core.differentiate_rates(drive, state, inputs)
+        count = len(values) - _core.output_count
+        by_numbers, by_inputs = np.split(slopes.T, [count], axis=1)
+        size = np.abs(by_numbers[:count]) @ np.abs(state[:count]) + np.abs(by_inputs[:count]) @ np.abs(inputs)
+        return cls(values[:count], by_numbers, by_inputs, size + _NOTHING)
+
+    @property
+    def output(self) -> Array:
+        """How outputs depend on the numbers, shape (channels, n)."""
+        return self.by_numbers[len(self.rate) :]
+
+    @property
+    def finite(self) -> bool:
+        """Whether all of its numbers are: no torque is larger than a number can be."""
+        return all(bool(np.isfinite(each).all()) for each in (self.rate, self.by_numbers, self.by_inputs, self.size))
+
+    def vanishes(self, rows: list[int], share: float) -> bool:
+        """Whether these rates are less than a share of what they add up from."""
+        return bool((np.abs(self.rate) <= share * self.size)[rows].all())
+
+
+# At rest
+
+
+def _at_rest(drive: Drive, state: Array) -> Array:
+    """`state` without its speeds, every shaft that can stick sticking."""
+    still = state.copy()
+    places = Layout(drive).places
+    for name in ("input_speed", "output_speed", "input_slip_direction", "output_slip_direction"):
+        still[places[name]] = 0.0
+    return _core.consistent(drive, still)
+
+
+def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
+    """The equilibrium at rest, if there is one: shafts that stick are let go until those that still do hold."""
+    sliding = start
+    while True:
+        slow = _Slow(drive, sliding, inputs)
+        found = _balance(slow, slow.guess())
+        last = slow.moved(slow.guess() if found is None else found)
+        freed, place = _core.break_away(drive, last, inputs), slow.layout.places
+        if found is None and freed[place["input_slip_direction"]] == 0.0:  # an integral grows until the input gives way
+            rates, control = Rates.of(drive, last, inputs), place["control"]
+            freed[place["input_slip_direction"]] = np.sign(
+                rates.output[actuation(drive).channel, control] @ rates.rate[control]
+            )
+        directions = [place["input_slip_direction"].start, place["output_slip_direction"].start]
+        if (freed[directions] == sliding[directions]).all():
+            break
+        sliding = sliding.copy()
+        sliding[directions] = freed[directions]
+    if found is None:
+        return None
+    stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST].item()))
+    rates = Rates.of(drive, stopped, inputs)
+    return stopped if rates.vanishes(slow.rows(rates), 1e-9) else None  # a way without end is none
+
+
+@dataclass(frozen=True, eq=False)
+class _Slow(ComparedByFields):
+    """Slow motions from `start`, shafts that stick left where they are."""
+
+    drive: Drive
+    start: Array
+    inputs: Array
+
+    @cached_property
+    def layout(self) -> Layout:
+        return Layout(self.drive)
+
+    @property
+    def free(self) -> tuple[bool, bool]:
+        """Whether input and output may move."""
+        places = self.layout.places
+        return bool(self.start[places["input_slip_direction"]]), bool(self.start[places["output_slip_direction"]])
+
+    def rows(self, rates: Rates) -> list[int]:
+        """The rates that must vanish: of the controller only those of numbers that something else depends on."""
+        places = self.layout.places
+        others = np.delete(rates.by_numbers, places["control"], axis=0)
+        wanted = [i for i in range(self.layout.count)[places["control"]] if others[:, i].any()]
+        wanted += range(self.layout.count)[places["motor"]]
+        return wanted + [places[f"{end}_speed"].start for end, free in zip(("input", "output"), self.free, strict=True) if free]
+
+    def guess(self) -> Array:
+        """Where to begin: where the controller wants the input, if it may move; else here."""
+        numbers, places = self.start[: self.layout.count].copy(), self.layout.places
+        if self.free[0] and controls_position(self.drive):
+            ratio = self.drive.gear.kinematics.ratio
+            at = self.start[places["input_angle"]] + tau * self.start[places["turns"]]
+            turned = self.inputs[0] * ratio - at
+            numbers[places["input_angle"]] += turned
+            numbers[places["transmission_error"]] += 0.0 if self.free[1] else turned / ratio
+        return numbers
+
+    def moved(self, numbers: Array) -> Array:
+        """Friction has followed the angles; what is left of their speeds tells which way."""
+        places, count, friction = self.layout.places, self.layout.count, self.layout.friction()[:, 0]
+        turned, wound = ((numbers - self.start[:count])[places[name]].item() for name in ("input_angle", "transmission_error"))
+        moving = self.start.copy()
+        moving[:count] = np.where(friction > 0.0, self.start[:count], numbers)
+        moving[places["input_speed"]] = turned / SLOWLY
+        moving[places["output_speed"]] = (turned / self.drive.gear.kinematics.ratio - wound) / SLOWLY if self.free[1] else 0.0
+        return _core.aged(self.drive, moving, self.inputs, SLOWLY)
+
+    def directions(self, rates: Rates) -> Array:
+        """What may move, in columns; the states of friction go with the angles of their shafts."""
+        places, count, friction = self.layout.places, self.layout.count, self.layout.friction()
+        everything, inverse = np.eye(count), 1.0 / self.drive.gear.kinematics.ratio
+        of_friction = friction * rates.by_numbers[:count]
+        by_input, by_output = (of_friction[:, places[name]] for name in ("input_speed", "output_speed"))
+        turn = everything[:, places["input_angle"]] + by_input + inverse * by_output
+        wind = everything[:, places["transmission_error"]] - by_output
+        angles = {
+            (True, True): [turn, wind],
+            (True, False): [turn + inverse * wind],
+            (False, True): [wind],
+            (False, False): [],
+        }[self.free]
+        return np.hstack([everything[:, places["motor"]], everything[:, places["control"]], *angles])
+
+
+# Running
+
+
+def _running(drive: Drive, start: Array, inputs: Array) -> Array:
+    """The steady running of a drive without kinematic error."""
+    if controls_position(drive):
+        raise ValueError(
+            f"there is no equilibrium at command = {inputs[0]:g} rad, load_torque = {inputs[2]:g} N.m: "
+            "motor, spring and friction together cannot hold the load at any angle near it"
+        )
+    steady = _Steady(drive, start, inputs)
+    found = _balance(steady, steady.at(steady.guess())[: steady.layout.count])
+    if found is None:
+        raise ValueError(_unsteady(drive, inputs, "the torques do not balance at any speed"))
+    state = steady.moved(found)
+    elsewhere = state.copy()
+    elsewhere[steady.layout.places["input_angle"]] += 1.0
+    rates = Rates.of(drive, elsewhere, inputs)
+    if not rates.vanishes(steady.rows(rates), 1e-9):
+        raise ValueError(_unsteady(drive, inputs, "load or friction depends on the angle that the drive turns through"))
+    return _core.advance_hysteresis(drive, state, _core.now(drive, state, inputs)[TWIST].item())
+
+
+def _unsteady(drive: Drive, inputs: Array, why: str) -> str:
+    command, load_torque = f"command = {inputs[0]:g} {command_unit(drive)}", f"load_torque = {inputs[2]:g} N.m"
+    return f"the drive cannot rest at {command}, {load_torque}, nor run steadily: {why}"
+
+
+@dataclass(frozen=True, eq=False)
+class _Steady(ComparedByFields):
+    """Running at constant speed, from the angles of `start`."""
+
+    drive: Drive
+    start: Array
+    inputs: Array
+
+    @cached_property
+    def layout(self) -> Layout:
+        return Layout(self.drive)
+
+    def rows(self, rates: Rates) -> list[int]:
+        """The rates that must vanish; that of friction has."""
+        places = self.layout.places
+        return [*range(self.layout.count)[places["motor"]], places["input_speed"].start, places["output_speed"].start]
+
+    def at(self, speed: float) -> Array:
+        """Running at an input speed [rad/s]."""
+        numbers, places = self.start[: self.layout.count].copy(), self.layout.places
+        numbers[places["input_speed"]] = speed
+        numbers[places["output_speed"]] = speed / self.drive.gear.kinematics.ratio
+        return self.moved(numbers)
+
+    def surplus(self, speed: float) -> float:
+        """What is left to accelerate the whole drive at a speed, referred to the input [N.m]: spring and motor settled."""
+        drive, places, state = self.drive, self.layout.places, self.at(speed)
+        motor = places["motor"]
+        rates = Rates.of(drive, state, self.inputs)
+        if rates.finite and rates.rate[motor].any():  # a motor's rates are linear in its numbers
+            state[motor] += _least(rates.by_numbers[motor, motor], -rates.rate[motor])
+            rates = Rates.of(drive, state, self.inputs)
+        if not rates.finite:
+            raise ValueError(_unsteady(self.drive, self.inputs, OVERFLOW))
+        load: Any = drive.load  # one that has an inertia: `check_continuous`
+        inertia = drive.motor.inertia + drive.gear.input_inertia, load.inertia / drive.gear.kinematics.ratio
+        of_input, of_output = (rates.rate[places[name]].item() for name in ("input_speed", "output_speed"))
+        return float(inertia[0] * of_input + inertia[1] * of_output)
+
+    def guess(self) -> float:
+        """The lowest speed at which the whole drive does not accelerate."""
+        from scipy.optimize import brentq
+
+        way = next((sense for sense in (1.0, -1.0) if sense * self.surplus(sense / SLOWLY) > 0.0), 0.0)
+        if way == 0.0:
+            raise ValueError(_unsteady(self.drive, self.inputs, "friction holds it, but no balance was found"))
+        low, high = way / SLOWLY, 1e-3 * way
+        while way * self.surplus(high) > 0.0:
+            low, high = high, 2.0 * high
+            if abs(high) > _FASTEST:
+                raise ValueError(_unsteady(self.drive, self.inputs, "nothing limits its speed"))
+        return float(brentq(self.surplus, low, high))
+
+    def moved(self, numbers: Array) -> Array:
+        """All transients of friction gone."""
+        state = self.start.copy()
+        state[: self.layout.count] = numbers
+        return _core.aged(self.drive, _core.consistent(self.drive, state), self.inputs, SLOWLY)
+
+    def directions(self, rates: Rates) -> Array:
+        """What may move, in columns; friction so that its rate stays as it is."""
+        places, count = self.layout.places, self.layout.count
+        everything, friction = np.eye(count), np.flatnonzero(self.layout.friction())
+        run = everything[:, places["input_speed"]] + everything[:, places["output_speed"]] / self.drive.gear.kinematics.ratio
+        moves = np.hstack([everything[:, places["motor"]], everything[:, places["transmission_error"]], run])
+        by_numbers = rates.by_numbers[:count]
+        by_friction, by_moves = by_numbers[friction][:, friction], (by_numbers @ moves)[friction]
+        for column, right in enumerate(by_moves.T):
+            moves[friction, column] = _least(by_friction, -right)
+        return moves
+
+
+# Both
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
+    """The numbers at which the rates in question vanish to rounding, from `guess`; none if there are none.
+
+    Newton's method, each step shortened until it comes closer. Directions that change nothing are not taken.
+    """
+    numbers = guess
+    rates = Rates.of(path.drive, path.moved(numbers), path.inputs)
+    if not rates.finite:
+        raise ValueError(f"no equilibrium can be found: {OVERFLOW}")
+    for _ in range(100):
+        rows = path.rows(rates)
+        if rates.vanishes(rows, 1e-15):
+            break
+        directions = path.directions(rates)
+        step = directions @ _least(rates.by_numbers[rows] @ directions, -rates.rate[rows])
+        for share in 0.5 ** np.arange(40):
+            trial = Rates.of(path.drive, path.moved(numbers + share * step), path.inputs)
+            scale = np.maximum(rates.size, trial.size)
+            if trial.finite and np.linalg.norm((trial.rate / scale)[rows]) < np.linalg.norm((rates.rate / scale)[rows]):
+                break
+        else:
+            break
+        numbers, rates = numbers + share * step, trial
+    return numbers if rates.vanishes(path.rows(rates), 1e-10) else None
+
+
+def _least(matrix: Array, right: Array) -> Array:
+    """The shortest of the best solutions, rows and unknowns brought to one size."""
+    rows = _positive(np.abs(matrix).max(axis=1, initial=0.0))
+    scaled, wanted = matrix / rows[:, None], right / rows
+    changes = np.abs(scaled).max(axis=0, initial=0.0)
+    if not (np.isfinite(scaled).all() and np.isfinite(wanted).all()):
+        raise ValueError(f"no equilibrium can be found: {OVERFLOW}")
+    solution = np.linalg.lstsq(scaled / _positive(changes), wanted, rcond=1e-13)[0]
+    return np.where(changes > 0.0, solution / _positive(changes), 0.0)
+
+
+def _positive(size: Array) -> Array:
+    return np.where(size > 0.0, size, 1.0)

@@ -1,0 +1,1 @@
+"""What is read and written: recordings, tables, units, gear files and ratings, folders of ensembles."""

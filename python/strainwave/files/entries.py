@@ -1,0 +1,81 @@
+"""Numbers, and where they come from."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+from strainwave import arguments
+from strainwave.files.units import check as check_unit
+from strainwave.files.units import convert
+from strainwave.messages import shortened
+
+NOT_GIVEN = "not given"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Where a number comes from, and how well it is known.
+
+    Args:
+        source: document, measurement or rule, one line of text; "not given" where a file leaves out the whole table
+        spread: scatter of individual gears about the number, relative; None if not known
+        uncertainty: standard deviation of the number, in its unit; None if not known
+
+    Raises:
+        ValueError: the source is no line of text, or a number is negative or not finite.
+    """
+
+    source: str
+    spread: float | None = None
+    uncertainty: float | None = None
+
+    @property
+    def assumed(self) -> bool:
+        """Whether the number was neither measured nor published."""
+        return self.source.startswith("assumed") or self.source == NOT_GIVEN
+
+    def __post_init__(self) -> None:
+        check_line("source", self.source)
+        for name in ("spread", "uncertainty"):
+            if (number := getattr(self, name)) is not None:
+                arguments.number(name, number, brackets="[)", low=0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity(Entry):
+    """A number with its unit and where it comes from.
+
+    Args:
+        value: the number, in `unit`
+        unit: a unit that `strainwave.files.units.check` knows
+        source, spread, uncertainty: as in `Entry`
+
+    Raises:
+        ValueError: the number is not finite, the unit is not known, or as in `Entry`.
+
+    >>> Quantity(value=30.0, unit="rpm", source="measured on the rig").to("rad/s").value
+    3.141592653589793
+    """
+
+    value: float
+    unit: str
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_unit(self.unit)
+        arguments.number("value", self.value, self.unit)
+
+    def to(self, unit: str) -> Quantity:
+        """The same in another unit; `ValueError` where the units do not agree."""
+        if arguments.text("unit", unit) == self.unit:
+            return self
+        uncertainty = self.uncertainty
+        if uncertainty is not None:  # a difference: the zeros of the units do not count
+            uncertainty *= convert(1.0, self.unit, unit) - convert(0.0, self.unit, unit)
+        return dataclasses.replace(self, value=convert(self.value, self.unit, unit), unit=unit, uncertainty=uncertainty)
+
+
+def check_line(name: str, text: str) -> None:
+    if not arguments.text(name, text).strip() or not text.isprintable():
+        raise ValueError(f"{name} = {shortened(text)} must be one line of text")

@@ -1,0 +1,427 @@
+"""Gear files: what may be written where, and how a set is read from TOML and written to it.
+
+What a table may hold is what its model describes; no parameter is named here. What is wrong in a file is refused in one line
+with file, table and key. docs/gear-files.md shows the format.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import reprlib
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Protocol, get_type_hints
+
+from strainwave import Drive, Gear
+from strainwave.files.described import ParameterField, PartField, all_paths, default_of, own_paths, parameters, parts
+from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
+from strainwave.files.writing import replacing
+from strainwave.messages import one_line, quoted
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
+
+Sources = dict[str, Entry]
+
+
+class Contents(Protocol):
+    """What a file holds, as a gear set has it."""
+
+    @property
+    def gear(self) -> Gear: ...
+    @property
+    def sources(self) -> Mapping[str, Entry]: ...
+    @property
+    def ratings(self) -> Mapping[str, Quantity]: ...
+
+
+_TEXTS = ("name", "maker", "note")
+
+
+def read(path: Path) -> dict[str, Any]:
+    """The members of the set in a file; `ValueError` says what is wrong in it, with table and key."""
+    document = _document(path)
+    _checked(_head_form(), document)
+    models, sources = _read_models(document)
+    with at("[ratings]"):
+        ratings = _read_ratings(document.get("ratings", {}))
+    texts = {key: document[key] for key in _TEXTS if key in document}
+    return {"sources": sources, "ratings": ratings, **texts, **models}
+
+
+def write(gear_set: Contents, path: Path) -> None:
+    """Writes a file that `read` reads back equal, bit for bit; `ValueError` where its name does not end in .toml."""
+    if path.suffix != ".toml":
+        raise ValueError(one_line(f"{path}: a gear file ends in .toml"))
+    content = text(gear_set)
+    with replacing(path) as file:
+        file.write(content.encode())
+
+
+def left_out(gear_set: Contents) -> frozenset[str]:
+    """Tables that the file of a set does without, by path."""
+    return frozenset(table.path for table, model in _filled(gear_set) if _is_left_out(table, model, gear_set.sources))
+
+
+def idle(gear_set: Contents) -> list[str]:
+    """Path of every number of the parts that do nothing, which a file may do without."""
+    return [path for table, model in _filled(gear_set) if _does_nothing(table, model) for path in own_paths(table.path, model)]
+
+
+# The tables of a file, as the models describe themselves
+
+
+class _Table(NamedTuple):
+    """A table of a gear file: the numbers of one model, without those of its parts.
+
+    `kinds` are the models to choose from, none where there is but one, `only`. `absent` holds where the table is left out:
+    the part that does nothing, or None.
+    """
+
+    name: str
+    path: str
+    kinds: Mapping[str, Any]
+    only: Any
+    absent: Any
+    required: bool
+
+    @property
+    def in_gear(self) -> bool:
+        return self.path.startswith("gear.")
+
+    @property
+    def header(self) -> str:
+        """As the file writes it."""
+        return f"[{self.path.removeprefix('gear.')}]"
+
+
+@cache
+def _tables() -> tuple[_Table, ...]:
+    drive = Drive()
+    return tuple(_table(path, model, part) for path, model in (("gear.", drive.gear), ("", drive)) for part in parts(model))
+
+
+def _table(path: str, model: Any, part: PartField) -> _Table:
+    of_gear = path == "gear." or part.name == "gear"
+    default = getattr(model, part.name)
+    idle = not getattr(default, "active", any(getattr(default, p.name) not in (0, ()) for p in parameters(default)))
+    absent = default if of_gear and idle else None
+    return _Table(part.name, path + part.name, part.options or {}, type(default), absent, required=of_gear and not idle)
+
+
+def _inner(path: str, model: Any) -> list[_Table]:
+    """The tables of the models that a model, or a class of models, holds; those of a gear stand in the file by themselves."""
+    if path == "gear":
+        return []
+    tables = []
+    for part in parts(model):
+        default = default_of(model, part.name)
+        absent = None if list(all_paths("", default)) else default  # without numbers, so without a source
+        tables.append(_Table(part.name, f"{path}.{part.name}", part.options or {}, type(default), absent, absent is None))
+    return tables
+
+
+def _filled(gear_set: Contents) -> Iterator[tuple[_Table, Any]]:
+    """The tables that a set fills, each with its model."""
+    for table in _tables():
+        model = getattr(gear_set.gear if table.in_gear else gear_set, table.name)
+        if model is not None:
+            yield table, model
+
+
+# Reading
+
+
+def _document(path: Path) -> dict[str, Any]:
+    try:
+        document = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        raise ValueError(one_line(f"cannot be read: {error.strerror}")) from None
+    except (ValueError, RecursionError) as error:
+        raise ValueError(one_line(f"is not valid TOML: {error}")) from None
+    if not document:
+        raise ValueError("is empty")
+    return document
+
+
+def _read_models(document: Mapping[str, Any]) -> tuple[dict[str, Any], Sources]:
+    """The parts of a drive, as far as there are, and where their numbers come from, by path."""
+    models: dict[str, Any] = {}
+    sources: Sources = {}
+    for table in _tables():
+        model, its_sources = _read_table(table, document.get(table.name))
+        sources |= its_sources
+        if model is not None:
+            models[table.path] = model
+    parts_of_gear = {table.name: models.pop(table.path) for table in _tables() if table.in_gear}
+    return models | {"gear": models["gear"].replace(**parts_of_gear)}, sources
+
+
+def _read_table(table: _Table, content: dict[str, Any] | None) -> tuple[Any, Sources]:
+    """The model that a table holds, and where its numbers come from, by path."""
+    if content is None:
+        absent = table.absent
+        return absent, dict.fromkeys(own_paths(table.path, absent), Entry(NOT_GIVEN)) if absent else {}
+    sources: Sources = {}
+    with at(table.header):
+        model, content = _chosen(table, content)
+        members = _checked(_table_form(table.path, model), content)
+        for parameter in parameters(model):
+            members[parameter.name], its_sources = _read_parameter(table.path, parameter, members[parameter.name])
+            sources |= its_sources
+    for inner in _inner(table.path, model):
+        members[inner.name], its_sources = _read_table(inner, members[inner.name])
+        sources |= its_sources
+    with at(table.header):
+        return model(**members), sources
+
+
+def _read_parameter(path: str, parameter: ParameterField, given: Any) -> tuple[Any, Sources]:
+    """The value of a parameter in its unit, and where its numbers come from, by path."""
+    name, kind, unit = parameter
+    if kind == "choice":
+        return given, {}
+    is_sequence = kind == "sequence"
+    with at(f"{name}:"):
+        quantities = [Quantity(**entry).to(unit) for entry in (given if is_sequence else [given])]
+    values = [quantity.value for quantity in quantities]
+    entries = [Entry(quantity.source, quantity.spread, quantity.uncertainty) for quantity in quantities]
+    if is_sequence:
+        return values, {f"{path}.{name}[{i}]": entry for i, entry in enumerate(entries)}
+    return values[0], {f"{path}.{name}": entries[0]}
+
+
+def _chosen(table: _Table, content: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """The class of the model that a table names, and the rest of the table."""
+    if not table.kinds:
+        return table.only, content
+    if "model" not in content:
+        raise ValueError(f"has no model; write {_choice(table)}")
+    name = str(content["model"])
+    if name not in table.kinds:
+        raise ValueError(f"model = {quoted(name)} is not known; write {_choice(table)}")
+    return table.kinds[name], {key: content[key] for key in content if key != "model"}
+
+
+def _choice(table: _Table) -> str:
+    return "model = " + " or ".join(f'"{name}"' for name in table.kinds)
+
+
+def _read_ratings(content: Mapping[str, Any]) -> dict[str, Quantity]:
+    examples = {key: f'{key} = {{ value = …, unit = "…", source = "…" }}' for key in content}
+    checked = _checked(_Form("rating", dict[str, _entry_schema("")], examples), content)  # type: ignore[misc]
+    ratings = {}
+    for key, entry in checked.items():
+        with at(f"{key}:"):
+            ratings[key] = Quantity(**entry)
+    return ratings
+
+
+@contextmanager
+def at(place: str) -> Iterator[None]:
+    """Puts the place before the message of whatever is refused inside."""
+    try:
+        yield
+    except (TypeError, ValueError) as error:
+        raise ValueError(one_line(f"{place} {error}")) from None
+
+
+# What may be written where: pydantic types made of the models' fields
+
+
+class _Form(NamedTuple):
+    """What may be written in one place of a file: its type, how each key is written, and what a key is called."""
+
+    noun: str
+    schema: Any
+    examples: Mapping[str, str]
+
+
+@cache
+def _head_form() -> _Form:
+    """The texts and tables of a file."""
+    keys: dict[str, Any] = dict.fromkeys(_TEXTS, (str, "")) | {"name": (str, ...), "ratings": (dict[str, Any], {})}
+    examples = {key: f'{key} = "…"' for key in _TEXTS} | {"ratings": "[ratings]"}
+    for table in _tables():
+        keys[table.name] = (dict[str, Any], ... if table.required else {})
+        examples[table.name] = f"[{table.name}]" + (f" with {_choice(table)}" if table.kinds else "")
+    return _Form("part of a gear file", _schema("gear file", keys), examples)
+
+
+@cache
+def _table_form(path: str, model: Any) -> _Form:
+    """The keys of a table with the parameters of this class of models."""
+    keys: dict[str, Any] = {parameter.name: (_content(parameter), ...) for parameter in parameters(model)}
+    examples = {
+        parameter.name: f"{parameter.name} = {_example(parameter, default_of(model, parameter.name))}"
+        for parameter in parameters(model)
+    }
+    for inner in _inner(path, model):
+        keys[inner.name] = (dict[str, Any], ...) if inner.required else (dict[str, Any] | None, None)
+        examples[inner.name] = f"{inner.header} with {_choice(inner)}"
+    return _Form(f"parameter of {model.name}", _schema(model.name, keys), examples)
+
+
+def _content(parameter: ParameterField) -> Any:
+    from pydantic import BeforeValidator
+
+    if parameter.kind == "choice":
+        return str
+    number = _entry_schema(parameter.unit)
+    if parameter.kind == "sequence":
+        return Annotated[list[number], BeforeValidator(_elements)]  # type: ignore[valid-type]
+    return number
+
+
+def _elements(content: Any) -> Any:
+    """One entry for each number, where a sequence is written as one entry with a list of numbers."""
+    if isinstance(content, dict) and isinstance(values := content.get("value"), list) and values:
+        return [content | {"value": value} for value in values]
+    return content
+
+
+@cache
+def _entry_schema(unit: str) -> Any:
+    """A number as files give it: the members of a Quantity. Only the unit 1 may be left out."""
+    types = get_type_hints(Quantity)
+    keys = {"value": (types["value"], ...), "unit": (types["unit"], "1" if unit == "1" else ...)}
+    for member in dataclasses.fields(Entry):
+        keys[member.name] = (types[member.name], ... if member.default is dataclasses.MISSING else member.default)
+    return _schema("entry", keys)
+
+
+def _schema(name: str, keys: Mapping[str, Any]) -> Any:
+    from pydantic import ConfigDict, create_model
+
+    return create_model(name, __config__=ConfigDict(strict=True, extra="forbid", allow_inf_nan=False), **keys)
+
+
+def _example(parameter: ParameterField, default: Any) -> str:
+    if parameter.kind == "choice":
+        return f'"{default}"'
+    unit = "" if parameter.unit == "1" else f', unit = "{parameter.unit}"'
+    if parameter.kind == "sequence":
+        return f'{{ value = […]{unit}, source = "…" }}, or [] for none'
+    return f'{{ value = …{unit}, source = "…" }}'
+
+
+def _checked(form: _Form, content: Mapping[str, Any]) -> dict[str, Any]:
+    """The content as plain dictionaries, once it has the form."""
+    from pydantic import TypeAdapter, ValidationError
+
+    adapter = TypeAdapter[Any](form.schema)
+    try:
+        checked: dict[str, Any] = adapter.dump_python(adapter.validate_python(content))
+    except ValidationError as error:
+        # A key that is not known comes first: misspelt, it explains why another one is missing.
+        fault = min(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+        raise ValueError(_explained(fault, form)) from None
+    return checked
+
+
+_WANTED = {
+    "dict_type": "a table",
+    "finite_number": "finite",
+    "float_type": "a number",
+    "list_type": "a list",
+    "model_type": "a table",
+    "string_type": "a text",
+}
+
+
+def _explained(fault: ErrorDetails, form: _Form) -> str:
+    """What pydantic found, in the words of the file: key, value, what is allowed."""
+    kind, given = fault["type"], fault["input"]
+    key, *inner = fault["loc"]
+    attribute = next((name for name in inner if isinstance(name, str)), "")
+    where = str(key) + "".join(f"[{index}]" for index in inner if isinstance(index, int))
+    if kind == "extra_forbidden" and not attribute:
+        return f"{key}: not a {form.noun}; it has {', '.join(form.examples)}"
+    hint = f"write {form.examples[str(key)]}"
+    if kind == "extra_forbidden":
+        return f"{where}: an entry has no {attribute}; {hint}"
+    number = given.get("value") if isinstance(given, dict) else given
+    if kind in ("missing", "model_type") and type(number) in (int, float):
+        hint = hint.replace("value = …", f"value = {number}")
+    if kind == "missing":
+        return f"{where} has no {attribute}; {hint}" if attribute else f"{where} is missing; {hint}"
+    what = f"{where}.{attribute}".removesuffix(".value").removesuffix(".")
+    return f"{what} = {reprlib.repr(given)} must be {_WANTED[kind]}; {hint}"
+
+
+# Writing
+
+
+def text(gear_set: Contents) -> str:
+    """What stands in the file of a set."""
+    import tomlkit
+
+    document = tomlkit.document()
+    for key in _TEXTS:
+        if given := getattr(gear_set, key):
+            document.add(key, given)
+    for table, model in _filled(gear_set):
+        if not _is_left_out(table, model, gear_set.sources):
+            document.add(table.name, _written(table, model, gear_set.sources))
+    if gear_set.ratings:
+        ratings = document["ratings"] = tomlkit.table()
+        for name, rating in gear_set.ratings.items():
+            ratings.add(name, _inline(rating.value, rating.unit, rating))
+    return tomlkit.dumps(document)
+
+
+def _is_left_out(table: _Table, model: Any, sources: Mapping[str, Entry]) -> bool:
+    """Whether a file says this without a table: the part does nothing, and no source is given for its numbers."""
+    return _does_nothing(table, model) and all(sources[path].source == NOT_GIVEN for path in own_paths(table.path, model))
+
+
+def _does_nothing(table: _Table, model: Any) -> bool:
+    """Whether a table that is left out is read as this model, of a gear without its parts."""
+    absent = table.absent
+    return type(model) is type(absent) and all(getattr(model, p.name) == getattr(absent, p.name) for p in parameters(model))
+
+
+def _written(table: _Table, model: Any, sources: Mapping[str, Entry]) -> Any:
+    """The table of a model: one line a parameter."""
+    import tomlkit
+
+    written = tomlkit.table()
+    if table.kinds:
+        written.add("model", model.name)
+    for name, kind, unit in parameters(model):
+        value, place = getattr(model, name), f"{table.path}.{name}"
+        if kind == "choice":
+            written.add(name, value)
+        elif kind == "sequence":
+            entries = [sources[f"{place}[{i}]"] for i in range(len(value))]
+            written.add(name, _inline_sequence(value, unit, entries))
+        else:
+            written.add(name, _inline(value, unit, sources[place]))
+    for inner in _inner(table.path, model):
+        if not _is_left_out(inner, part := getattr(model, inner.name), sources):
+            written.add(inner.name, _written(inner, part, sources))
+    return written
+
+
+def _inline_sequence(values: Sequence[float], unit: str, entries: Sequence[Entry]) -> Any:
+    """One entry for all numbers where they have it in common, else a list with one for each."""
+    import tomlkit
+
+    if len(set(entries)) == 1:
+        return _inline(list(values), unit, entries[0])
+    array = tomlkit.array().multiline(len(values) > 0)
+    for value, entry in zip(values, entries, strict=True):
+        array.append(_inline(value, unit, entry))
+    return array
+
+
+def _inline(value: Any, unit: str, entry: Entry) -> Any:
+    import tomlkit
+
+    known = {key: known for key, known in dataclasses.asdict(entry).items() if known is not None}
+    inline = tomlkit.inline_table()
+    inline.update({"value": value, "unit": unit} | known)
+    return inline

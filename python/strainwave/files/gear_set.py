@@ -1,0 +1,398 @@
+"""Gear sets: a gear with the source of each of its numbers, and what else is known of it.
+
+Which numbers there are, the models say themselves; none is named here. `gear_file` reads and writes the files.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from math import isfinite
+from operator import attrgetter
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Protocol, TypeVar, overload, runtime_checkable
+
+from strainwave import Drive, arguments
+from strainwave._core import Gear
+from strainwave.files import gear_file
+from strainwave.files.described import all_paths, default_of, parts
+from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
+from strainwave.messages import quoted, shortened, unquoted
+
+Kind = TypeVar("Kind", bound=Entry)
+_PARTS = [field["name"] for field in Drive.fields]
+
+CATALOGUE = Path(__file__).parents[1] / "catalogue"
+
+
+class Estimated(Protocol):
+    """A number that was fitted: its path in the model, and its standard deviation, infinite where the data do not tell."""
+
+    @property
+    def path(self) -> str: ...
+    @property
+    def sigma(self) -> float: ...
+
+
+@runtime_checkable
+class Fitted(Protocol):
+    """A model with fitted numbers, as `sw.fit` gives it. Estimates that are no numbers of the model are of no concern here."""
+
+    @property
+    def model(self) -> Any: ...
+    @property
+    def estimates(self) -> Iterable[Estimated]: ...
+
+
+@dataclass(frozen=True)
+class GearSet:
+    """A gear, the source of each of its numbers, and what else is known of it.
+
+    Two sets are equal if all members are, sources and ratings too. Their gears are equal if models and numbers are: as the
+    published tables give HFUC-20-80 and CSG-20-80 the same stiffness and inertia, their gears are equal, the sets are not.
+
+    Args:
+        name: what the gear is called, one line of text
+        gear: its model
+        sources: where each number of the models comes from, by path: "gear.stiffness.k1", "motor.resistance",
+            "gear.hysteresis.stiffness[0]"
+        maker: who makes it
+        note: what else is to be said
+        ratings: what the maker allows, by name; no part of the model
+        motor, control, load, sensors: the rest of a drive, models of `sw.motor`, `sw.control` and `sw.loads`, and `sw.Sensors`;
+            None if not known
+
+    Raises:
+        ValueError: a number has no source, a source has no number, or name or maker is no line of text
+        TypeError: a text is none, a model is of the wrong family, or a source or rating not of its type
+
+    >>> gear_set = GearSet.read("csg-20-100")
+    >>> gear_set.gear.stiffness.k2, gear_set.sources["gear.stiffness.k2"].spread
+    (25000.0, 0.3)
+    >>> gear_set.ratings["rated_torque"].value
+    52.0
+    """
+
+    name: str
+    gear: Gear
+    sources: Mapping[str, Entry] = field(repr=False, hash=False)
+    maker: str = ""
+    note: str = ""
+    ratings: Mapping[str, Quantity] = field(default_factory=dict, repr=False, hash=False)
+    motor: Any = None
+    control: Any = None
+    load: Any = None
+    sensors: Any = None
+
+    def __post_init__(self) -> None:
+        _check_texts(self.name, self.maker, self.note)
+        _drive(vars(self))  # refuses what is no model of its family
+        arguments.mapping("sources", self.sources, '{"gear.damping": Entry("assumed")}')
+        arguments.mapping("ratings", self.ratings, '{"peak_torque": Quantity(…)}')
+        paths = list(_paths(vars(self)))
+        if bare := [path for path in paths if path not in self.sources]:
+            raise ValueError(f"{self.name}: {bare[0]} has no source")
+        if extra := self.sources.keys() - set(paths):
+            raise ValueError(f"{self.name}: sources name {unquoted(min(extra))}, which is no number of the set")
+        object.__setattr__(self, "sources", _frozen(self.sources, Entry))
+        object.__setattr__(self, "ratings", _frozen(self.ratings, Quantity))
+
+    def __reduce__(self) -> tuple[partial[GearSet], tuple[()]]:
+        return partial(GearSet, **vars(self) | {"sources": dict(self.sources), "ratings": dict(self.ratings)}), ()
+
+    @property
+    def drive(self) -> Drive:
+        """The drive that the set describes; open loop where it has no control.
+
+        Raises:
+            ValueError: the set has no motor or no load.
+        """
+        if missing := [name for name in ("motor", "load") if getattr(self, name) is None]:
+            raise ValueError(f"{self.name} has no [{'] and no ['.join(missing)}]; a drive needs a motor and a load")
+        return _drive(vars(self))
+
+    @property
+    def left_out(self) -> frozenset[str]:
+        """Tables that a file of the set does without, by path: parts that do nothing, of whose numbers no source is given.
+
+        >>> sorted(GearSet.read("hfuc-25-100").left_out)
+        ['gear.friction_mesh', 'gear.kinematic_noise']
+        """
+        return gear_file.left_out(self)
+
+    @classmethod
+    def of(cls, model: Gear | Drive | Fitted, *, name: str, source: str, sources: Mapping[str, Entry] | None = None) -> GearSet:
+        """The set of a model, or of a fit.
+
+        A model does not remember which of its numbers were given. So a part that does nothing is "not given", and the
+        source of a number that equals its default says so.
+
+        Args:
+            model: a gear, a whole drive, or a fit of one
+            name: what the gear is called, one line of text
+            source: where the numbers come from, one line of text; of a fit, where the fitted ones come from
+            sources: other sources of some numbers, by path: of one number as "gear.stiffness.k1", of all numbers of a
+                part as "gear.stiffness"; the longer path counts. A fitted number keeps the source of the fit.
+
+        Returns:
+            The set. Fitted numbers have their standard deviation as `uncertainty`.
+
+        Raises:
+            ValueError: `sources` names what the model does not have, or a text is no line of text
+            TypeError: the model is none, or a source is no `Entry`
+
+        >>> import strainwave as sw
+        >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=800.0), damping=3.0)
+        >>> printed = GearSet.of(gear, name="printed", source="torsion loop", sources={"gear.damping": Entry("assumed")})
+        >>> for path in ("stiffness.k", "damping", "input_inertia", "friction_input.viscous"):
+        ...     print(path, "=", printed.sources[f"gear.{path}"].source)
+        stiffness.k = torsion loop
+        damping = assumed
+        input_inertia = assumed: the default, unless given by: torsion loop
+        friction_input.viscous = not given
+        """
+        if sources is not None:
+            arguments.mapping("sources", sources, '{"gear.damping": Entry("assumed")}')
+        whole = model.model if isinstance(model, Fitted) else model
+        models = _models(whole)
+        _drive(models)  # refuses what is no gear
+        rest = Entry("assumed: kept by the fit, its source is not given" if isinstance(model, Fitted) else source)
+        alike = cls(name=name, sources=dict.fromkeys(_paths(models), rest), **models)
+        entries = {path: _unless_default(alike, path) for path in alike.sources}
+        entries |= {path: Entry(NOT_GIVEN) for path in gear_file.idle(alike)}
+        entries |= _named(alike, sources or {})
+        if isinstance(model, Fitted):
+            entries |= _estimated(alike, model, source)
+        return alike.replace(sources=entries)
+
+    @staticmethod
+    def read(name_or_path: str | Path) -> GearSet:
+        """Read a set of the catalogue by name, or a gear file by path.
+
+        Args:
+            name_or_path: a name in `catalogue()`, or a path: what ends in .toml or has a folder
+
+        Returns:
+            The set, in SI units. A table left out is the part that does nothing, its sources say "not given".
+
+        Raises:
+            ValueError: no such name or file, or what is wrong in it, with file, table and key.
+        """
+        path = _file(name_or_path)
+        with gear_file.at(f"{path}"):
+            return GearSet(**gear_file.read(path))
+
+    def replace(self, **changes: Any) -> GearSet:
+        """The same with the named members changed; `sources` and `ratings` are replaced as a whole.
+
+        >>> found = Entry("fitted to a friction table", uncertainty=2e-3)
+        >>> gear_set = GearSet.read("hfuc-25-100")
+        >>> changed = gear_set.replace(
+        ...     gear=gear_set.gear.replace(damping=5.0), sources={**gear_set.sources, "gear.damping": found}
+        ... )
+        >>> changed.sources["gear.damping"].uncertainty
+        0.002
+        """
+        return dataclasses.replace(self, **changes)
+
+    def with_parts(
+        self, *, source: str, motor: Any = None, control: Any = None, load: Any = None, sensors: Any = None
+    ) -> GearSet:
+        """The same with these parts of a drive, whose numbers come from one source.
+
+        Args:
+            source: where they come from, one line of text; a number that equals its default says so, as in `of`
+            motor, control, load, sensors: models of `sw.motor`, `sw.control` and `sw.loads`, and `sw.Sensors`; what is not
+                given stays
+
+        >>> import strainwave as sw
+        >>> disc = sw.loads.Inertia(inertia=2.0)
+        >>> whole = GearSet.read("hfuc-25-100").with_parts(motor=sw.motor.DC(resistance=0.3), load=disc, source="data sheet")
+        >>> whole.sources["motor.resistance"].source, whole.drive.load.inertia
+        ('data sheet', 2.0)
+        """
+        given = {"motor": motor, "control": control, "load": load, "sensors": sensors}
+        added = {name: part for name, part in given.items() if part is not None}
+        old = tuple(f"{name}." for name in added)
+        kept = {path: entry for path, entry in self.sources.items() if not path.startswith(old)}
+        _drive({"gear": self.gear} | added)  # refuses what is no model of its family
+        paths = list(_paths(added))
+        alike = self.replace(**added, sources=kept | dict.fromkeys(paths, Entry(source)))
+        return alike.replace(sources=kept | {path: _unless_default(alike, path) for path in paths})
+
+    def save(self, path: str | Path) -> None:
+        """Write a gear file that `read` reads back equal, bit for bit.
+
+        Args:
+            path: the file, which must end in .toml
+
+        Raises:
+            ValueError: the path does not end in .toml.
+
+        >>> import tempfile
+        >>> gear_set = GearSet.read("hfuc-25-100")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     gear_set.save(f"{folder}/mine.toml")
+        ...     GearSet.read(f"{folder}/mine.toml") == gear_set
+        True
+        """
+        gear_file.write(self, Path(path))
+
+
+def catalogue() -> list[str]:
+    """Names of the gear sets that come with the package, in order.
+
+    >>> len(catalogue()), catalogue()[0]
+    (127, 'csg-14-100')
+    """
+    return sorted(file.stem for file in CATALOGUE.glob("*.toml"))
+
+
+def load(name_or_path: str | Path) -> Any:
+    """What a file holds: the drive, where it has a motor and a load, else the gear.
+
+    What was saved is what is loaded: a gear, or a drive. Where the type must be known beforehand, `GearSet.read(path).gear`
+    is the gear of any file, and `GearSet.read(path).drive` the drive.
+
+    Args:
+        name_or_path: a name in `catalogue()`, or a path: what ends in .toml or has a folder
+
+    Returns:
+        A `Gear` or a `Drive`; of a set of the catalogue a `Gear`.
+
+    Raises:
+        ValueError: as `GearSet.read`, which also gives sources and ratings.
+
+    >>> load("hfuc-25-100").stiffness.k2
+    50000.0
+    """
+    gear_set = GearSet.read(name_or_path)
+    return gear_set.gear if gear_set.motor is None or gear_set.load is None else gear_set.drive
+
+
+@overload
+def save(model: GearSet, path: str | Path) -> None: ...
+@overload
+def save(
+    model: Gear | Drive | Fitted,
+    path: str | Path,
+    *,
+    name: str,
+    source: str,
+    sources: Mapping[str, Entry] | None = None,
+) -> None: ...
+def save(model: GearSet | Gear | Drive | Fitted, path: str | Path, **naming: Any) -> None:
+    """Write a gear file, which `load` reads back equal, bit for bit.
+
+    Args:
+        model: a set, a gear, a drive, or a fit: then its fitted numbers keep their standard deviation
+        path: the file, which must end in .toml
+        name, source, sources: as `GearSet.of`; a set has its own
+
+    Raises:
+        ValueError: the path does not end in .toml, or as `GearSet.of`
+        TypeError: name and source are missing, or given for a set which has its own, or as `GearSet.of`
+
+    >>> import tempfile, strainwave as sw
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save(sw.Gear(damping=0.1 + 0.2), f"{folder}/mine.toml", name="mine", source="measured on my rig")
+    ...     load(f"{folder}/mine.toml").damping
+    0.30000000000000004
+    """
+    gear_set = model if isinstance(model, GearSet) else GearSet.of(model, **naming)
+    if gear_set is model and naming:
+        name, given = min(naming.items())
+        raise TypeError(f"{name} = {shortened(given)}: a set has its own; change it by replace before it is saved")
+    gear_set.save(path)
+
+
+def _paths(models: Mapping[str, Any]) -> Iterator[str]:
+    """Path of every number of the parts of a drive."""
+    for name in _PARTS:
+        if models.get(name) is not None:
+            yield from all_paths(name, models[name])
+
+
+def _models(model: Any) -> dict[str, Any]:
+    """The parts of a drive, or the gear alone."""
+    return {part.name: getattr(model, part.name) for part in parts(model)} if isinstance(model, Drive) else {"gear": model}
+
+
+def _unless_default(gear_set: GearSet, path: str) -> Entry:
+    """The entry of a number, which says so where the number equals the default of its model."""
+    entry, (place, _, name) = gear_set.sources[path], path.rpartition(".")
+    name, _, index = name.partition("[")
+    model = attrgetter(place)(gear_set)
+    value, default = getattr(model, name), default_of(model, name)
+    if index:
+        number = int(index.removesuffix("]"))
+        value, default = value[number], default[number] if number < len(default) else None
+    if value != default or entry.assumed:
+        return entry
+    return Entry(f"assumed: the default, unless given by: {entry.source}")
+
+
+def _named(gear_set: GearSet, sources: Mapping[str, Entry]) -> dict[str, Entry]:
+    """The entries of numbers that are named by themselves or by what they are part of; the longer name counts."""
+    arguments.mapping("sources", sources, '{"gear.damping": Entry("assumed")}')
+    named: dict[str, Entry] = {}
+    for place, entry in sorted(_frozen(sources, Entry).items(), key=lambda item: len(item[0])):
+        inside = [path for path in gear_set.sources if path == place or path.startswith((f"{place}.", f"{place}["))]
+        if not inside:
+            near = ", ".join(difflib.get_close_matches(place, gear_set.sources, n=3, cutoff=0.0))
+            raise ValueError(
+                f"{gear_set.name}: sources name {unquoted(place)}, which is no number or part of the model; near it are {near}"
+            )
+        named |= dict.fromkeys(inside, entry)
+    return named
+
+
+def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
+    """The entries of fitted numbers; the paths of a gear's fit begin inside the gear."""
+    before = "" if isinstance(fit.model, Drive) else "gear."
+    entries = {}
+    for estimate in fit.estimates:
+        told = isfinite(estimate.sigma)
+        entry = Entry(source, uncertainty=estimate.sigma) if told else Entry(f"not determined by: {source}")
+        entries[before + estimate.path] = entry
+    return {path: entry for path, entry in entries.items() if path in gear_set.sources}
+
+
+def _drive(models: Mapping[str, Any]) -> Drive:
+    """The drive of these models, with the default for each that is None."""
+    rest = {name: models[name] for name in _PARTS if name == "gear" or models.get(name) is not None}
+    return Drive(**rest)
+
+
+def _check_texts(name: str, maker: str, note: str) -> None:
+    check_line("name", name)
+    if arguments.text("maker", maker):
+        check_line("maker", maker)
+    arguments.text("note", note)
+
+
+def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]:
+    for key, entry in entries.items():
+        if not isinstance(key, str):
+            raise TypeError(f"a number is named by a text, not {shortened(key)}")
+        if not isinstance(entry, kind):
+            raise TypeError(f"{unquoted(key)} must have a strainwave.{kind.__name__}, not {shortened(entry)}")
+    return MappingProxyType(dict(entries))
+
+
+def _file(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
+        return path
+    names = catalogue()
+    if name_or_path not in names:
+        near = difflib.get_close_matches(name_or_path.lower(), names)
+        raise ValueError(
+            f"no gear set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
+            "strainwave.catalogue() lists all, and the path of a file ends in .toml"
+        )
+    return CATALOGUE / f"{name_or_path}.toml"

@@ -1,0 +1,439 @@
+"""Recordings: measured or simulated series with units, read from and written to CSV and Parquet.
+
+Whatever comes in is checked once, here: equal lengths, finite numbers, known units, time that runs forward. Nothing is
+repaired; what is wrong is refused in one line that names the place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, KeysView, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import arguments
+from strainwave.files.units import check as check_unit
+from strainwave.files.units import convert
+from strainwave.files.writing import replacing
+from strainwave.messages import listed, one_line, quoted, shortened
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+    from strainwave.files.tables import Table
+
+Array = NDArray[np.float64]
+
+_DRAWABLE = 1e300  # the range of an axis, with its margins, must be a number too
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Recording:
+    """Named series of equal length, each with its unit.
+
+    Args:
+        columns: the values of each series, in order, shape (n,), n >= 1; copied unless they are read-only already
+        units: the unit of each series, as `strainwave.files.units.check` knows it
+        title: what was recorded, one line
+
+    A column called `time` must strictly increase. Rows are counted from 0.
+
+    Raises:
+        ValueError: lengths differ, a value is not finite, a unit is missing or not known, or time does not increase.
+
+    >>> recording = Recording({"time": [0.0, 0.1], "speed": [0.0, 30.0]}, {"time": "s", "speed": "rpm"})
+    >>> recording
+    <Recording: 2 samples from 0 s to 0.1 s; time [s], speed [rpm]>
+    >>> recording.values("speed", "rad/s")
+    array([0.        , 3.14159265])
+    """
+
+    columns: Mapping[str, Array]
+    units: Mapping[str, str]
+    title: str
+
+    def __init__(self, columns: Mapping[str, ArrayLike], units: Mapping[str, str], title: str = "") -> None:
+        _check_names(columns, units)
+        if arguments.text("title", title) and not title.isprintable():
+            raise ValueError(f"title {shortened(title)} must be one line of text")
+        frozen = {name: _frozen(name, values) for name, values in columns.items()}
+        _check_lengths(frozen)
+        known = {name: _known(name, units[name]) for name in columns}
+        if fault := _first_fault(frozen, known):
+            raise ValueError(f"column {quoted(fault.column)} row {fault.row}: {fault.reason}")
+        self._hold(frozen, known, title)
+
+    def _hold(self, columns: Mapping[str, Array], units: Mapping[str, str], title: str) -> None:
+        """Keeps what is known to be in order: read-only series, units in their standard spelling."""
+        object.__setattr__(self, "columns", MappingProxyType(columns))
+        object.__setattr__(self, "units", MappingProxyType(units))
+        object.__setattr__(self, "title", title)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns, in order."""
+        return tuple(self.columns)
+
+    @property
+    def time(self) -> Array:
+        """The column `time` [s], shape (n,)."""
+        return self.values("time", "s")
+
+    def __getitem__(self, name: str) -> Array:
+        """Values of a column in its own unit, shape (n,), read-only."""
+        if arguments.text("the name of a column", name) not in self.columns:
+            raise ValueError(f"no column {quoted(name)}; there are {listed(self.names)}")
+        return self.columns[name]
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name in self.columns
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def keys(self) -> KeysView[str]:
+        """Names of the columns, so that ``dict(recording)`` is a dictionary of them."""
+        return self.columns.keys()
+
+    def __iter__(self) -> Iterator[tuple[float, ...]]:
+        """The samples, one after the other, each a named tuple: what ``pandas.DataFrame(recording)`` makes rows of."""
+        sample = type("Sample", (tuple,), {"_fields": self.names})
+        for row in zip(*(values.tolist() for values in self.columns.values()), strict=True):
+            yield sample(row)
+
+    def __eq__(self, other: object) -> bool:
+        """Same title, columns in the same order, same units, and every value the same."""
+        if not isinstance(other, Recording):
+            return NotImplemented
+        if (self.title, self.names, self.units) != (other.title, other.names, other.units):
+            return False
+        return all(np.array_equal(self[name], other[name]) for name in self.names)
+
+    def __reduce__(self) -> tuple[type[Recording], tuple[dict[str, Array], dict[str, str], str]]:
+        return Recording, (dict(self.columns), dict(self.units), self.title)
+
+    def __repr__(self) -> str:
+        span = f" from {self.time[0]:g} s to {self.time[-1]:g} s" if "time" in self else ""
+        series = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        title = f' "{self.title}"' if self.title else ""
+        return f"<Recording{title}: {len(self)} samples{span}; {series}>"
+
+    def unit(self, name: str) -> str:
+        """Unit of a column."""
+        self[name]  # refuses a name that is not there
+        return self.units[name]
+
+    def values(self, name: str, unit: str) -> Array:
+        """Values of a column in another unit, shape (n,); `ValueError` where the units do not agree."""
+        values = self[name]
+        try:
+            return convert(values, self.unit(name), unit)
+        except ValueError as error:
+            raise ValueError(f"column {quoted(name)}: {error}") from None
+
+    def select(self, names: Sequence[str]) -> Recording:
+        """The named columns only, in the order given."""
+        names = arguments.names("names", names)
+        return Recording({name: self[name] for name in names}, {name: self.unit(name) for name in names}, self.title)
+
+    def between(self, start: float, stop: float) -> Recording:
+        """The samples with start <= time <= stop [s]; `ValueError` where there is none."""
+        start, stop = (arguments.number(*end, "s", "[]") for end in (("start", start), ("stop", stop)))
+        time = self.time
+        first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
+        if not first < last:
+            ends = f"time runs from {time[0]:g} s to {time[-1]:g} s"
+            raise ValueError(f"no sample between {start:g} s and {stop:g} s; {ends}")
+        return Recording({name: self[name][first:last] for name in self.names}, self.units, self.title)
+
+    def with_column(self, name: str, values: ArrayLike, unit: str) -> Recording:
+        """This recording with a column added, or replaced where one of that name is there."""
+        arguments.text("the name of a column", name)
+        return Recording({**self.columns, name: values}, {**self.units, name: unit}, self.title)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write a CSV file, header `name [unit]`, that `from_csv` reads back bit for bit.
+
+        >>> import tempfile
+        >>> recording = Recording({"torque": [0.1, 0.2]}, {"torque": "N.m"})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     recording.to_csv(f"{folder}/run.csv")
+        ...     Recording.from_csv(f"{folder}/run.csv") == recording
+        True
+        """
+        import pyarrow
+        from pyarrow.csv import write_csv
+
+        from strainwave.files.tables import TITLE
+
+        table = pyarrow.table({f"{name} [{unit}]": self[name] for name, unit in self.units.items()})
+        with replacing(path) as file:
+            if self.title:
+                file.write(f"{TITLE}{self.title}\n".encode())
+            write_csv(table, file)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The columns as a table of pandas, units in its ``attrs["units"]``.
+
+        Raises:
+            ImportError: pandas is not installed
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_pandas needs pandas, which is not installed; dict(recording) needs nothing") from None
+        frame = pandas.DataFrame(dict(self.columns))
+        frame.attrs["units"] = dict(self.units)
+        return frame
+
+    def to_parquet(self, path: str | Path) -> None:
+        """Write a Parquet file: zstd, byte-stream-split, checksums, the unit in the metadata of each field."""
+        import pyarrow
+        from pyarrow.parquet import write_table
+
+        fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": self.units[name]}) for name in self.names]
+        schema = pyarrow.schema(fields, metadata={"title": self.title})
+        table = pyarrow.table(dict(self.columns), schema=schema)
+        with replacing(path) as file:
+            write_table(
+                table,
+                file,
+                compression="zstd",
+                use_dictionary=False,
+                use_byte_stream_split=True,
+                write_page_checksum=True,
+            )
+
+    @staticmethod
+    def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> Recording:
+        """Read a file by its suffix: .csv, .txt, .tsv (see `from_csv`) or .parquet (see `from_parquet`)."""
+        from strainwave.files.tables import is_parquet
+
+        return (Recording.from_parquet if is_parquet(path) else Recording.from_csv)(path, columns, units)
+
+    @staticmethod
+    def header(path: str | Path) -> tuple[str, ...]:
+        """Names of the columns in a file, without their units.
+
+        Raises:
+            ValueError: the file cannot be read, or its suffix is not known.
+        """
+        from strainwave.files.tables import labels
+
+        return tuple(label.name for label in labels(path))
+
+    @staticmethod
+    def from_csv(
+        path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+    ) -> Recording:
+        """Read a text table in UTF-8 whose header names each column and its unit: `speed [rad/s]` or `speed (rpm)`.
+
+        Cells are separated by tab, semicolon or comma, whichever of them the header contains first in this order; with
+        the former two the decimal mark may be a comma. Blank lines and lines that start with `#` are skipped.
+
+        Args:
+            path: the file
+            columns: for each name wanted, the name in the file's header. Only these columns are read and checked;
+                without it all are, and must be numbers.
+            units: unit of each column, by the name wanted, where the header has none
+
+        Raises:
+            ValueError: the file cannot be read, or a row, a number, a unit or the time in it is wrong, with its line.
+
+        >>> import pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = pathlib.Path(folder, "table.csv")
+        ...     _ = path.write_text("Time (ms); Motor Speed\\n0,0; 1,5\\n0,5; 2,5\\n")
+        ...     Recording.from_csv(path, columns={"time": "Time", "speed": "Motor Speed"}, units={"speed": "rpm"})
+        <Recording: 2 samples from 0 s to 0.0005 s; time [ms], speed [rpm]>
+        """
+        from strainwave.files.tables import read_csv
+
+        return _checked(path, read_csv(path, columns, units))
+
+    @staticmethod
+    def from_parquet(
+        path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None
+    ) -> Recording:
+        """Read a Parquet file; units come from its field metadata, its column names (as in `from_csv`) or `units`.
+
+        Args, Raises: as `from_csv`.
+        """
+        from strainwave.files.tables import read_parquet
+
+        return _checked(path, read_parquet(path, columns, units))
+
+    def plot(self, names: Sequence[str] | None = None, against: str = "time") -> Figure:
+        """Draw columns over another one: one subplot per unit, below each other on one x axis.
+
+        Args:
+            names: the columns to draw; without it all but `against`
+            against: the column on the x axis
+
+        Returns:
+            A matplotlib figure, to be saved with `.savefig`. Of more than 20 000 samples, the extremes of short
+            stretches are drawn, so that every peak stays visible.
+
+        Raises:
+            ValueError: a column is not there, nothing is left to draw, or a value lies beyond 1e300.
+            TypeError: a name is no text.
+        """
+        from matplotlib.figure import Figure
+
+        arguments.text("against", against)
+        groups: dict[str, list[str]] = {}
+        drawn = [name for name in self.names if name != against] if names is None else arguments.names("names", names)
+        for name in drawn:
+            _check_drawable(name, self[name])
+            groups.setdefault(self.unit(name), []).append(name)
+        if not groups:
+            raise ValueError(f"nothing to draw against {quoted(against)}; there are {listed(self.names)}")
+        _check_drawable(against, self[against])
+        figure = Figure(figsize=(8.0, 1.0 + 2.0 * len(groups)), layout="constrained")
+        figure.suptitle(self.title)
+        axes = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
+        for axis, (unit, group) in zip(axes, groups.items(), strict=True):
+            for name in group:
+                axis.plot(*envelope(self[against], self[name]), linewidth=1.0, label=name)
+            axis.set_ylabel(f"{group[0]} [{unit}]" if len(group) == 1 else f"[{unit}]")
+            axis.legend(loc="upper right")
+        axes[-1].set_xlabel(f"{against} [{self.unit(against)}]")
+        return figure
+
+
+def check_recording(name: str, value: object) -> None:
+    """Refuses what is no recording."""
+    if not isinstance(value, Recording):
+        raise TypeError(f"{name} must be a Recording, as Recording.read(...) gives one, not {shortened(value)}")
+
+
+def _check_drawable(name: str, values: Array) -> None:
+    largest = np.abs(values).max()
+    if largest > _DRAWABLE:
+        raise ValueError(f"column {quoted(name)} cannot be drawn: it reaches {largest}; at most {_DRAWABLE} can be drawn")
+
+
+class _Fault(NamedTuple):
+    """What is wrong with a value, and where."""
+
+    column: str
+    row: int
+    reason: str
+
+
+def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> None:
+    arguments.mapping("columns", columns, '{"time": [0.0, 0.1]}')
+    arguments.mapping("units", units, '{"time": "s"}')
+    if not columns:
+        raise ValueError("a recording needs at least one column")
+    for name in columns:
+        if not arguments.text("the name of a column", name) or name != name.strip() or not name.isprintable():
+            raise ValueError(f"column name {shortened(name)} must be printable text without spaces around it")
+        if name not in units:
+            hint = f'pass units={{{quoted(name)}: "N.m"}}, or "1" for a plain number'
+            raise ValueError(f"column {quoted(name)} has no unit; {hint}")
+    if extra := units.keys() - columns.keys():
+        raise ValueError(f"units names {quoted(min(extra))}, which is not a column; there are {listed(columns)}")
+
+
+def _frozen(name: str, values: ArrayLike) -> Array:
+    """The values as read-only float64, copied only where someone else could still change them."""
+    array = arguments.numbers(f"column {quoted(name)}", values)
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"column {quoted(name)} must be one series of at least one sample; its shape is {array.shape}")
+    if array.flags.c_contiguous and _is_frozen(array):
+        return array
+    copy = np.array(array)
+    copy.setflags(write=False)
+    return copy
+
+
+def _is_frozen(array: NDArray[np.generic]) -> bool:
+    owner = array.base
+    return not array.flags.writeable and (owner is None or (isinstance(owner, np.ndarray) and _is_frozen(owner)))
+
+
+def _known(name: str, unit: str) -> str:
+    """Standard spelling of a column's unit."""
+    try:
+        if name == "time":
+            convert(1.0, unit, "s")
+        return check_unit(unit)
+    except ValueError as error:
+        raise ValueError(f"column {quoted(name)}: {error}") from None
+
+
+def _check_lengths(columns: Mapping[str, Array]) -> None:
+    (first, wanted), *others = ((name, len(values)) for name, values in columns.items())
+    for name, length in others:
+        if length != wanted:
+            raise ValueError(f"column {quoted(name)} has {length} samples, column {quoted(first)} has {wanted}")
+
+
+@np.errstate(all="ignore")
+def _first_fault(columns: Mapping[str, Array], units: Mapping[str, str]) -> _Fault | None:
+    """The first value that is not finite, else the first time that does not increase."""
+    for name, values in columns.items():
+        if isfinite(np.dot(values, values)):  # as all its terms then are, found in one go
+            continue
+        finite = np.isfinite(values)
+        if not finite.all():
+            row = int(np.argmin(finite))
+            return _Fault(name, row, f"{values[row]} is not finite")
+    return _time_fault(columns["time"], units["time"]) if "time" in columns else None
+
+
+def _time_fault(time: Array, unit: str) -> _Fault | None:
+    """The first time that does not increase, in seconds too, where others that are near each other become one."""
+    try:
+        seconds = convert(time, unit, "s")
+    except ValueError as error:
+        return _Fault("time", int(np.argmax(np.abs(time))), str(error))
+    forward = seconds[1:] > seconds[:-1]
+    if forward.all():
+        return None
+    row = int(np.argmin(forward)) + 1
+    now, before = (f"{time[i]} {unit}" for i in (row, row - 1))
+    where = " in seconds" if time[row] > time[row - 1] else ""
+    return _Fault("time", row, f"{now} does not lie after {before}{where}; time must increase")
+
+
+def _checked(path: str | Path, table: Table) -> Recording:
+    """The recording, or what is wrong with it in terms of the file."""
+    try:
+        units = {name: _known(name, unit) for name, unit in table.units.items()}
+        if not (fault := _first_fault(table.columns, units)):
+            return Recording(table.columns, units, table.title)
+    except ValueError as error:
+        raise ValueError(one_line(f"{path}: {error}")) from None
+    where = f"{path} {table.place(fault.row)}, column {quoted(table.labels[fault.column])}"
+    raise ValueError(one_line(f"{where}: {fault.reason}"))
+
+
+def envelope(x: Array, y: Array, stretches: int = 5_000) -> tuple[Array, Array]:
+    """A curve to draw: itself or, if much longer, the extremes of x and y in each of many stretches of it, in order.
+
+    Args:
+        x, y: the samples of the curve, shape (n,)
+        stretches: into how many it is cut; up to four samples for each, nothing is left out
+
+    >>> time = np.arange(100_000.0)
+    >>> drawn, values = envelope(time, np.where(time == 777.0, 1.0, 0.0), stretches=10)
+    >>> len(drawn), float(values.max())
+    (21, 1.0)
+    """
+    if len(x) <= 4 * stretches:
+        return x, y
+    length = -(-len(x) // stretches)
+    whole = len(x) // length * length
+    starts = np.arange(0, whole, length)
+    blocks = [values[:whole].reshape(-1, length) for values in (x, y)]
+    extremes = [starts + pick(block, axis=1) for block in blocks for pick in (np.argmin, np.argmax)]
+    kept = np.unique(np.concatenate([*extremes, np.arange(whole, len(x))]))
+    return x[kept], y[kept]

@@ -1,0 +1,1 @@
+"""Command in, recording out: scenarios, states, single runs, ensembles."""

@@ -1,0 +1,444 @@
+"""Many drives that differ in numbers alone, run side by side: kept in memory, or written to files as they come."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import Drive, _core, arguments
+from strainwave.equality import ComparedByFields
+from strainwave.files.ensemble_folder import EnsembleFolder, fingerprint
+from strainwave.files.recording import Recording
+from strainwave.files.writing import claiming, making
+from strainwave.messages import listed, one_line, quoted
+from strainwave.parameters import every, unknown
+from strainwave.simulation import signals
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
+from strainwave.simulation.initial import Known
+from strainwave.simulation.initial import known as initial_of
+from strainwave.simulation.resolution import COARSEST, FASTEST_ON_BRISTLES, diverged, remedy, too_coarse, too_stiff
+from strainwave.simulation.run import progressing
+from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.signals import Output
+from strainwave.simulation.time_grid import TimeGrid
+
+Array = NDArray[np.float64]
+MOST_THREADS = 2**31 - 1  # that the core can count
+SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
+PART = 64 << 20  # bytes of output that a part of the files holds at most, where one pack does not need more
+
+
+class EnsembleWarning(UserWarning):
+    """Members of an ensemble could not be run to their end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble(ComparedByFields):
+    """Runs of many members through one command.
+
+    Args:
+        time: instants of the samples [s], shape (samples,)
+        columns: the outputs recorded, each of shape (members, samples); not-a-number throughout where a member failed
+        units: the unit of each
+        parameters: what the members differ in, each of shape (members,)
+        failures: why a member has no result, by its number
+    """
+
+    time: Array
+    columns: Mapping[str, Array]
+    units: Mapping[str, str]
+    parameters: Mapping[str, Array]
+    failures: Mapping[int, str]
+
+    def __getitem__(self, name: str) -> Array:
+        """An output of all members, shape (members, samples)."""
+        if arguments.text("the name of a column", name) not in self.columns:
+            raise ValueError(f"no column {quoted(name)} was recorded; there are {listed(self.columns)}")
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        """How many members."""
+        return len(next(iter(self.columns.values())))
+
+    def member(self, number: int) -> Recording:
+        """One member's run; `ValueError` with the reason if it has none."""
+        arguments.whole("member", number, 0)
+        if number >= len(self):
+            raise ValueError(f"member {number} is not among the {len(self)} members, which count from 0")
+        if number in self.failures:
+            raise ValueError(f"member {number} has no result: {self.failures[number]}")
+        series = {name: values[number] for name, values in self.columns.items()}
+        return Recording({"time": self.time} | series, {"time": "s"} | dict(self.units), title=f"member {number}")
+
+    @staticmethod
+    def read(folder: str | Path) -> Ensemble:
+        """What `simulate_to` wrote to a folder, every value checked against the digest that was written with it.
+
+        Raises:
+            ValueError: the folder holds no ensemble, one that was not finished, or files that are damaged; says which
+        """
+        files = EnsembleFolder.open(Path(folder))
+        missing = [part for part in files.parts() if not files.has(part)]
+        if missing:
+            done = files.members - sum(part.last - part.first for part in missing)
+            raise ValueError(
+                f"{folder} holds {done} of {files.members} members, without {missing[0].name}: call simulate_to again as "
+                "before, which runs the others, or Ensemble.read_partial, which reads what is there"
+            )
+        return _read(files)
+
+    @staticmethod
+    def read_partial(folder: str | Path) -> Ensemble:
+        """What is there of an ensemble that was not finished: each member keeps its number, and those that are missing fail.
+
+        Raises:
+            ValueError: as `read`, or no member is there
+        """
+        return _read(EnsembleFolder.open(Path(folder)))
+
+
+def _read(files: EnsembleFolder) -> Ensemble:
+    """All members, those of parts that are not there among the failures."""
+    there = [part for part in files.parts() if files.has(part)]
+    if not there:
+        raise ValueError(
+            one_line(f"{files.path} holds none of {files.members} members; call simulate_to again as before to run them")
+        )
+    failures = dict.fromkeys(range(files.members), "it was not run, or its file is missing")
+    columns: dict[str, Array] = {}
+    for part in there:
+        time, series = files.samples(part)
+        for name, values in series.items():
+            columns.setdefault(name, np.full((files.members, len(time)), np.nan))[part.first : part.last] = values
+        for member in part.members.tolist():
+            del failures[member]
+        failures |= files.failures(part)
+    return Ensemble(time, columns, files.units, files.parameters, dict(sorted(failures.items())))
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan(ComparedByFields):
+    """What is asked for, checked."""
+
+    drive: Drive
+    excitation: Excitation
+    dt: float
+    sample: float
+    numbers: list[int]
+    parameters: dict[str, Array]
+    initial: Known | None
+    time_grid: TimeGrid
+    inputs: Array
+    recorded: Mapping[str, Output]
+    threads: int
+
+    @classmethod
+    def of(
+        cls,
+        drive: Drive,
+        excitation: Excitation,
+        parameters: Mapping[str, ArrayLike],
+        initial: Mapping[str, ArrayLike] | None,
+        dt: float,
+        sample: float | None,
+        record: Sequence[str],
+        threads: int | None,
+    ) -> _Plan:
+        arguments.drive(drive)
+        numbers, values = _checked(drive, parameters)
+        known = initial_of(drive, initial, len(next(iter(values.values()))))
+        recorded = signals.chosen(drive, record)
+        threads = available_threads() if threads is None else arguments.whole("threads", threads, 1, MOST_THREADS)
+        dt = arguments.seconds("dt", dt)
+        sample = dt if sample is None else arguments.seconds("sample", sample)
+        for path in values.keys() & {"control.period", "control.delay"}:
+            if (values[path] != every(drive)[path].value).any():
+                raise ValueError(f"{path} must be that of the drive for all members: their steps end at the same instants")
+        instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
+        time_grid = excitation.time_grid(dt, sample, instants)
+        return cls(
+            drive, excitation, dt, sample, numbers, values, known, time_grid, excitation.over(time_grid), recorded, threads
+        )
+
+    @property
+    def members(self) -> int:
+        return len(next(iter(self.parameters.values())))
+
+    @property
+    def time(self) -> Array:
+        return self.time_grid.times
+
+    @property
+    def steps(self) -> int:
+        return len(self.time_grid.instants) - 1
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of the outputs that are recorded."""
+        units = signals.units(self.drive, self.recorded.values())
+        return {name: units[name] for name in self.recorded}
+
+    def run(self, first: int, last: int, shown: object) -> Ensemble:
+        """Members `first` up to `last`, not included."""
+        values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
+        channels = [each.channel for each in self.recorded.values()]
+        outputs = np.empty((len(channels), last - first, len(self.time)))
+        sound, twists, fastest, on_bristles, refusals = _core.simulate_many(
+            self.drive,
+            self.numbers,
+            values,
+            None if self.initial is None else (self.initial[0], np.ascontiguousarray(self.initial[1][:, first:last])),
+            self.time_grid.instants,
+            self.inputs,
+            self.time_grid.samples[1:],
+            channels,
+            COARSEST / self.time_grid.longest,
+            self.threads,
+            outputs,
+            shown,  # type: ignore[arg-type]
+        )
+        failures = self.failures(outputs, sound, twists, fastest, refusals)
+        _tell_of_bristles(self.time_grid.longest, on_bristles)
+        outputs[:, list(failures), :] = np.nan
+        return Ensemble(
+            self.time,
+            dict(zip(self.recorded, outputs, strict=True)),
+            self.units,
+            {path: column[first:last] for path, column in self.parameters.items()},
+            failures,
+        )
+
+    def failures(
+        self, outputs: Array, ran: NDArray[np.bool_], twists: Array, fastest: Array, refusals: dict[int, str]
+    ) -> dict[int, str]:
+        """Why members have no result, as `simulate` would say it of each alone."""
+        found = dict(refusals)
+        coarse = fastest > COARSEST / self.time_grid.longest
+        at_rest = coarse & (twists == 0.0)  # such members are not run
+        sound = at_rest | ran
+        for member in np.flatnonzero(~sound | coarse).tolist():
+            if member not in found and not sound[member]:
+                found[member] = diverged(self.time, list(self.recorded), outputs[:, member], remedy(self.time_grid.longest))
+            elif member not in found:
+                found[member] = too_coarse(self.time_grid.longest, float(twists[member]), float(fastest[member]))
+        return dict(sorted(found.items()))
+
+
+def simulate_many(
+    drive: Drive,
+    command: Scenario,
+    parameters: Mapping[str, ArrayLike],
+    dt: float = 2e-4,
+    *,
+    record: Sequence[str] = ("input_angle", "output_angle", "torque"),
+    sample: float | None = None,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    initial: Mapping[str, ArrayLike] | None = None,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Ensemble:
+    """Runs a drive many times through one command, each time with other numbers: several to a vector register, on all cores.
+
+    The same trajectories as `simulate` gives with its method "exponential", to the last bit, whatever the number of
+    threads and the instruction set; only where orders of an error or exponents of a density are whole in some members and not
+    in others may the last digit differ. The outputs take 8 bytes times members, outputs recorded and samples; `simulate_to`
+    writes them to files instead, in memory that is flat over members. What acts on all of them takes 153 bytes a step.
+
+    Args:
+        drive: the drive
+        command: as for `simulate`
+        parameters: what the members differ in: path of a parameter, as in "gear.friction_input.coulomb" or
+            "gear.hysteresis.stiffness[0]", and its value for each member, shape (members,)
+        record: the outputs to keep
+        dt, sample, load_torque, temperature, inputs, progress: as for `simulate`
+        initial: as for `simulate`; a quantity has one value, or one for each member
+        threads: how many to run on; all that this process may use, if not given
+
+    Returns:
+        Ensemble, whose columns have shape (members, samples)
+
+    Raises:
+        TypeError: values that are no numbers, `threads` that is no whole number, and as `simulate`
+        ValueError: a parameter that the drive does not have, values out of its range or of unequal number, an output that is
+            not known, `threads` below 1, and as `simulate`
+        MemoryError: the outputs are too many; says how large they are
+
+    Warns:
+        EnsembleWarning: members without result; `failures` of the ensemble says why, and their outputs are not-a-number. Or
+            members whose bristles are too stiff for `dt`
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> inertia = np.linspace(0.01, 0.02, 5)
+    >>> runs = sw.simulate_many(drive, sw.scenario.step(amplitude=5.0, duration=0.1), {"load.inertia": inertia})
+    >>> runs["output_angle"].shape
+    (5, 501)
+    """
+    excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
+    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads)
+    try:
+        with progressing(progress, plan.members * plan.steps) as shown:
+            ensemble = plan.run(0, plan.members, shown)
+    except MemoryError:
+        size = f"{1e-9 * 8 * plan.members * len(plan.recorded) * len(plan.time):.3g} GB"
+        raise MemoryError(f"the outputs take {size}; record fewer, sample less often, or let simulate_to write files") from None
+    _tell(ensemble.failures, plan.members)
+    return ensemble
+
+
+def simulate_to(
+    folder: str | Path,
+    drive: Drive,
+    command: Scenario,
+    parameters: Mapping[str, ArrayLike],
+    dt: float = 2e-4,
+    *,
+    record: Sequence[str] = ("input_angle", "output_angle", "torque"),
+    sample: float | None = None,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    initial: Mapping[str, ArrayLike] | None = None,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Path:
+    """As `simulate_many`, but writes the members to files as they come: memory stays flat however many they are.
+
+    Parquet files, for everything that reads a folder of them (pandas, polars, DuckDB; `Ensemble.read`). Those in samples/ have
+    columns member, time [s] and the outputs, one row a sample; those in members/ have columns member, the parameters, and
+    failure, empty where there was none. A part holds some thousand members and appears whole or not at all. plan.parquet, which
+    is written first, says what was asked for. So a run that was interrupted or killed, or whose disk was full, goes on where it
+    ended when it is asked for again: what is there is kept, the others are run, and all are the same bits as of one run on
+    this machine.
+
+    Args:
+        folder: where to write; must not exist, be empty, or hold the beginning of the same ensemble
+        drive, command, parameters, dt, record, sample, load_torque, temperature, inputs, initial,
+            threads, progress: as for `simulate_many`
+
+    Returns:
+        the folder
+
+    Raises:
+        FileExistsError: the folder holds something else, or another ensemble; says what differs
+        BlockingIOError: another process is writing to the folder
+        OSError: a file cannot be written; says which, and why
+        TypeError, ValueError: as `simulate_many`
+
+    Warns:
+        EnsembleWarning: as `simulate_many`
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = sw.simulate_to(folder, drive, sw.scenario.step(5.0, 0.1), {"load.inertia": [0.01, 0.02]}, sample=1e-2)
+    ...     sw.Ensemble.read(folder)["torque"].shape
+    (2, 11)
+    """
+    excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
+    plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads)
+    folder, failures = Path(folder), dict[int, str]()
+    with making(folder), claiming(folder), progressing(progress, plan.members * plan.steps) as shown:
+        files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, _part_size(plan)).begin()
+        for part in files.parts():
+            if not files.has(part):
+                report = None if shown is None else lambda done, begun=part.first: shown(begun * plan.steps + done)
+                ensemble = plan.run(part.first, part.last, report)
+                told = {part.first + member: reason for member, reason in ensemble.failures.items()}
+                files.write(part, ensemble.time, ensemble.columns, told)
+            failures |= files.failures(part)
+    _tell(failures, plan.members)
+    return folder
+
+
+def _asked(plan: _Plan) -> dict[str, str]:
+    """All that an ensemble depends on, by the names of the arguments."""
+    excitation = plan.excitation
+    asked = {
+        "drive": plan.drive,
+        "command": excitation.command,
+        signals.load_input(plan.drive): _scenario(excitation.load),
+        "temperature": _scenario(excitation.temperature),
+        "members": plan.members,
+        "parameters": plan.parameters,
+        "initial": plan.initial,
+        "dt": plan.dt,
+        "sample": plan.sample,
+        "record": list(plan.recorded),
+        "version": version("strainwave"),
+    }
+    return {name: fingerprint(value) for name, value in asked.items()}
+
+
+def _scenario(signal: Scenario | float) -> Scenario | float:
+    return signal if isinstance(signal, Scenario) else float(signal)
+
+
+def available_threads() -> int:
+    """How many threads this process may run at once."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
+    """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
+    known = every(drive)
+    arguments.mapping("parameters", parameters, '{"load.inertia": [0.01, 0.02]}')
+    if not parameters:
+        raise ValueError("parameters must name at least one number that the members differ in")
+    values: dict[str, Array] = {}
+    for path, column in parameters.items():
+        if path not in known:
+            raise unknown(str(path), known)
+        values[path] = arguments.numbers(path, column)
+        if values[path].ndim != 1 or len(values[path]) == 0:
+            raise ValueError(f"{path} must have one value a member, shape (members,), not {values[path].shape}")
+        number = known[path]
+        wrong = np.flatnonzero(~(np.isfinite(values[path]) & (values[path] >= number.low) & (values[path] <= number.high)))
+        if wrong.size:
+            given = f"{values[path][wrong[0]]:g}" + (f" {number.unit}" if number.unit != "1" else "")
+            raise ValueError(f"{path} = {given} of member {wrong[0]} must lie in {_limits(number.low, number.high)}")
+    if len({len(column) for column in values.values()}) > 1:
+        counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
+        raise ValueError(f"all parameters must have as many values as there are members: {counts}")
+    return [known[path].number for path in values], values
+
+
+def _limits(low: float, high: float) -> str:
+    """As the models tell theirs."""
+    lowest = "(-inf" if low == -np.inf else "(0" if low == SMALLEST else f"[{low:g}"
+    return lowest + (", inf)" if high == np.inf else f", {high:g}]")
+
+
+def _part_size(plan: _Plan) -> int:
+    """Members of a part, whose outputs fit into memory: whole packs for every thread."""
+    size = PART // (8 * len(plan.recorded) * len(plan.time))
+    pack = _core.max_lanes * plan.threads
+    return max(pack, size - size % pack)
+
+
+def _tell_of_bristles(dt: float, vibrations: Array) -> None:
+    stiff = np.flatnonzero(dt * vibrations > FASTEST_ON_BRISTLES)
+    if stiff.size:
+        told = f"{stiff.size} members have {too_stiff(dt, float(vibrations.max()))}"
+        warnings.warn(told, EnsembleWarning, stacklevel=4)
+
+
+def _tell(failures: Mapping[int, str], members: int) -> None:
+    if failures:
+        number, reason = next(iter(failures.items()))
+        warnings.warn(
+            f"{len(failures)} of {members} members have no result; the first is member {number}: {reason}",
+            EnsembleWarning,
+            stacklevel=3,
+        )

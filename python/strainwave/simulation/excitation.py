@@ -1,0 +1,119 @@
+"""What acts on a drive from outside over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Real
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments
+from strainwave.messages import quoted, shortened
+from strainwave.simulation.memory import room_for
+from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.signals import load_input
+from strainwave.simulation.time_grid import INPUTS, LONG_RUN, NEVER, STEP, TimeGrid, grid
+
+Array = NDArray[np.float64]
+ROOM_TEMPERATURE = 293.15  # K
+STRETCH = 5e-3  # s, after which an adaptive step ends at the latest
+PER_PERIOD = 5.0  # such steps in a period of an input, at the least
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """What acts on a drive from outside: the command, the input of its load, and the temperature of the gear [K]."""
+
+    command: Scenario
+    load: Scenario | float = 0.0
+    temperature: Scenario | float = ROOM_TEMPERATURE
+
+    @classmethod
+    def of(
+        cls,
+        drive: Drive,
+        command: Scenario,
+        load_torque: Scenario | float = 0.0,
+        temperature: Scenario | float = ROOM_TEMPERATURE,
+        inputs: Mapping[str, Scenario | float] | None = None,
+    ) -> Excitation:
+        """From arguments as users give them; `inputs` has those that the parts of the drive take, by name."""
+        if not isinstance(command, Scenario):
+            raise TypeError(f"command = {shortened(command)} must be a Scenario, as sw.scenario.constant(...) makes one")
+        if inputs is not None:
+            arguments.mapping("inputs", inputs, '{"output_angle": 0.1}')
+        given = dict(inputs or {})
+        name = load_input(drive)
+        if name != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
+            raise ValueError(f"the load of this drive takes no load_torque, but {name}: give inputs={{{quoted(name)}: ...}}")
+        known = {name: load_torque if name == "load_torque" else 0.0, "temperature": temperature}
+        for each in given:
+            arguments.one_of("the name of an input", each, tuple(known))
+        known |= given
+        for each, signal in known.items():
+            if not isinstance(signal, Scenario | Real):
+                raise TypeError(f"{each} = {shortened(signal)} must be a number or a Scenario")
+            if isinstance(signal, Scenario) and signal.duration != command.duration:
+                raise ValueError(f"{each} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
+            if not isinstance(signal, Scenario):
+                arguments.number(each, signal)
+        if not isinstance(known["temperature"], Scenario):
+            check_temperature(known["temperature"])
+        return cls(command, known[name], known["temperature"])
+
+    @property
+    def _scenarios(self) -> list[Scenario]:
+        return [signal for signal in (self.command, self.load, self.temperature) if isinstance(signal, Scenario)]
+
+    def time_grid(self, dt: float, samples: float | Array | None, instants: Array = NEVER) -> TimeGrid:
+        """The steps that follow it, and end at `instants`, at which a controller acts."""
+        breaks = np.concatenate([*(signal.breaks for signal in self._scenarios), instants])
+        return TimeGrid.through(self.command.duration, dt, dt if samples is None else samples, breaks)
+
+    def ends(self, instants: Array) -> Array:
+        """Where adaptive steps must end [s]: wherever an input jumps, at `instants`, at which a controller acts, and so often
+        that none is as long as a period of an input."""
+        duration = self.command.duration
+        waves = [wave for signal in self._scenarios for wave in signal.waves]
+        fastest = max((abs(w.frequency + t * w.sweep) for w in waves for t in (0.0, duration)), default=0.0)
+        regular = grid(1.0 / max(1.0 / STRETCH, PER_PERIOD * fastest), duration, 1e-9 * STRETCH)
+        ends = np.unique(np.concatenate([regular, instants, *(signal.breaks for signal in self._scenarios)]))
+        return ends[np.append(np.diff(ends) > 1e-9 * STRETCH * (duration > STRETCH), True)] if len(instants) else ends
+
+    def check_temperature(self, ends: Array) -> None:
+        """Refuses a temperature that is not positive, at eight places between all `ends`."""
+        if isinstance(self.temperature, Scenario):
+            between = ends[:-1] + np.diff(ends) * np.arange(8)[:, None] / 8
+            check_temperature(float(min(self.temperature.value(between).min(), self.temperature.value_before(ends).min())))
+
+    @cached_property
+    def signals(self) -> tuple[_core.Signal, _core.Signal, _core.Signal]:
+        """Command, input of the load and temperature."""
+        return _signal(self.command), _signal(self.load), _signal(self.temperature)
+
+    def first(self) -> Array:
+        """Command, input of the load and temperature, each with its rate, at t = 0."""
+        start: Array = _core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0]
+        return start
+
+    def over(self, time_grid: TimeGrid) -> Array:
+        """The same at the start, middle and end of each step, shape (n, 3, 6)."""
+        with room_for("steps", len(time_grid.instants), STEP + INPUTS, LONG_RUN):
+            inputs = _core.inputs(*self.signals, time_grid.instants)
+        if isinstance(self.temperature, Scenario):
+            check_temperature(float(inputs[:, :, 4].min()))
+        return inputs
+
+
+def _signal(given: Scenario | float) -> _core.Signal:
+    if isinstance(given, Scenario):
+        return given.signal
+    return _core.Signal(np.zeros(1), np.array([given], dtype=np.float64), np.zeros(1), np.empty(0))
+
+
+def check_temperature(lowest: float) -> None:
+    if lowest <= 0.0:
+        raise ValueError(f"temperature = {lowest:g} K must lie in (0, inf); 20 degC are 293.15 K")

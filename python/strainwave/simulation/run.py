@@ -1,0 +1,360 @@
+"""Command in, recording out: a drive run through time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments
+from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import drive_of, warn_of_ratings
+from strainwave.files.recording import Recording
+from strainwave.simulation import signals
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
+from strainwave.simulation.initial import beginning_numbers, known
+from strainwave.simulation.memory import room_for
+from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
+from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.signals import TWIST, Output
+from strainwave.simulation.state import State
+from strainwave.simulation.time_grid import CHUNK, TimeGrid, grid
+
+Array = NDArray[np.float64]
+Method = Literal["exponential", "moreau_jean", "rosenbrock"]
+METHODS: tuple[Method, ...] = get_args(Method)
+MOST_FOR_ONE, MOST_STEPS = 1000, 100_000  # adaptive steps for each fixed one that bristles are too fast for, and of a short run
+
+
+class Run(Recording):
+    """The recording of a simulation, and how it came about.
+
+    Attributes:
+        end: the state at the end, from which another simulation can start
+        method: how steps were taken, in words
+    """
+
+    end: State
+    method: str
+
+    def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str], end: State, method: str) -> None:
+        super().__init__(columns, units, title=_title(method))
+        self._came_about(end, method)
+
+    @classmethod
+    def _made(cls, drive: Drive, time: Array, recorded: Mapping[str, Output], outputs: Array, end: State, method: str) -> Run:
+        """Of outputs that mean something: to check them as any others takes a quarter of a call."""
+        run = object.__new__(cls)
+        run._hold(_columns(time, recorded, outputs), signals.units(drive, recorded.values()), _title(method))
+        run._came_about(end, method)
+        return run
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Run, (dict(self.columns), dict(self.units), self.end, self.method)
+
+    def _came_about(self, end: State, method: str) -> None:
+        object.__setattr__(self, "end", end)
+        object.__setattr__(self, "method", method)
+
+
+def _title(method: str) -> str:
+    return f"simulation: {method}"
+
+
+def simulate(
+    drive: Drive | GearSet,
+    command: Scenario,
+    dt: float = 2e-4,
+    *,
+    sample: float | None = None,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    start: State | None = None,
+    initial: Mapping[str, float] | None = None,
+    record: Sequence[str] | None = None,
+    method: Method | None = None,
+    progress: bool = False,
+) -> Run:
+    """Runs a drive through a command and records what happens.
+
+    Steps end at every jump of the inputs. With set-valued friction they are cut at its events, located to rounding, so that
+    sticking is exact. Events are told by how a step ends: a side whose speed changes its sign and is back before the end is
+    taken to slide on, one that sets off and stops before to stick on.
+
+    Args:
+        drive: what is commanded; of a gear set its drive
+        command: output angle [rad] of a drive under position control; in open loop what its motor takes, as a voltage [V]
+        dt: largest step [s] where steps are fixed
+        sample: distance of samples in the recording [s]; `dt` if not given
+        load_torque: torque that holds the output back [N.m], besides the load's own
+        temperature: of the gear [K], for friction that depends on it
+        inputs: those and other inputs that parts take, by name: {"output_angle": ...} where the load prescribes that [rad]
+        start: where the drive starts, as `end` of another run of a drive with the same models; at rest, untwisted, if not given
+        method: "exponential", a Runge-Kutta method of fourth order that lets bristles relax exactly; "rosenbrock", a W-method
+            of third order for shafts that rest on stiff bristles without turning round; "moreau_jean", time-stepping of second
+            order that looks for no events, however many there are. If not given it is the first, unless a shaft vibrates on
+            its bristles faster than steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its
+            tolerances; at most a thousand for each of `dt`, or a hundred thousand if that is more.
+        initial: in place of `start`, some of input_angle, output_angle [rad], input_speed, output_speed [rad/s], twist [rad],
+            torque [N.m], current [A], as in {"output_angle": 0.3, "input_speed": 5.0}. The rest follows: one angle or speed
+            from the other; the twist as the one at which load and friction do not accelerate the output; bristles, motor and
+            sensors as they are once they have settled
+        record: the outputs to keep, by name; all, if not given
+        progress: show a progress bar
+
+    Returns:
+        Recording with columns time [s], command, input_angle [rad], input_speed [rad/s], output_angle [rad], output_speed
+        [rad/s], twist [rad], kinematic_error [rad], transmission_error [rad], torque [N.m], what the motor shows of itself (a
+        DC motor current [A] and voltage [V]), friction_input [N.m], friction_mesh [N.m], friction_output [N.m], load_torque
+        [N.m], temperature [K], or of these what `record` names, each of shape (n,); the first sample is at t = 0. Its `end` is
+        the state at the end, its `method` says how steps were taken.
+
+    Raises:
+        TypeError: an argument is not of its kind
+        ValueError: an input or output that the drive does not have, `dt`, `sample` or `temperature` is not positive, an input
+            lasts another time than `command`, `method` is not known, or the drive leaves the range in which one of its parts is
+            valid; says which, where and when
+        FloatingPointError: the trajectory diverged, or `dt` cannot follow the gear's vibration or what damps it; says when, and
+            what would do. Where bristles ask for adaptive steps, as `simulate_adaptively`
+        MemoryError: the steps or the samples are too many; says how large they are, and what to do
+
+    Warns:
+        RuntimeWarning: a `method` was asked for whose steps cannot follow a shaft on its bristles
+        RatingWarning: a run of a gear set exceeded one of its ratings (`check_ratings`); one for each
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
+    >>> run.unit("output_angle"), len(run)
+    ('rad', 501)
+    >>> run.method
+    'exponential Runge-Kutta, steps of 0.0002 s'
+    """
+    if method is not None:
+        arguments.one_of("method", method, METHODS)
+    model, drive = drive, drive_of(drive)
+    dt = arguments.seconds("dt", dt)
+    interval = dt if sample is None else arguments.seconds("sample", sample)
+    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
+    excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
+    state = beginning_numbers(drive, start, initial, excitation.first())
+    time_grid = excitation.time_grid(dt, interval, signals.instants(drive, state, command.duration))
+    if method is None and time_grid.longest * _core.bristle_frequency(drive) > FASTEST_ON_BRISTLES:
+        run = simulate_adaptively(
+            drive,
+            command,
+            sample=interval,
+            load_torque=load_torque,
+            temperature=temperature,
+            inputs=inputs,
+            start=start,
+            initial=initial,
+            record=record,
+            max_steps=max(MOST_STEPS, MOST_FOR_ONE * (len(time_grid.instants) - 1)),
+            progress=progress,
+        )
+        warn_of_ratings(model, run)
+        return run
+    if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
+        check_resolution(drive, time_grid.longest, 0.0)
+    taken = method or "exponential"
+    time = time_grid.times
+    channels = _channels(recorded)
+    outputs, first = beginning(drive, state, excitation, channels, len(time)), 1
+    with progressing(progress, len(time_grid.instants) - 1) as shown:
+        for number, chunk in enumerate(time_grid.chunks()):
+            report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
+            laid_out, keep = excitation.over(chunk), chunk.samples[1:]
+            state = _core.simulate(
+                drive, state, chunk.instants, laid_out, keep, _core.Method[taken], channels, outputs, first, report
+            )
+            first += int(np.count_nonzero(keep))
+    _check_meaning(time, recorded, outputs, remedy(time_grid.longest))
+    if method != "rosenbrock":
+        check_resolution(drive, time_grid.longest, _largest_twist(outputs[channels.index(TWIST)]))
+    warn_of_bristles(drive, time_grid.longest)
+    end = State.of(drive, state)
+    run = Run._made(drive, time, recorded, outputs, end, f"{_named(taken, drive)}, steps of {time_grid.longest:g} s")
+    warn_of_ratings(model, run)
+    return run
+
+
+def _channels(recorded: Mapping[str, Output]) -> list[int]:
+    """The channels of what is recorded, and of the twist, which tells whether steps were short enough."""
+    found = [each.channel for each in recorded.values()]
+    return found if TWIST in found else [*found, TWIST]
+
+
+def beginning(drive: Drive, state: Array, excitation: Excitation, channels: Sequence[int], samples: int) -> Array:
+    """Room for the outputs of a run, shape (channels, samples), that of the start filled in.
+
+    There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from, and a sampled
+    controller has acted if it was due.
+    """
+    with room_for("samples", samples, 8.0 * len(channels), "sample less often, or record fewer outputs"):
+        outputs = np.empty((len(channels), samples))
+    first = excitation.first()
+    outputs[:, 0] = _core.now(drive, _core.begin(drive, state, first), first)[list(channels), 0]
+    return outputs
+
+
+_NAMED: dict[Method, str] = {
+    "exponential": "exponential Runge-Kutta",
+    "moreau_jean": "Moreau-Jean time-stepping",
+    "rosenbrock": "Rosenbrock W-method",
+}
+
+
+def _named(method: Method, drive: Drive) -> str:
+    """A method in words, as it is where friction of the drive holds its place at rest or does not."""
+    rest = drive.rest()
+    sticks = not rest.input_slip_direction or not rest.output_slip_direction
+    return _NAMED[method] + (", cut at events" if sticks and method != "moreau_jean" else "")
+
+
+def simulate_adaptively(
+    drive: Drive | GearSet,
+    command: Scenario,
+    rtol: float = 1e-6,
+    atol: float = 1e-12,
+    *,
+    sample: float = 1e-3,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    start: State | None = None,
+    initial: Mapping[str, float] | None = None,
+    record: Sequence[str] | None = None,
+    max_steps: int = 10_000_000,
+    progress: bool = False,
+) -> Run:
+    """Runs a drive through a command in steps as long as a tolerance allows.
+
+    The steps are those of `simulate`'s exponential method. Each ends where a side stops, breaks away or turns round; two of
+    half the length tell its error. Samples lie anywhere within steps: there a step of part of the length gives the state, as
+    exactly as at the ends.
+
+    Args:
+        drive, command, load_torque, temperature, inputs, start, initial, record, progress: as
+            for `simulate`
+        rtol: error tolerated in each member of the motion (input angle within its turn, transmission error, both speeds,
+            current, state of the controller, bristles) and in the torque, relative to the largest it has been so far
+        atol: error tolerated besides, in the unit of each
+        sample: distance of samples in the recording [s]
+        max_steps: after how many the run gives up. One takes some microseconds; where friction chatters, or laws with many
+            states stick and slip, up to a millisecond
+
+    Returns:
+        as `simulate`; `method` says how many steps were taken and how many were given up for shorter ones
+
+    Warns:
+        RatingWarning: as `simulate`
+
+    Raises:
+        TypeError: as `simulate`
+        ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `max_steps` lies below 1, and as `simulate`
+        FloatingPointError: the trajectory diverged, no step keeps the tolerance, or only more than `max_steps` do; says when
+        MemoryError: as `simulate`
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> run = sw.simulate_adaptively(drive, sw.scenario.step(amplitude=5.0, duration=0.1), rtol=1e-8)
+    >>> run.method.partition(":")[0]
+    'exponential Runge-Kutta, adaptive, rtol 1e-08, atol 1e-12'
+    """
+    model, drive = drive, drive_of(drive)
+    rtol = arguments.number("rtol", rtol, brackets="[]", low=1e-11, high=1e-2)
+    atol = arguments.number("atol", atol, low=0.0)
+    sample = arguments.seconds("sample", sample)
+    max_steps = arguments.whole("max_steps", max_steps, 1)
+    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
+    excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
+    state = beginning_numbers(drive, start, initial, excitation.first())
+    samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
+    ends = excitation.ends(signals.instants(drive, state, command.duration))
+    excitation.check_temperature(ends)
+    channels = [each.channel for each in recorded.values()]
+    outputs = beginning(drive, state, excitation, channels, len(samples))
+    with progressing(progress, len(ends) - 1) as shown:
+        state, accepted, rejected = _core.simulate_adaptively(
+            drive, state, *excitation.signals, ends, rtol, atol, max_steps, samples[1:], channels, outputs, 1, shown
+        )
+    _check_meaning(samples, recorded, outputs, "check the parameters")
+    kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
+    end = State.of(drive, state)
+    run = Run._made(drive, samples, recorded, outputs, end, f"{_named('exponential', drive)}, {kept}")
+    warn_of_ratings(model, run)
+    return run
+
+
+def differentiate(
+    drive: Drive,
+    excitation: Excitation,
+    numbers: Sequence[int],
+    dt: float,
+    samples: float | Array,
+    initial: Mapping[str, float] | None = None,
+) -> tuple[Recording, Array]:
+    """A run and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
+
+    Args:
+        numbers: places in `_core.parameters(drive)`
+        samples: interval of the samples, or the samples [s], beginning with 0
+
+    Returns:
+        the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
+    """
+    beginning_numbers(drive, None, initial, excitation.first())  # refuses what is no beginning
+    instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
+    time_grid = excitation.time_grid(dt, samples, instants)
+    check_resolution(drive, time_grid.longest, 0.0)
+    inputs = excitation.over(time_grid)
+    with room_for("samples", len(time_grid.times), 8.0 * _core.output_count * (1 + len(numbers)), "sample less often"):
+        outputs, slopes = _core.differentiate(
+            drive, known(drive, initial), time_grid.instants, inputs, time_grid.samples[1:], list(numbers)
+        )
+    recorded = signals.outputs(drive)
+    channels = [each.channel for each in recorded.values()]
+    return recording(drive, time_grid, recorded, outputs[channels]), slopes[:, channels]
+
+
+def recording(drive: Drive, time_grid: TimeGrid, recorded: Mapping[str, Output], outputs: Array) -> Recording:
+    """What a run recorded, shape (recorded, samples), the twist among it, if its numbers mean anything."""
+    time = time_grid.times
+    _check_meaning(time, recorded, outputs, remedy(time_grid.longest))
+    check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]))
+    units = signals.units(drive, recorded.values())
+    return Recording(_columns(time, recorded, outputs), units, title="simulation")
+
+
+def _columns(time: Array, recorded: Mapping[str, Output], outputs: Array) -> dict[str, Array]:
+    """The columns of a recording, which need not be copied as nobody can change them."""
+    time.setflags(write=False)
+    outputs.setflags(write=False)
+    return {"time": time} | {name: outputs[i] for i, name in enumerate(recorded)}
+
+
+def _check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, what_to_do: str) -> None:
+    if not (outputs.max() <= LARGEST and outputs.min() >= -LARGEST):
+        names = [*recorded, "twist"][: len(outputs)]
+        raise FloatingPointError(diverged(time, names, outputs, what_to_do))
+
+
+def _largest_twist(twist: Array) -> float:
+    return float(np.abs(twist).max())
+
+
+@contextmanager
+def progressing(wanted: bool, total: int) -> Iterator[Callable[[int], None] | None]:
+    if not wanted:
+        yield None
+        return
+    from rich.progress import Progress
+
+    with Progress(transient=True) as bar:
+        task = bar.add_task("simulating", total=total)
+        yield lambda done: bar.update(task, completed=done)

@@ -1,0 +1,394 @@
+r"""Scenarios: what a drive is commanded to do over a stretch of time.
+
+Every command signal has one form, a line in pieces, which may jump, and waves:
+
+.. math:: c(t) = v_k + s_k (t - t_k) + \sum_j A_j \sin(2 \pi (f_j t + \tfrac{1}{2} g_j t^2) + \varphi_j),
+          \quad t_k \le t < t_{k+1}
+
+Sums and multiples keep this form, and rates of change are exact. The unit of a command is that of whatever is
+commanded, rad for a position-controlled drive, V for an open-loop motor; a scenario carries none.
+
+>>> command = ramp(rate=0.3, duration=5.0) + 0.5 * sine(amplitude=0.2, frequency=2.0, duration=5.0)
+>>> float(command.value(1.125))
+0.4375
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from numbers import Real
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import _core, arguments
+from strainwave.files.recording import Recording
+from strainwave.messages import shortened
+from strainwave.simulation.memory import check_instants, room_for
+
+Array = NDArray[np.float64]
+SHORTEST = 1e-30  # s: a duration so short that its reciprocal and its square are still numbers
+
+
+@dataclass(frozen=True)
+class Wave:
+    """A sine whose frequency may rise linearly: A sin(2 pi (f t + g t^2 / 2) + phi).
+
+    Args:
+        amplitude: A [unit of the command]
+        frequency: f, at t = 0 [Hz]
+        sweep: g, the rise of the frequency [Hz/s]
+        phase: phi [rad]
+    """
+
+    amplitude: float
+    frequency: float
+    sweep: float
+    phase: float
+
+
+@dataclass(frozen=True, eq=False)
+class Scenario:
+    """A command over [0, duration]: a line in pieces plus waves. Made by `step`, `sine`, `table`, …; see the module.
+
+    Piece k is `level[k] + slope[k] * (t - start[k])` and holds from start[k] until start[k + 1].
+
+    Args:
+        duration: length [s]
+        start: where the pieces begin [s], shape (n,), increasing from 0
+        level: value of the line there [unit of the command], shape (n,)
+        slope: rate of the line from there on [unit of the command per s], shape (n,)
+        waves: what is added to the line
+
+    Raises:
+        ValueError: the duration is shorter than 1e-30 s, a number is not finite, the pieces are out of order, or the command or
+            its rate grows beyond all numbers within the duration.
+    """
+
+    duration: float
+    start: Array
+    level: Array
+    slope: Array
+    waves: tuple[Wave, ...] = ()
+
+    __array_ufunc__ = None  # numpy scalars leave `factor * scenario` to __rmul__
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "duration", _duration("scenario.duration", self.duration))
+        for name in ("start", "level", "slope"):
+            values = np.array(arguments.numbers(f"scenario.{name}", getattr(self, name)))
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
+            if values.ndim != 1 or values.shape != self.start.shape:
+                raise ValueError(f"scenario.{name} must hold one number for each piece")
+            if not np.isfinite(values).all():
+                raise ValueError(f"scenario.{name} = {values[~np.isfinite(values)][0]} must be finite")
+        if not (self.start.size and self.start[0] == 0.0 and (np.diff(self.start, append=self.duration) > 0.0).all()):
+            raise ValueError(f"scenario.start must increase from 0 s and stay below {self.duration} s")
+        if not (isinstance(self.waves, tuple) and all(isinstance(wave, Wave) for wave in self.waves)):
+            raise TypeError(f"scenario.waves must be a tuple of waves, not {shortened(self.waves)}")
+        for wave in self.waves:
+            for name, value in vars(wave).items():
+                arguments.number(f"wave.{name}", value)
+        if not np.isfinite(self._largest()):
+            raise ValueError(
+                f"scenario: the command, its rate or the angle of a wave grows beyond {np.finfo(float).max:.2g} within "
+                f"{self.duration:g} s; take smaller numbers, or a shorter duration"
+            )
+
+    @np.errstate(over="ignore", invalid="ignore")
+    def _largest(self) -> float:
+        """A bound of the command, its rate and the angles of its waves; not finite where that is none."""
+        lengths = np.diff(self.start, append=self.duration)
+        level, slope = np.abs(self.level), np.abs(self.slope)
+        waves = np.abs([tuple(vars(wave).values()) for wave in self.waves]).reshape(-1, 4)
+        amplitude, frequency, sweep, phase = waves.T
+        fastest = 2.0 * np.pi * (frequency + sweep * self.duration)
+        line, rate = (level + slope * lengths).max(), slope.max()
+        return float(line + amplitude.sum() + rate + (amplitude * fastest).sum() + (fastest * self.duration + phase).sum())
+
+    def value(self, time: ArrayLike) -> Array:
+        """The command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
+        return self._at(time, before=False)[0]
+
+    def rate(self, time: ArrayLike) -> Array:
+        """Derivative of the command at `time` [s], any shape, in [0, duration]; right-continuous where it jumps."""
+        return self._at(time, before=False)[1]
+
+    def value_before(self, time: ArrayLike) -> Array:
+        """Left limit of the command at `time` [s]; at 0 the value there."""
+        return self._at(time, before=True)[0]
+
+    def rate_before(self, time: ArrayLike) -> Array:
+        """Left limit of the rate at `time` [s]; at 0 the rate there."""
+        return self._at(time, before=True)[1]
+
+    @cached_property
+    def breaks(self) -> Array:
+        """The times [s] in (0, duration) at which the command or its rate jumps, increasing."""
+        inner = self.start[1:]
+        differs = self._line.at(inner, before=True) != self._line.at(inner, before=False)
+        breaks: Array = inner[differs.any(axis=0)]
+        breaks.setflags(write=False)
+        return breaks
+
+    def recording(self, dt: float, unit: str) -> Recording:
+        """The command at 0, dt, 2 dt, … up to the duration, as columns `time` and `command`.
+
+        Args:
+            dt: distance of the samples [s], in (0, duration]
+            unit: unit of the command
+
+        Raises:
+            ValueError: `dt` is out of its range, or would make more than 1e9 samples; the unit is not known
+            MemoryError: the samples are too many; says how large they are
+
+        >>> ramp(rate=2.0, duration=1.0).recording(dt=0.25, unit="rad")["command"]
+        array([0. , 0.5, 1. , 1.5, 2. ])
+        """
+        dt = arguments.number("recording.dt", dt, "s", "(]", 0.0, self.duration)
+        check_instants(self.duration, dt, "take longer ones")
+        intervals = int(self.duration / dt * (1.0 + 4.0 * np.finfo(float).eps))  # 0.3 / 0.1 falls just short of 3
+        with room_for("samples", intervals, 40.0, "take longer steps"):
+            time = np.minimum(dt * np.arange(intervals + 1), self.duration)
+            return Recording({"time": time, "command": self.value(time)}, {"time": "s", "command": unit})
+
+    def __reduce__(self) -> tuple[type[Scenario], tuple[object, ...]]:
+        return Scenario, (self.duration, self.start, self.level, self.slope, self.waves)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scenario):
+            return NotImplemented
+        if (self.duration, self.waves) != (other.duration, other.waves):
+            return False
+        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in ("start", "level", "slope"))
+
+    def __add__(self, other: Scenario) -> Scenario:
+        """The sum of two commands of the same duration."""
+        if not isinstance(other, Scenario):
+            return NotImplemented
+        if self.duration != other.duration:
+            raise ValueError(f"durations differ, {self.duration} s and {other.duration} s; a sum needs one duration")
+        start = np.append(0.0, np.union1d(self.breaks, other.breaks))
+        with np.errstate(over="ignore"):  # what is not finite is refused by the sum
+            level, slope = self._line.at(start, before=False) + other._line.at(start, before=False)
+        return Scenario(self.duration, start, level, slope, self.waves + other.waves)
+
+    def __mul__(self, factor: float) -> Scenario:
+        """The command times a number."""
+        if not isinstance(factor, Real):
+            return NotImplemented
+        factor = arguments.number("factor", factor)
+        waves = tuple(replace(wave, amplitude=factor * wave.amplitude) for wave in self.waves)
+        with np.errstate(over="ignore"):  # what is not finite is refused by the product
+            return replace(self, level=factor * self.level, slope=factor * self.slope, waves=waves)
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> Scenario:
+        return -1.0 * self
+
+    def __sub__(self, other: Scenario) -> Scenario:
+        """The difference of two commands of the same duration."""
+        if not isinstance(other, Scenario):
+            return NotImplemented
+        return self + -other
+
+    @cached_property
+    def signal(self) -> _core.Signal:
+        """The same for the compiled loops."""
+        waves = [(wave.amplitude, wave.frequency, wave.sweep, wave.phase) for wave in self.waves]
+        return _core.Signal(self.start, self.level, self.slope, np.array(waves, dtype=np.float64))
+
+    @cached_property
+    def _line(self) -> _core.Signal:
+        return _core.Signal(self.start, self.level, self.slope, np.empty(0))
+
+    def _at(self, time: ArrayLike, before: bool) -> tuple[Array, Array]:
+        """Values and rates at `time` [s], or just before it."""
+        times = arguments.numbers("time", time)
+        if times.size and not (times.min() >= 0.0 and times.max() <= self.duration):
+            outside = times[~((times >= 0.0) & (times <= self.duration))]
+            raise ValueError(f"time = {outside[0]} s lies outside the scenario, [0, {self.duration}] s")
+        values, rates = self.signal.at(times, before)
+        return values, rates
+
+
+def constant(value: float, duration: float) -> Scenario:
+    """The same command all the time: c(t) = value.
+
+    Args:
+        value: the command [unit of the command]
+        duration: length [s]
+
+    Raises:
+        ValueError: a number is not finite, or the duration not positive.
+
+    >>> constant(1.5, duration=2.0).value([0.0, 2.0])
+    array([1.5, 1.5])
+    """
+    value = arguments.number("constant.value", value)
+    duration = _duration("constant.duration", duration)
+    return _from(0.0, duration, level=value, slope=0.0)
+
+
+def step(amplitude: float, duration: float, start: float = 0.0) -> Scenario:
+    """A jump: c(t) = amplitude from t = start on, 0 before.
+
+    Args:
+        amplitude: height of the jump [unit of the command]
+        duration: length [s]
+        start: when it jumps [s], in [0, duration)
+
+    Raises:
+        ValueError: a number is not finite or out of its range.
+
+    >>> step(2.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
+    array([0., 2., 2.])
+    """
+    amplitude = arguments.number("step.amplitude", amplitude)
+    duration = _duration("step.duration", duration)
+    start = arguments.number("step.start", start, "s", "[)", 0.0, duration)
+    return _from(start, duration, level=amplitude, slope=0.0)
+
+
+def ramp(rate: float, duration: float, start: float = 0.0) -> Scenario:
+    """A steady rise: c(t) = rate * (t - start) from t = start on, 0 before.
+
+    Args:
+        rate: the rise [unit of the command per s]
+        duration: length [s]
+        start: when it begins [s], in [0, duration)
+
+    Raises:
+        ValueError: a number is not finite or out of its range.
+
+    >>> ramp(4.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
+    array([0., 0., 2.])
+    """
+    rate = arguments.number("ramp.rate", rate)
+    duration = _duration("ramp.duration", duration)
+    start = arguments.number("ramp.start", start, "s", "[)", 0.0, duration)
+    return _from(start, duration, level=0.0, slope=rate)
+
+
+def sine(amplitude: float, frequency: float, duration: float, phase: float = 0.0, offset: float = 0.0) -> Scenario:
+    """A sine: c(t) = offset + amplitude * sin(2 pi * frequency * t + phase).
+
+    Args:
+        amplitude: half the distance between its extremes [unit of the command]
+        frequency: cycles per second [Hz], >= 0
+        duration: length [s]
+        phase: angle at t = 0 [rad]
+        offset: its mean [unit of the command]
+
+    Raises:
+        ValueError: a number is not finite or out of its range.
+
+    >>> sine(2.0, frequency=0.25, duration=4.0, offset=1.0).value([0.0, 1.0, 3.0])
+    array([ 1.,  3., -1.])
+    """
+    amplitude = arguments.number("sine.amplitude", amplitude)
+    frequency = arguments.number("sine.frequency", frequency, "Hz", "[)", 0.0)
+    duration = _duration("sine.duration", duration)
+    phase = arguments.number("sine.phase", phase, "rad")
+    offset = arguments.number("sine.offset", offset)
+    wave = Wave(amplitude, frequency, sweep=0.0, phase=phase)
+    return replace(constant(offset, duration), waves=(wave,))
+
+
+def chirp(amplitude: float, start_frequency: float, stop_frequency: float, duration: float) -> Scenario:
+    """A sine whose frequency moves linearly from one value to another.
+
+    c(t) = amplitude * sin(2 pi * (f0 * t + (f1 - f0) * t**2 / (2 * duration))), so that its instantaneous frequency,
+    the derivative of the angle over 2 pi, is f0 = start_frequency at 0 and f1 = stop_frequency at the end.
+
+    Args:
+        amplitude: half the distance between its extremes [unit of the command]
+        start_frequency: frequency at t = 0 [Hz], >= 0
+        stop_frequency: frequency at t = duration [Hz], >= 0
+        duration: length [s]
+
+    Raises:
+        ValueError: a number is not finite or out of its range.
+
+    >>> float(chirp(1.0, start_frequency=0.0, stop_frequency=1.0, duration=8.0).value(1.0).round(12))  # sin(pi / 8)
+    0.382683432365
+    """
+    amplitude = arguments.number("chirp.amplitude", amplitude)
+    start_frequency = arguments.number("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
+    stop_frequency = arguments.number("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
+    duration = _duration("chirp.duration", duration)
+    wave = Wave(amplitude, start_frequency, sweep=(stop_frequency - start_frequency) / duration, phase=0.0)
+    return replace(constant(0.0, duration), waves=(wave,))
+
+
+def pulse_train(amplitude: float, period: float, width: float, duration: float, start: float = 0.0) -> Scenario:
+    """Rectangular pulses: c(t) = amplitude while 0 <= t - start - k * period < width for a k = 0, 1, 2, …, else 0.
+
+    Args:
+        amplitude: height of the pulses [unit of the command]
+        period: from the begin of one pulse to that of the next [s]
+        width: length of a pulse [s], in (0, period)
+        duration: length of the whole [s]
+        start: when the first pulse begins [s], in [0, duration)
+
+    Raises:
+        ValueError: a number is not finite or out of its range.
+
+    >>> pulse_train(3.0, period=1.0, width=0.25, duration=2.0, start=0.5).breaks
+    array([0.5 , 0.75, 1.5 , 1.75])
+    """
+    amplitude = arguments.number("pulse_train.amplitude", amplitude)
+    period = arguments.number("pulse_train.period", period, "s", low=0.0)
+    width = arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
+    duration = _duration("pulse_train.duration", duration)
+    start = arguments.number("pulse_train.start", start, "s", "[)", 0.0, duration)
+    check_instants(duration - start, period, "take fewer pulses")
+    pulses = np.ceil((duration - start) / period)
+    with room_for("pulses", pulses, 200.0, "take fewer"):
+        rise = start + period * np.arange(pulses)
+        edges = np.column_stack((rise, rise + width)).ravel()
+        levels = np.resize([amplitude, 0.0], edges.size)
+        if start > 0.0:
+            edges, levels = np.append(0.0, edges), np.append(0.0, levels)
+        inside = edges < duration
+        return Scenario(duration, edges[inside], levels[inside], np.zeros(np.count_nonzero(inside)))
+
+
+def table(time: ArrayLike, value: ArrayLike) -> Scenario:
+    """Straight lines between points: c(t) = v_k + (v_{k+1} - v_k) (t - t_k) / (t_{k+1} - t_k), t_k <= t <= t_{k+1}.
+
+    Args:
+        time: times of the points [s], shape (n,), n >= 2, increasing from 0; the last is the duration
+        value: the command there [unit of the command], shape (n,)
+
+    Raises:
+        ValueError: lengths differ, a number is not finite, or the times do not increase from 0.
+
+    >>> table([0.0, 1.0, 3.0], [0.0, 2.0, 0.0]).value([0.5, 1.0, 2.0])
+    array([1., 2., 1.])
+    """
+    points = Recording({"time": time, "value": value}, {"time": "s", "value": "1"})
+    if len(points) < 2:
+        raise ValueError("table.time holds 1 time; at least 2 are needed")
+    if points.time[0] != 0.0:
+        raise ValueError(f"table.time begins at {points.time[0]} s; it must begin at 0 s")
+    with np.errstate(over="ignore"):
+        slope = np.diff(points["value"]) / np.diff(points.time)
+    if not np.isfinite(slope).all():
+        row = int(np.argmin(np.isfinite(slope)))
+        raise ValueError(f"table.value changes so much from row {row} to row {row + 1} that its rate is not finite; take less")
+    return Scenario(float(points.time[-1]), points.time[:-1], points["value"][:-1], slope)
+
+
+def _duration(name: str, value: object) -> float:
+    return arguments.number(name, value, "s", "[)", low=SHORTEST)
+
+
+def _from(start: float, duration: float, level: float, slope: float) -> Scenario:
+    """Nothing until `start`, then one piece of a line."""
+    before = [0.0] if start > 0.0 else []
+    starts, levels, slopes = (np.array([*before, last]) for last in (start, level, slope))
+    return Scenario(duration, starts, levels, slopes)

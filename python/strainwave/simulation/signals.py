@@ -1,0 +1,137 @@
+"""What goes into a drive and comes out of it, by name: its parts say what they take and what they show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments
+from strainwave.messages import shortened
+from strainwave.simulation.memory import check_instants
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Output:
+    """A number that a drive shows of itself: what it means, the part that shows it, and its place among all."""
+
+    name: str
+    unit: str
+    doc: str
+    part: str
+    channel: int
+
+    @property
+    def path(self) -> str:
+        """The name with that of its part in front."""
+        return f"{self.part}.{self.name}" if self.part else self.name
+
+
+def outputs(drive: Drive) -> Mapping[str, Output]:
+    """All that a drive shows of itself, by name.
+
+    >>> from strainwave import motor
+    >>> "voltage" in outputs(Drive()), "voltage" in outputs(Drive(motor=motor.CurrentSource()))
+    (True, False)
+    """
+    return _outputs_with(drive.motor.name)
+
+
+@cache
+def _outputs_with(motor: str) -> Mapping[str, Output]:
+    """Drives differ in what their motors show; whatever its numbers, a motor shows the same."""
+    kind = _core.families["motor"][motor]
+    required = {field["name"]: field["default"] for field in kind.fields if field["required"]}
+    found = [Output(*each) for each in _core.outputs(Drive(motor=kind(**required)))]
+    return MappingProxyType({each.name: each for each in found})
+
+
+TWIST = outputs(Drive())["twist"].channel
+
+
+def chosen(drive: Drive, record: Sequence[str]) -> Mapping[str, Output]:
+    """The outputs that `record` names, in its order: each by its name, or with that of its part in front.
+
+    Raises:
+        TypeError: `record` is no list of names
+        ValueError: it is empty, or names what this drive does not show
+    """
+    names = arguments.names("record", record)
+    known = outputs(drive)
+    paths = dict(known) | {each.path: each for each in known.values()}
+    if not names or not set(names) <= set(paths):
+        raise ValueError(f"record = {shortened(names)} must list outputs of this drive: {', '.join(known)}")
+    return {paths[name].name: paths[name] for name in names}
+
+
+def units(drive: Drive, of: Iterable[Output]) -> dict[str, str]:
+    """The unit of the time and of some outputs."""
+    return {"time": "s"} | {each.name: command_unit(drive) if each.name == "command" else each.unit for each in of}
+
+
+def command_unit(drive: Drive) -> str:
+    """The unit of what the controller of a drive takes.
+
+    >>> from strainwave import control, motor
+    >>> command_unit(Drive(control=control.PID())), command_unit(Drive(motor=motor.TorqueSource()))
+    ('rad', 'N.m')
+    """
+    return _core.command_unit(drive)
+
+
+def controls_position(drive: Drive) -> bool:
+    """Whether the command of a drive is an output angle."""
+    return command_unit(drive) == "rad"
+
+
+def actuation(drive: Drive) -> Output:
+    """The output of the motor that is what the controller gives it."""
+    return outputs(drive)[_core.actuation(drive)[0]]
+
+
+def load_input(drive: Drive) -> str:
+    """What the load of a drive takes as input.
+
+    >>> from strainwave import loads
+    >>> load_input(Drive()), load_input(Drive(load=loads.Prescribed()))
+    ('load_torque', 'output_angle')
+    """
+    return _core.load_input(drive)[0]
+
+
+def instants(drive: Drive, state: Array, duration: float) -> Array:
+    """When a sampled controller acts within `duration` [s], in order; none of one that acts all the time.
+
+    Raises:
+        MemoryError: they are too many
+    """
+    first, period, delay = _core.schedule(drive, state)
+    if period == 0.0:
+        return np.empty(0)
+    check_instants(duration, period, "take a longer period")
+    samples = np.float64(first) + period * np.arange(int(max(duration - first, 0.0) / period) + 1)
+    given = np.concatenate([[first - period + delay], samples + delay])
+    acting = np.sort(np.concatenate([samples, given[given > 1e-9 * period]]))
+    found: Array = acting[acting < duration]
+    return found
+
+
+def check_continuous(drive: Drive, what: str) -> None:
+    """Refuses a drive that is not one system of differential equations, of which `what` is asked.
+
+    Raises:
+        ValueError: its controller acts at instants only, or its load prescribes the motion of the output shaft
+    """
+    if _core.schedule(drive, drive.rest().numbers)[1] > 0.0:
+        raise ValueError(
+            f"{what} needs a controller that acts all the time; this one is sampled. "
+            "Give drive.replace(control=drive.control.law)"
+        )
+    if load_input(drive) != "load_torque":
+        raise ValueError(f"{what} needs an output shaft that torques move; the load of this drive prescribes its motion")

@@ -1,0 +1,62 @@
+"""A stretch of time cut into steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import _core
+from strainwave.equality import ComparedByFields
+from strainwave.simulation.memory import check_instants, room_for
+
+Array = NDArray[np.float64]
+NEVER = np.empty(0)
+# What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
+STEP, INPUTS = 33.0, 144.0
+LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"
+CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
+
+
+@dataclass(frozen=True, eq=False)
+class TimeGrid(ComparedByFields):
+    """A stretch of time cut into steps: where they end, which ends are samples of the recording, and the longest step [s]."""
+
+    instants: Array
+    samples: NDArray[np.uint8]
+    longest: float
+
+    @classmethod
+    def through(cls, duration: float, dt: float, samples: float | Array, breaks: Array) -> TimeGrid:
+        """Steps of at most `dt` that end at every sample, given by their interval or one by one, and at every break.
+
+        Where neither asks for more, steps are exactly `dt`; the last may be shorter.
+        """
+        apart = float(np.min(np.diff(samples))) if isinstance(samples, np.ndarray) else samples
+        nearest = max(1e-9 * min(dt, apart, duration), 4.0 * float(np.spacing(duration)))
+        if not isinstance(samples, np.ndarray):
+            samples = grid(samples, duration, nearest)
+        steps = grid(dt, duration, nearest)
+        with room_for("steps", len(steps) + len(samples), STEP, LONG_RUN):
+            instants, sampled, longest = _core.time_grid(steps, samples, np.sort(breaks), nearest)
+        return cls(instants, sampled, min(longest, dt))  # longer by rounding
+
+    @property
+    def times(self) -> Array:
+        """The samples [s]."""
+        times: Array = self.instants[self.samples.view(np.bool_)]
+        return times
+
+    def chunks(self) -> Iterator[TimeGrid]:
+        """The same time_grid in pieces that follow each other."""
+        for start in range(0, len(self.instants) - 1, CHUNK):
+            yield TimeGrid(self.instants[start : start + CHUNK + 1], self.samples[start : start + CHUNK + 1], self.longest)
+
+
+def grid(step: float, duration: float, tolerance: float) -> Array:
+    """0, step, 2 step … up to duration, which is always the last."""
+    check_instants(duration, step, "take longer steps or slower inputs")
+    with room_for("steps", duration / step, STEP, LONG_RUN):
+        return _core.grid(step, duration, tolerance)

@@ -1,0 +1,123 @@
+#include <algorithm>
+
+#include "arrays.hpp"
+#include "instruction_set.hpp"
+
+namespace strainwave::host {
+
+namespace {
+
+std::vector<double> copied(const Numbers& values) { return {values.data(), values.data() + values.size()}; }
+
+Signal signal_of(const Numbers& start, const Numbers& level, const Numbers& slope, const Numbers& waves) {
+    if (start.size() == 0 || level.size() != start.size() || slope.size() != start.size() || waves.size() % 4 != 0)
+        throw nb::value_error("a signal of n pieces and m waves has n starts, levels and slopes, and waves of shape (m, 4)");
+    Signal signal{copied(start), copied(level), copied(slope), {}};
+    for (const double* w = waves.data(); w != waves.data() + waves.size(); w += 4) signal.waves.push_back({w[0], w[1], w[2], w[3]});
+    return signal;
+}
+
+/// The values of a signal and its rates, shape (2, …).
+Values evaluated(const Signal& signal, const Numbers& instants, bool before) {
+    std::vector<std::size_t> shape{2};
+    for (std::size_t axis = 0; axis < instants.ndim(); ++axis) shape.push_back(instants.shape(axis));
+    Values out = array(shape);
+    kernels().evaluate(signal, instants.data(), instants.size(), before ? Side::before : Side::after, out.data(),
+                       out.data() + instants.size());
+    return out;
+}
+
+Values inputs_of(const Signal& command, const Signal& load, const Signal& temperature, const Numbers& instants) {
+    if (instants.size() < 2) throw nb::value_error("a time grid has at least two instants");
+    const std::size_t steps = instants.size() - 1;
+    Values out = array({steps, 3, std::size_t(input_count)});
+    kernels().lay_out({{&command, &load, &temperature}}, instants.data(), steps, out.data());
+    return out;
+}
+
+/// 0, step, 2 step, … and `duration`, which is always the last.
+Values grid(double step, double duration, double tolerance) {
+    const auto instants = room(std::size_t(duration / step) + 3);
+    std::size_t count = 0;
+    instants[count++] = 0.0;
+    for (double next = step; next < duration - tolerance; next = double(count) * step) instants[count++] = next;
+    instants[count++] = duration;
+    Values out = array({count});
+    std::copy_n(instants.get(), count, out.data());
+    return out;
+}
+
+/// A series of instants, in order, and how far it has been gone through.
+struct Queue {
+    const double *next, *const end;
+
+    explicit Queue(const Numbers& series) : next(series.data()), end(next + series.size()) {}
+    double first() const { return next < end ? *next : unbounded; }
+};
+
+/// Instants from three series: whatever is within `tolerance` of its neighbour is one. Which are samples, and the longest step.
+nb::tuple time_grid_of(const Numbers& steps, const Numbers& samples, const Numbers& breaks, double tolerance) {
+    const std::size_t most = steps.size() + samples.size() + breaks.size();
+    const auto instants = room(most);
+    const auto sampled = room<std::uint8_t>(most);
+    Queue step(steps), sample(samples), jump(breaks);
+    std::size_t count = 0;
+    double before = -unbounded;
+    for (std::size_t i = 0; i < most; ++i) {
+        const double instant = std::min(std::min(step.first(), sample.first()), jump.first());
+        if (instant - before > tolerance) {
+            sampled[count] = 0;
+            instants[count++] = instant;
+        }
+        before = instant;
+        if (step.first() == instant) {
+            ++step.next;
+        } else if (sample.first() == instant) {
+            ++sample.next;
+            sampled[count - 1] = 1;
+        } else {
+            ++jump.next;
+            instants[count - 1] = instant;  // a step that ends at a break does so exactly: the inputs jump
+        }
+    }
+    Values out = array({count});
+    auto flags = array<std::uint8_t>({count});
+    std::copy_n(instants.get(), count, out.data());
+    std::copy_n(sampled.get(), count, flags.data());
+    double longest = 0.0;
+    for (std::size_t i = 1; i < count; ++i) longest = std::max(longest, instants[i] - instants[i - 1]);
+    return nb::make_tuple(out, flags, longest);
+}
+
+}  // namespace
+
+void bind_inputs(nb::module_& core) {
+    nb::class_<Signal>(core, "Signal",
+                       "A command or another input over time, as the compiled loops know it: a line in pieces, and waves.")
+        .def(
+            "__init__",
+            [](Signal* self, const Numbers& start, const Numbers& level, const Numbers& slope, const Numbers& waves) {
+                new (self) Signal(signal_of(start, level, slope, waves));
+            },
+            nb::arg("start"), nb::arg("level"), nb::arg("slope"), nb::arg("waves"),
+            nb::sig("def __init__(self, start: " SW_ARRAY ", level: " SW_ARRAY ", slope: " SW_ARRAY ", waves: " SW_ARRAY
+                    ") -> None"),
+            "Pieces of a line, shape (n,) each, and amplitude, frequency, sweep and phase of each wave, shape (m, 4).")
+        .def("at", &evaluated, nb::arg("instants"), nb::arg("before"),
+             nb::sig("def at(self, instants: " SW_ARRAY ", before: bool) -> " SW_ARRAY),
+             "Values and rates at `instants` [s], or just before them: shape (2, …).");
+    core.def(
+        "inputs", &inputs_of, nb::arg("command"), nb::arg("load"), nb::arg("temperature"), nb::arg("instants"),
+        nb::sig("def inputs(command: Signal, load: Signal, temperature: Signal, instants: " SW_ARRAY ") -> " SW_ARRAY),
+        "Command, input of the load and temperature, each with its rate, at start, middle and end of each step: shape (n, 3, 6).");
+    core.def("grid", &grid, nb::arg("step"), nb::arg("duration"), nb::arg("tolerance"),
+             nb::sig("def grid(step: float, duration: float, tolerance: float) -> " SW_ARRAY),
+             "0, step, 2 step, … and `duration`, from which the one before is further than `tolerance`.");
+    core.def("time_grid", &time_grid_of, nb::arg("steps"), nb::arg("samples"), nb::arg("breaks"), nb::arg("tolerance"),
+             nb::sig("def time_grid(steps: " SW_ARRAY ", samples: " SW_ARRAY ", breaks: " SW_ARRAY
+                     ", tolerance: float) -> tuple[" SW_ARRAY ", numpy.typing.NDArray[numpy.uint8], float]"),
+             "All instants in order, whatever is within `tolerance` of its neighbour being one, which of them are samples, and the "
+             "longest step from one to the next.");
+}
+
+}  // namespace strainwave::host

@@ -1,0 +1,205 @@
+"""Units against their definitions (SI brochure, ISO 80000-3), and the spellings people use."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strainwave.files.units import check, convert
+
+untimed = settings(deadline=None)  # the first example pays for the import of pint
+finite = st.floats(-1e200, 1e200, allow_subnormal=False).filter(lambda number: number == 0.0 or abs(number) > 1e-200)
+
+
+def check_told(error: ValueError) -> None:
+    """The message is one short line."""
+    assert str(error).isprintable()
+    assert len(str(error)) < 200
+
+
+def exactly(message: str) -> str:
+    return f"^{re.escape(message)}$"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "to", "expected"),
+    [
+        (1.0, "rpm", "rad/s", math.pi / 30),
+        (60.0, "r/min", "rad/s", 2 * math.pi),
+        (60.0, "1/min", "rad/s", 2 * math.pi),
+        (60.0, "min-1", "rad/s", 2 * math.pi),
+        (60.0, "min⁻¹", "rpm", 60.0),
+        (2 * math.pi, "rad/s", "1/min", 60.0),
+        (1.0, "U/s", "rad/s", 2 * math.pi),
+        (3.0, "1/min", "Hz", 0.05),
+        (180.0, "deg", "rad", math.pi),
+        (1.0, "arcmin", "deg", 1 / 60),
+        (3600.0, "arcsec", "°", 1.0),
+        (1.0, "rad/s^2", "deg/s2", 180 / math.pi),
+        (100.0, "Ncm", "N.m", 1.0),
+        (1.0, "kNm", "mNm", 1e6),
+        (1.0, "g.cm2", "kg.m2", 1e-7),
+        (1.0, "N.m.s/rad", "N.m/(r/min)", math.pi / 30),
+        (1.0, "V/rpm", "V.s/rad", 30 / math.pi),
+        (1.0, "N.m", "kg.m2/s2", 1.0),
+        (1.0, "Ohm.A", "mV", 1000.0),
+        (1.0, "H", "V.s/A", 1.0),
+        (20.0, "°C", "K", 293.15),
+        (250.0, "ms", "s", 0.25),
+    ],
+)
+def test_conversions_follow_the_definitions(value: float, unit: str, to: str, expected: float) -> None:
+    assert convert(value, unit, to) == pytest.approx(expected, rel=1e-15)
+
+
+@untimed
+@given(finite)
+def test_radians_to_degrees_and_back_is_the_identity(angle: float) -> None:
+    assert convert(convert(angle, "rad", "deg"), "deg", "rad") == pytest.approx(angle, rel=1e-15, abs=0.0)
+
+
+@untimed
+@given(finite, st.sampled_from([("rpm", "rad/s"), ("Ncm", "N.m"), ("min", "ms"), ("N.m/deg", "N.m/rad")]))
+def test_conversion_there_and_back_is_the_identity(value: float, pair: tuple[str, str]) -> None:
+    there, back = pair
+    assert convert(convert(value, there, back), back, there) == pytest.approx(value, rel=1e-15, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    ("standard", "spellings"),
+    [
+        ("N.m", ["Nm", "NM", "N·m", "N m", "N\u00a0m", "N*m", "N-m", "N . m", "m.N", " N.m "]),
+        ("N.m.s/rad", ["Nms/rad", "N·m·s/rad", "N m s / rad", "N.m/(rad/s)"]),
+        ("rad/s2", ["rad/s^2", "rad/s**2", "rad/s²", "rad.s-2", "rad·s⁻²"]),
+        ("kg.m2", ["kgm2", "kg m²", "kg*m^2"]),
+        ("deg", ["°"]),
+        ("rev/min", ["r/min", "U/min", "U / min", "U·min⁻¹", "rev/min"]),
+        ("rpm", ["RPM"]),
+        ("1/min", ["min-1", "min^-1", "min⁻¹"]),
+        ("ms", ["msec"]),
+        ("um", ["\u00b5m", "\u03bcm"]),
+        ("Ohm", ["\u03a9", "\u2126", "ohm"]),
+        ("V.s/rad", ["Vs/rad"]),
+        ("1", ["-"]),
+        ("1/s", ["s-1", "s^-1"]),
+    ],
+)
+def test_common_spellings_mean_one_unit(standard: str, spellings: list[str]) -> None:
+    assert {check(spelling) for spelling in [standard, *spellings]} == {standard}
+
+
+@pytest.mark.parametrize(
+    "unit",
+    [
+        *("", "xyz", "Ns", "rads", "meter", "nm", "N.m/rad.s", "m/s/s", "N..m", "/s", "s/", "(N", "11", "3.m", "N.m/degC"),
+        *("U", "V/U", "k^m", "m^", "kgU/min"),
+    ],
+)
+def test_unknown_and_ambiguous_units_are_refused(unit: str) -> None:
+    with pytest.raises(ValueError, match=exactly(f'unit "{unit}" is not known; write it like N.m, rad/s, deg')):
+        check(unit)
+
+
+@pytest.mark.parametrize("unit", ["N\nm", "N\tm", "N.m\n", "\x1b[31mN", "N\u2028m"])
+def test_a_unit_is_one_line_without_control_characters(unit: str) -> None:
+    with pytest.raises(ValueError, match=r'^unit ".*" is not known; write it like N\.m, rad/s, deg$') as told:
+        check(unit)
+    assert str(told.value).isprintable()
+
+
+@pytest.mark.parametrize(
+    ("unit", "message"),
+    [
+        (101 * "m", f'unit "{60 * "m"}…" has 101 characters; at most 100 are allowed'),
+        (
+            "Ncm.Vs.kgm.uN.mN.kN.um.mm.km.uA.mA.kA.cA.uV.mV.kV.cV.uW.mW.kW.cW.uJ.mJ.kJ.cJ.uK.mK.kK.cK.us.ms.ks.cs",
+            'unit "Ncm.Vs.kgm.uN.mN.kN.um.mm.km.uA.mA.kA.cA.uV.mV.kV.cV.uW.mW.k…" has more than 100 characters '
+            "in standard spelling",
+        ),
+        (".".join(20 * ["km9"]), f'unit "{15 * "km9."}…" is too large or too small a number of SI units'),
+        (".".join(20 * ["um9"]), f'unit "{15 * "um9."}…" is too large or too small a number of SI units'),
+    ],
+)
+def test_units_beyond_all_bounds_are_refused(unit: str, message: str) -> None:
+    with pytest.raises(ValueError, match=exactly(message)):
+        check(unit)
+
+
+@pytest.mark.parametrize("unit", [99 * "a" + "_", 50 * "(" + "m" + 49 * ")", 33 * "m9." + "x", 99 * " " + "m"])
+def test_no_text_costs_more_than_milliseconds(unit: str) -> None:
+    check("N.m")  # pays for the import of pint
+    start = time.process_time()
+    with suppress(ValueError):
+        check(unit)
+    assert time.process_time() - start < 0.5
+
+
+@pytest.mark.parametrize(
+    ("unit", "to"),
+    [("rad", "N.m"), ("1", "rad"), ("deg", "1"), ("N.m/rad", "N.m"), ("A", "V"), ("1/min", "rad/s2"), ("1/h", "rad")],
+)
+def test_units_of_different_things_are_refused(unit: str, to: str) -> None:
+    with pytest.raises(ValueError, match=exactly(f'cannot convert "{unit}" to "{to}"')):
+        convert(1.0, unit, to)
+
+
+@pytest.mark.parametrize("unit", ["1/s", "Hz", "1/h", "kHz"])
+def test_a_frequency_is_no_angular_speed_for_the_reason_told(unit: str) -> None:
+    reason = "it may count revolutions or radians; write rev/s or rad/s"
+    with pytest.raises(ValueError, match=exactly(f'cannot convert "{unit}" to "rad/s": {reason}')):
+        convert(1.0, unit, "rad/s")
+
+
+@pytest.mark.parametrize("unit", [3, None, ["N.m"], {"N.m"}])
+def test_a_unit_that_is_not_a_text_is_refused(unit: object) -> None:
+    with pytest.raises(TypeError, match=exactly(f"a unit is a text like N.m, not {unit!r}")):
+        check(unit)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("values", "kind"), [(np.array(["a"]), "<U1"), (len, "object"), (True, "bool"), ("3", "<U1")])
+def test_what_is_no_number_is_refused(values: object, kind: str) -> None:
+    with pytest.raises(TypeError, match=exactly(f"values must hold numbers, not {kind}")):
+        convert(values, "s", "min")  # type: ignore[type-var]
+
+
+@pytest.mark.parametrize("values", [math.nan, np.array([1.0, math.nan])])
+def test_not_a_number_is_refused(values: float) -> None:
+    with pytest.raises(ValueError, match=exactly("values must be numbers, and nan is none")):
+        convert(values, "s", "min")
+
+
+def test_a_value_too_large_for_the_other_unit_is_refused() -> None:
+    with pytest.raises(ValueError, match=exactly("1e+308 km is too large a number in m")):
+        convert(np.array([1.0, 1e308]), "km", "m")
+    with pytest.raises(ValueError, match=exactly("-1e+308 km is too large a number in m")):
+        convert(-1e308, "km", "m")
+    assert convert(math.inf, "km", "m") == math.inf
+
+
+PIECES = ("N", "m", "rad", "s", "kg", "V", "U", "min", "k", "u", *"/.*()^-129°²· _\n")
+unit_texts = st.lists(st.sampled_from(PIECES), max_size=30).map("".join)
+
+
+@untimed
+@given(st.one_of(unit_texts, st.text(max_size=120)))
+def test_any_text_is_refused_or_has_a_standard_spelling(text: str) -> None:
+    try:
+        standard = check(text)
+    except ValueError as error:
+        check_told(error)
+        return
+    assert check(standard) == standard
+    assert convert(1.0, text, standard) == 1.0
+
+
+def test_arrays_keep_their_shape_and_stay_as_they_are() -> None:
+    angles = np.array([[0.0, 90.0], [180.0, 360.0]])
+    radians = convert(angles, "deg", "rad")
+    np.testing.assert_allclose(radians, math.pi * np.array([[0.0, 0.5], [1.0, 2.0]]), rtol=1e-15)
+    assert angles[1, 1] == 360.0

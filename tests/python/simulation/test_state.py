@@ -1,0 +1,85 @@
+"""The state of a drive: a mapping of the numbers that its models have."""
+
+from __future__ import annotations
+
+import pickle
+from math import inf
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import given
+from strainwave import _core
+from strainwave.simulation.state import Layout, State
+
+from tests.reference_drive import DRIVE, SMOOTH
+from tests.strategies import drives
+
+
+@given(drives)
+def test_a_state_maps_names_to_finite_numbers_each_with_a_unit(drive: sw.Drive) -> None:
+    rest = drive.rest()
+    assert list(rest) == Layout(drive).names == list(rest.units)
+    assert len(set(rest)) == len(rest) == len(rest.numbers)
+    assert dict(rest) == {name: rest[name] for name in rest}
+    assert all(np.isfinite(list(rest.values())))
+    assert all(name.startswith(tuple(f"{part}." for part in _core.shape(drive))) for name in rest if "." in name)
+
+
+@given(drives)
+def test_every_number_can_be_replaced_and_nothing_else_changes(drive: sw.Drive) -> None:
+    rest = drive.rest()
+    for name in rest:
+        other = rest.replace({name: 0.25})
+        assert other[name] == 0.25
+        assert {key for key in rest if other[key] != rest[key]} <= {name}
+
+
+def test_numbers_of_the_drive_itself_are_attributes() -> None:
+    state = DRIVE.rest().replace(input_speed=2.0)
+    assert state.input_speed == state["input_speed"] == 2.0
+    assert "input_speed" in dir(state)
+    with pytest.raises(AttributeError, match="has no 'speed'"):
+        state.speed  # noqa: B018
+    with pytest.raises(AttributeError, match=r"never changes; state.replace\(input_speed=...\)"):
+        state.input_speed = 1.0
+    with pytest.raises(KeyError, match="has no 'speed'"):
+        state["speed"]
+
+
+def test_a_state_changes_for_nobody() -> None:
+    state = DRIVE.rest()
+    with pytest.raises(ValueError, match="read-only"):
+        state.numbers[0] = 1.0
+    with pytest.raises(ValueError, match="must be one of"):
+        state.replace(speed=1.0)
+    with pytest.raises(ValueError, match="input_speed = inf must be finite"):
+        state.replace(input_speed=inf)
+    with pytest.raises(TypeError, match="is made by a drive"):
+        State()
+
+
+def test_states_are_equal_if_their_numbers_and_models_are() -> None:
+    other = DRIVE.replace({"load.inertia": 3.0})
+    assert other.rest() == DRIVE.rest()
+    assert hash(other.rest()) == hash(DRIVE.rest())
+    assert DRIVE.rest().replace(turns=1.0) != DRIVE.rest()
+    assert SMOOTH.rest() != DRIVE.rest()
+    assert pickle.loads(pickle.dumps(DRIVE.rest())) == DRIVE.rest()
+
+
+def test_a_step_takes_no_state_of_a_drive_with_other_models() -> None:
+    with pytest.raises(ValueError, match="state is a state of another drive: its hysteresis"):
+        DRIVE.step(SMOOTH.rest(), dt=1e-4)
+    with pytest.raises(TypeError, match="state = 3 must be a state of a drive"):
+        DRIVE.step(3, dt=1e-4)  # type: ignore[arg-type]
+
+
+def test_continuous_numbers_come_first() -> None:
+    layout = Layout(DRIVE)
+    assert layout.names[: layout.count] == [
+        *("motor.current", "control.error_integral", "input_angle", "input_speed", "transmission_error", "output_speed"),
+        "friction_input.deflection",
+    ]
+    assert layout.places["friction_input"] == slice(layout.count - 1, layout.count)
+    assert layout.places["friction_mesh"] == slice(0, 0)
