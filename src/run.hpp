@@ -215,11 +215,16 @@ typename CompiledDrive<S>::State run_specialised(const CompiledDrive<S>& drive, 
     return run(drive, start);
 }
 
-/// Whether all that a step of such a drive calls is inlined. With more models to choose from that takes minutes to compile, where
-/// slopes are carried along less already.
+/// Whether all that a step of such a drive calls is inlined. With more models to choose from that takes long to compile: for slopes,
+/// which are carried along less already, it does not pay, for packs only where a build is to be used more than compiled.
 template <class S, class Drive>
-inline constexpr bool inlines =
-    !std::is_same_v<Drive, CompiledDrive<S>> && !(differentiates<S> && std::is_same_v<Drive, ShortDrive<S>>);
+inline constexpr bool inlines = !std::is_same_v<Drive, CompiledDrive<S>>;
+template <class S>
+inline constexpr bool inlines<S, ShortDrive<S>> = std::is_same_v<S, double>;
+#ifdef SW_TO_BE_USED
+template <int n>
+inline constexpr bool inlines<Pack<n>, ShortDrive<Pack<n>>> = true;
+#endif
 
 /// Runs `drive` in steps of fourth order, with events, and calls record(outputs) at the end of each step to be kept.
 template <class S, class Record>

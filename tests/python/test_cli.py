@@ -237,7 +237,7 @@ def start(*arguments: object, **others: Any) -> subprocess.Popen[bytes]:
 
 def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: Path) -> None:
     command = Path(sys.executable).with_name("strainwave")
-    arguments = [command, "twin", "--gear", "nowhere.toml"]
+    arguments = [command, "twin", "--gear", "nowhere.toml", "--friction", "table.csv"]
     result = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert (result.returncode, result.stdout) == (2, "")
     assert "nowhere.toml" in result.stderr
