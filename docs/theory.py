@@ -35,7 +35,7 @@ def write(folder: Path) -> None:
     every.sort(key=lambda entry: (entry[0], entry[0] != entry[1]))  # of its own family first, then what stands beside it
     for name, entries in groupby(every, key=lambda entry: entry[0]):
         page(folder, name, getattr(sw, name).__doc__, [model for _, _, model in entries])
-    page(folder, "gear_and_drive", "How the parts go together.", [sw.Gear, sw.Drive])
+    page(folder, "gear_and_drive", "How the parts go together.", [sw.Gear, sw.Drive, sw.Sensors])
 
 
 def module_of(model: Model) -> str:
@@ -148,6 +148,8 @@ TARGETS = anchors() | references() | {f"document {letter}": "errata.md" for lett
 
 
 def parameters(model: Model) -> str:
+    if not model.fields:
+        return "It has no parameters."
     rows = ["| parameter | unit | default | limits | meaning |", "|---|---|---|---|---|"]
     for field in model.fields:
         cells = (field["unit"] or "—", default(field), limits(model, field), field["doc"])

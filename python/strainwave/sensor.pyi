@@ -65,7 +65,7 @@ class FirstOrder:
 
     Parameters
     ----------
-    time_constant: Time constant tau [s], in (0, inf); default 0.001
+    time_constant: Time constant tau [s], in (0, inf); required
 
     Raises
     ------
@@ -77,7 +77,7 @@ class FirstOrder:
     definition; document A takes speed sensors of first order
     """
 
-    def __init__(self, *, time_constant: float = ...) -> None: ...
+    def __init__(self, *, time_constant: float) -> None: ...
 
     def replace(self, changes: dict[str, Any] = ..., /, *, time_constant: float = ...) -> FirstOrder:
         """

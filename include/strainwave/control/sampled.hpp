@@ -26,7 +26,8 @@ struct Sampled {
         In an ensemble, period and delay are the same for all members. They have no derivatives: time is not among the numbers.
 
         >>> from strainwave.control import PID, Sampled
-        >>> Sampled(law=PID(proportional=2.0, derivative=0.05), period=1e-3, delay=2e-4).law.proportional
+        >>> law = PID(proportional=2.0, derivative=0.05)
+        >>> Sampled(law=law, period=1e-3, delay=2e-4).law.proportional
         2.0)";
 
     template <class Self, class Visit>

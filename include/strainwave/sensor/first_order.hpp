@@ -22,7 +22,7 @@ struct FirstOrder {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, time_constant, "s", "Time constant tau", smallest));
+        visit(SW_REQUIRED(m, time_constant, "s", "Time constant tau", smallest));
     }
 
     struct State {
