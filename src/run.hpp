@@ -215,8 +215,8 @@ typename CompiledDrive<S>::State run_specialised(const CompiledDrive<S>& drive, 
     return run(drive, start);
 }
 
-/// Whether all that a step of such a drive calls is inlined. With more models to choose from that takes long to compile: for slopes,
-/// which are carried along less already, it does not pay, for packs only where a build is to be used more than compiled.
+/// Whether all that a step of such a drive calls is inlined. With more models to choose from that takes long to compile: for
+/// slopes, which are carried along less already, it does not pay, for packs only where a build is to be used more than compiled.
 template <class S, class Drive>
 inline constexpr bool inlines = !std::is_same_v<Drive, CompiledDrive<S>>;
 template <class S>
