@@ -1,7 +1,5 @@
 #include <nanobind/stl/vector.h>
 
-#include <cstring>
-
 #include <strainwave/quasi_static.hpp>
 
 #include "state_arrays.hpp"
@@ -25,6 +23,17 @@ Values now(const Drive& drive, const Numbers& state, const Numbers& u) {
     return out;
 }
 
+/// Name, unit and doc of the input that the load of a drive takes.
+nb::tuple load_input(const Drive& drive) {
+    const Field field = drive.load.visit([]<class Load>(const Load&) {
+        if constexpr (requires { Load::input; })
+            return Load::input;
+        else
+            return load::torque_input;
+    });
+    return nb::make_tuple(field.name, field.unit, field.doc);
+}
+
 /// Inputs over a step of `dt` [s] that run on from those given at its start.
 Interval<Input<double>> inputs_of_step(const Drive& drive, const Call& call, double dt) {
     const auto require = [](bool holds, const char* name, double value, const char* unit, const char* allowed) {
@@ -37,16 +46,22 @@ Interval<Input<double>> inputs_of_step(const Drive& drive, const Call& call, dou
         return value;
     };
     const double command = finite("command", "1"), command_rate = finite("command_rate", "1/s");
-    const double load_torque = finite("load_torque", "N.m"), angle = finite("output_angle", "rad");
-    const double speed = finite("output_speed", "rad/s"), temperature = call.real("temperature");
+    const double load_torque = finite("load_torque", "N.m"), brake_torque = finite("brake_torque", "N.m");
+    const double angle = finite("output_angle", "rad"), speed = finite("output_speed", "rad/s");
+    const double temperature = call.real("temperature");
     require(temperature > 0.0 && std::isfinite(temperature), "temperature", temperature, "K", "lie in (0, inf)");
     require(dt > 0.0 && std::isfinite(dt), "dt", dt, "s", "lie in (0, inf)");
     const bool moved = prescribes(drive.load);
-    if (moved && load_torque != 0.0)
-        throw nb::value_error("step.load_torque: the load prescribes the motion of the output shaft; give output_angle");
+    const std::string taken = nb::cast<std::string>(load_input(drive)[0]);
+    const auto refuse = [&](const char* name, double value) {
+        if (taken != name && value != 0.0)
+            throw nb::value_error((std::string("step.") + name + ": the load of this drive takes " + taken).c_str());
+    };
+    refuse("load_torque", load_torque);
+    refuse("brake_torque", brake_torque);
     if (!moved && (angle != 0.0 || speed != 0.0))
         throw nb::value_error("step.output_angle: only a load that prescribes the motion of the output shaft takes it");
-    const double load = moved ? angle : load_torque, rate = moved ? speed : 0.0;
+    const double load = moved ? angle : load_torque + brake_torque, rate = moved ? speed : 0.0;
     const auto at = [&](double time) {
         return Input<double>{command + time * command_rate, command_rate, load + time * rate, rate, temperature, 0.0};
     };
@@ -91,35 +106,10 @@ nb::dict shape_of(const Drive& drive) {
 /// Name, unit, doc, part and channel of each number that a drive shows of itself.
 nb::list outputs_of(const Drive& drive) {
     nb::list list;
-    int channel = 0;
-    const auto add = [&](const Field& field, const char* part) {
-        list.append(nb::make_tuple(field.name, field.unit, field.doc, part, channel++));
-    };
-    const Drive::Output output{};
-    Drive::Output::fields(output, [&]<class T>(const T&, const Field& field) {
-        if constexpr (is_storage<T>) {
-            const int first = channel;
-            drive.motor.visit([&]<class Motor>(const Motor&) {
-                const typename Motor::Output own{};
-                Motor::Output::fields(own, [&](const double&, const Field& of_motor) { add(of_motor, field.name); });
-            });
-            channel = first + size_of<double, T>;
-        } else {
-            add(field, "");
-        }
+    each_output(drive, [&](const std::string& name, const Field& field, const std::string& part, int channel) {
+        list.append(nb::make_tuple(name, field.unit, field.doc, part, channel));
     });
     return list;
-}
-
-/// Name, unit and doc of the input that the load of a drive takes.
-nb::tuple load_input(const Drive& drive) {
-    const Field field = drive.load.visit([]<class Load>(const Load&) {
-        if constexpr (requires { Load::input; })
-            return Load::input;
-        else
-            return load::torque_input;
-    });
-    return nb::make_tuple(field.name, field.unit, field.doc);
 }
 
 /// The unit of what a controller is given: of a law that only passes it on, that of what the motor takes.
@@ -139,7 +129,7 @@ nb::tuple actuation_of(const Drive& drive) {
         const char* unit = "";
         const typename Motor::Output own{};
         Motor::Output::fields(own, [&](const double&, const Field& field) {
-            if (std::strcmp(field.name, Motor::actuation) == 0) unit = field.unit;
+            if (same(field.name, Motor::actuation)) unit = field.unit;
         });
         return nb::make_tuple(Motor::actuation, unit);
     });
@@ -180,7 +170,7 @@ nb::object with_numbers(nb::handle model, const std::vector<double>& numbers) {
 Values trace_of(const AnyGear<double>& gear, const Call& call) {
     const auto path = steps_of(call["twist"], "twist", "rad");
     auto [out, torque] = like(path);
-    QuasiStatic<double, AnyGear<double>> moved(gear);
+    QuasiStatic<double, AnyGear<double>> moved(gear, friction::room_temperature);
     for (std::size_t i = 0; i < path.size(); ++i) {
         let_interrupt(i);
         check_domain("gear.stiffness", domain<double>(gear.stiffness, path.data()[i]));
@@ -193,7 +183,7 @@ Values trace_of(const AnyGear<double>& gear, const Call& call) {
 Values twist_of(const AnyGear<double>& gear, const Call& call) {
     const auto path = path_of(call["torque"], "torque");
     auto [out, twist] = like(path);
-    QuasiStatic<double, AnyGear<double>> moved(gear);
+    QuasiStatic<double, AnyGear<double>> moved(gear, friction::room_temperature);
     for (std::size_t i = 0; i < path.size(); ++i) {
         let_interrupt(i);
         twist[i] = moved.twist(path.data()[i]);
@@ -237,6 +227,7 @@ void bind_drives(nb::module_& core) {
          {"command", "float", "0.0"},
          {"command_rate", "float", "0.0"},
          {"load_torque", "float", "0.0"},
+         {"brake_torque", "float", "0.0"},
          {"output_angle", "float", "0.0"},
          {"output_speed", "float", "0.0"},
          {"temperature", "float", "293.15"},
@@ -296,6 +287,19 @@ void bind_drives(nb::module_& core) {
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
              nb::sig("def now(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
              "All channels in `state`, shape (channels, 1).");
+    core.def(
+        "measured",
+        [](const Drive& drive, const Numbers& state, const Numbers& u) {
+            const auto numbers = flattened<double>(kernels().measure(drive, state_from(drive, state), input_of(u)));
+            Values out = array({std::size_t(numbers.size())});
+            std::copy_n(numbers.item, numbers.size(), out.data());
+            return out;
+        },
+        nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
+        nb::sig("def measured(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
+        "What a controller sees through the sensors: input angle and speed, output angle and speed, current, torque; then the "
+        "least "
+        "and the largest actuation that the motor can follow.");
     core.def(
         "differentiate_rates", &rate_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def differentiate_rates(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> tuple[" SW_ARRAY ", " SW_ARRAY

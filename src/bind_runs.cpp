@@ -137,8 +137,8 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
 nb::tuple run_derivatives(const Drive& drive, const nb::object& known, const Numbers& instants, const Numbers& inputs,
                           const Flags& keep, const std::vector<int>& parameters, const nb::object& progress) {
     const Request request(instants, inputs, keep);
-    Values out = array({std::size_t(output_count), request.kept + 1}),
-           slopes = array({parameters.size(), std::size_t(output_count), request.kept + 1});
+    const auto channels = std::size_t(channels_of(drive));
+    Values out = array({channels, request.kept + 1}), slopes = array({parameters.size(), channels, request.kept + 1});
     const Pause pause = pausing(progress);
     const Start start = start_from(known, 1);
     const auto differentiate = kernels().differentiate;

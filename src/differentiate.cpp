@@ -35,24 +35,29 @@ Slope sought(double value, int lane) {
 template <int n>
 class Writer {
     static constexpr std::size_t stretch = 16;
-    const std::size_t first, last, samples;
+    const std::size_t first, last, channels, samples;
     double *const out, *const slopes;
-    Outputs<Dual<n>> held[stretch];
+    Array<Dual<n>, output_count> held[stretch];
     std::size_t written = 0, gathered = 0;
 
 public:
-    Writer(std::size_t first_, std::size_t parameters, std::size_t samples_, double* out_, double* slopes_)
-        : first(first_), last(std::min(parameters, first_ + n)), samples(samples_), out(out_), slopes(slopes_) {}
+    Writer(std::size_t first_, std::size_t parameters, std::size_t channels_, std::size_t samples_, double* out_, double* slopes_)
+        : first(first_),
+          last(std::min(parameters, first_ + n)),
+          channels(channels_),
+          samples(samples_),
+          out(out_),
+          slopes(slopes_) {}
 
     void operator()(const Outputs<Dual<n>>& values) {
-        held[gathered] = values;
+        for (std::size_t c = 0; c < channels; ++c) held[gathered][int(c)] = values[int(c)];
         if (++gathered == stretch) flush();
     }
     void flush() {
-        for (std::size_t c = 0; c < output_count; ++c) {
+        for (std::size_t c = 0; c < channels; ++c) {
             for (std::size_t k = 0; k < gathered; ++k) out[c * samples + written + k] = held[k][int(c)].value;
             for (std::size_t p = first; p < last; ++p) {
-                double* const row = slopes + (p * output_count + c) * samples + written;
+                double* const row = slopes + (p * channels + c) * samples + written;
                 for (std::size_t k = 0; k < gathered; ++k) row[k] = held[k][int(c)].slope[p - first];
             }
         }
@@ -73,10 +78,10 @@ initial::Known<S> known_of(const Start& start) {
 /// One run that gives the derivatives by `n` parameters, number `first` and following.
 template <int n>
 void differentiate_by(const Parts& parts, const Start& start, const InputSchedule& schedule, const std::vector<int>& parameters,
-                      std::size_t first, double* out, double* slopes, std::size_t kept, const Pause& pause) {
+                      std::size_t first, std::size_t channels, double* out, double* slopes, std::size_t kept, const Pause& pause) {
     using Scalar = Dual<n>;
     const auto dual = seeded<AnyDrive, n>(parts, parameters, first).compile();
-    Writer<n> record(first, parameters.size(), kept + 1, out, slopes);
+    Writer<n> record(first, parameters.size(), channels, kept + 1, out, slopes);
     const Input<Scalar> at_start = interval<Scalar>(schedule.inputs).start;
     const auto from = start.at_rest ? dual.rest() : initial::state(dual, known_of<Scalar>(start), at_start);
     record(shown<Scalar>(dual, begun(dual, from, at_start, Scalar(missed(schedule.first_step()))), at_start));
@@ -90,7 +95,8 @@ void differentiate(const Drive& drive, const Start& start, const InputSchedule& 
                    double* out, double* slopes, std::size_t kept, const Pause& pause) {
     const Parts parts = parts_of(drive);
     for (std::size_t first = 0; first == 0 || first < parameters.size(); first += width)
-        differentiate_by<width>(parts, start, schedule, parameters, first, out, slopes, kept, pause);
+        differentiate_by<width>(parts, start, schedule, parameters, first, std::size_t(channels_of(drive)), out, slopes, kept,
+                                pause);
 }
 
 void differentiate_rates(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out, double* slopes) {
@@ -126,7 +132,7 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
             if (i > 0 && shift < first + width) x.slope[shift - first] = 1.0;
             return x;
         };
-        QuasiStatic<Slope, AnyGear<Slope>> moved(dual, point(0));
+        QuasiStatic<Slope, AnyGear<Slope>> moved(dual, Slope(friction::room_temperature), point(0));
         for (std::size_t i = 0; i < n; ++i) {
             pauses(i, i);
             if (i > 0) moved.move(point(i));

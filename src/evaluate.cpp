@@ -69,6 +69,11 @@ double max_rate(const Drive& drive, double twist) { return drive.compile().max_r
 
 double bristle_frequency(const Drive& drive) { return drive.compile().bristle_frequency(); }
 
+Drive::Measurement measure(const Drive& drive, const Drive::State& x, const Input<double>& u) {
+    const auto compiled = drive.compile();
+    return compiled.seen(compiled.evaluate(x, u), u);
+}
+
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out) {
     const auto compiled = drive.compile();
     const auto values = shown<double>(compiled, compiled.evaluate(x, u), u);

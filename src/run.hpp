@@ -4,7 +4,7 @@
 #include <strainwave/scalar/dual.hpp>
 #include <strainwave/scalar/pack.hpp>
 
-#include "specialised.hpp"
+#include "outputs.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -56,10 +56,19 @@ Interval<Input<S>> interval(const double* inputs) {
 /// Called now and then with the number of steps done; may throw.
 using Pause = std::function<void(std::size_t)>;
 
-/// How many numbers a drive shows of itself, at most: its channels. Those that it does not have are 0.
-inline constexpr int output_count = size_of<double, typename AnyDrive<double>::Output>;
+/// The outputs of a drive at one instant, by channel. Those that it does not have are 0.
 template <class S>
-using Outputs = Array<S, output_count>;
+class Outputs {
+    const S* const first;
+    const int count;
+
+public:
+    template <int n>
+    Outputs(const Array<S, n>& values) : first(values.item), count(n) {}
+
+    int size() const { return count; }
+    S operator[](int channel) const { return channel < count ? first[channel] : S(0.0); }
+};
 inline constexpr int twist_channel = [] {
     int channel = -1, count = 0;
     AnyDrive<double>::Output output{};
@@ -71,7 +80,7 @@ inline constexpr int twist_channel = [] {
 }();
 
 template <class S, class Drive>
-Outputs<S> shown(const Drive& drive, const typename Drive::Evaluation& at, const Input<S>& u) {
+auto shown(const Drive& drive, const typename Drive::Evaluation& at, const Input<S>& u) {
     return flattened<S>(drive.output(at, u));
 }
 
@@ -163,7 +172,7 @@ typename Drive::State run_compiled(const Drive& drive, const typename Drive::Sta
     bool lost = false;
     for (std::size_t i = 0; i < schedule.steps; ++i) {
         pauses(i, i);
-        if (i % 64 == 0) lost = lost || !any(soundness(shown<S>(drive, *here, u.end)) > S(0.0));
+        if (i % 64 == 0) lost = lost || !any(soundness<S>(shown<S>(drive, *here, u.end)) > S(0.0));
         if (lost) {
             if (schedule.keep[i]) record(shown<S>(drive, *here, u.end));
             continue;
@@ -259,7 +268,7 @@ Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const InputSched
     S twist{0.0}, sound{1.0};
     const auto note = [&](const Outputs<S>& values) {
         record(values);
-        sound = min(sound, soundness(values));
+        sound = min(sound, soundness<S>(values));
         twist = max(twist, abs(values[twist_channel]));
     };
     const Input<S> at_start = interval<S>(schedule.inputs).start;

@@ -132,6 +132,7 @@ double bristle_frequency(const Drive& drive);
 
 /// The outputs of a drive in state `x`.
 void observe(const Drive& drive, const Drive::State& x, const Input<double>& u, double* out);
+Drive::Measurement measure(const Drive& drive, const Drive::State& x, const Input<double>& u);
 
 /// A member that runs alone; writes its outputs through `record`.
 Tally<double> simulate_member(const Drive& drive, const Drive::State& start, const InputSchedule& schedule, double max_rate,
@@ -172,6 +173,7 @@ struct Kernels {
     decltype(&host::max_rate) max_rate;
     decltype(&host::bristle_frequency) bristle_frequency;
     decltype(&host::observe) observe;
+    decltype(&host::measure) measure;
     decltype(&host::simulate) simulate;
     decltype(&host::simulate_adaptively) simulate_adaptively;
     decltype(&host::simulate_many) simulate_many;

@@ -39,14 +39,16 @@ struct Short<most, Layers<Pack<n>, Law, Modulator...>> : Short<most, Law> {};
 template <class Drive>
 struct ShortDriveOf;
 template <class S, class Control, class Motor, class Kinematics, class Error, class Noise, class Stiffness, class Hysteresis,
-          class FrictionInput, class FrictionMesh, class FrictionOutput, class Load, class Sensors_>
+          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Load, class Sensors_, class Thermal,
+          class Meter>
 struct ShortDriveOf<
-    Drive<S, Control, Motor, Gear<S, Kinematics, Error, Noise, Stiffness, Hysteresis, FrictionInput, FrictionMesh, FrictionOutput>,
-          Load, Sensors_>> {
+    Drive<S, Control, Motor,
+          Gear<S, Kinematics, Error, Noise, Stiffness, Hysteresis, FrictionInput, FrictionMesh, FrictionOutput, Softening>, Load,
+          Sensors_, Thermal, Meter>> {
     using type = Drive<
         S, Control, Motor,
         Gear<S, Kinematics, Error, Noise, Stiffness, typename Short<16, Hysteresis>::type, typename Short<1, FrictionInput>::type,
-             typename Short<1, FrictionMesh>::type, typename Short<1, FrictionOutput>::type>,
+             typename Short<1, FrictionMesh>::type, typename Short<1, FrictionOutput>::type, Softening>,
         Load, Sensors<S, sensor::Ideal<S>>>;
 };
 
@@ -62,12 +64,12 @@ struct OneOf<S, Law> {
 
 /// The models of most papers and of most catalogues.
 template <class S, template <class...> class... FrictionInput>
-using Usual =
-    Drive<S, AnyOf<S, List<control::OpenLoop, control::PID>>, motor::DC<S>,
-          Gear<S, AnyOf<S, kinematics::Models>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
-               AnyOf<S, List<stiffness::Linear, stiffness::Piecewise, stiffness::ThreeSegment, stiffness::Cubic>>,
-               hysteresis::MaxwellSlip<S>, typename OneOf<S, FrictionInput...>::type, friction::Viscous<S>, friction::Viscous<S>>,
-          AnyOf<S, List<load::Inertia, load::Pendulum>>, Sensors<S, sensor::Ideal<S>>>;
+using Usual = Drive<S, AnyOf<S, List<control::OpenLoop, control::PID>>, motor::DC<S>,
+                    Gear<S, AnyOf<S, kinematics::Models>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
+                         AnyOf<S, List<stiffness::Linear, stiffness::Piecewise, stiffness::ThreeSegment, stiffness::Cubic>>,
+                         hysteresis::MaxwellSlip<S>, typename OneOf<S, FrictionInput...>::type, friction::Viscous<S>,
+                         friction::Viscous<S>, softening::Exponential<S>>,
+                    AnyOf<S, List<load::Inertia, load::Pendulum>>, Sensors<S, sensor::Ideal<S>>>;
 
 }  // namespace detail
 
@@ -137,7 +139,8 @@ bool specialise(Special& special, const CompiledDrive<S>& drive) {
            detail::specialise(gear.friction_mesh, from.friction_mesh) &&
            detail::specialise(gear.friction_output, from.friction_output) && detail::specialise(special.motor, drive.motor) &&
            detail::specialise(special.control, drive.control) && detail::specialise(special.load, drive.load) &&
-           detail::specialise(special.sensors, drive.sensors);
+           detail::specialise(special.sensors, drive.sensors) && detail::specialise(gear.softening, from.softening) &&
+           detail::specialise(special.thermal, drive.thermal) && detail::specialise(special.meter, drive.meter);
 }
 
 namespace detail {
@@ -173,6 +176,8 @@ To converted(To to, const From& from) {
     detail::convert<S>(motion.motor, from.continuous.motor);
     detail::convert<S>(motion.control, from.continuous.control);
     detail::convert<S>(motion.sensors, from.continuous.sensors);
+    detail::convert<S>(motion.thermal, from.continuous.thermal);
+    detail::convert<S>(motion.meter, from.continuous.meter);
     detail::convert<S>(to.discrete.control, from.discrete.control);
     detail::convert<S>(motion.friction_input, from.continuous.friction_input);
     detail::convert<S>(motion.friction_mesh, from.continuous.friction_mesh);

@@ -193,8 +193,13 @@ void noise_verbs(const Bound<M>& c) {
                    [](const auto& error) { return error.value; });
         noise_verb(c, "slope", "Its derivative [rad/rad] by the input angle, at constant amplitude.",
                    [](const auto& error) { return error.slope; });
-        property(c, "active", "bool", "Whether there is any.", [](const M& m) { return m.active(); });
     }
+}
+
+template <class M>
+void activity(const Bound<M>& c) {
+    if constexpr (requires(const M& m) { m.active(); })
+        property(c, "active", "bool", "Whether it makes any difference.", [](const M& m) { return m.active(); });
 }
 
 template <class M>
@@ -486,6 +491,7 @@ void bind_model(nb::handle scope, const char* python_name) {
     }
     error_verbs(c);
     noise_verbs(c);
+    activity(c);
     claims(c);
 }
 

@@ -125,10 +125,30 @@ def models(family: str, *verbs: str, **claims: bool) -> st.SearchStrategy[Any]:
 
 gears = built(sw.Gear)
 drives = built(sw.Drive)
+
+
 # Those that are one system of differential equations, whose shafts are moved by torques.
-smooth_drives = drives.map(
-    lambda drive: drive.replace(
-        control=getattr(drive.control, "law", drive.control),
-        load=drive.load if hasattr(drive.load, "inertia") else sw.loads.Inertia(inertia=0.1),
-    )
-)
+def smooth(drive: sw.Drive) -> sw.Drive:
+    control = getattr(drive.control, "law", drive.control)
+    turned = hasattr(drive.load, "inertia") and not isinstance(drive.load, sw.loads.Brake)
+    sensors = {name: quiet(getattr(drive.sensors, name)) for name in (field["name"] for field in sw.Sensors.fields)}
+    try:
+        return drive.replace(
+            control=control,
+            load=drive.load if turned else sw.loads.Inertia(inertia=0.1),
+            sensors=sw.Sensors(**sensors),
+            thermal=sw.thermal.Isothermal(),
+            meter=sw.meter.NoMeter(),
+        )
+    except ValueError:  # a controller that needs to be sampled
+        return reject()
+
+
+def quiet(sensor: Any) -> Any:
+    """Without noise, and without the counts of an encoder, of which nothing is a small deviation."""
+    if isinstance(sensor, sw.sensor.Noisy):
+        return quiet(sensor.law)
+    return sw.sensor.Ideal() if isinstance(getattr(sensor, "law", sensor), sw.sensor.Encoder) else sensor
+
+
+smooth_drives = drives.map(smooth)

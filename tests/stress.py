@@ -90,7 +90,7 @@ def model(kind: Any, random: np.random.Generator) -> Any:
 def acting_on(drive: sw.Drive, random: np.random.Generator) -> dict[str, float]:
     """Inputs besides the command."""
     load = load_input(drive)
-    size = {"load_torque": 10.0, "output_angle": 1e-3}[load]
+    size = {"load_torque": 10.0, "brake_torque": 10.0, "output_angle": 1e-3}[load]
     return {load: random.normal(0.0, size), "temperature": random.uniform(230.0, 370.0)}
 
 

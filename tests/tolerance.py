@@ -42,7 +42,7 @@ MOST_STEPS = 40_000  # of the tightest run
 DURATION = 0.03  # s
 WITHIN = 10.0
 BATCH = 64
-NOTHING = 1e-12  # in any unit: a column that is smaller is 0
+NOTHING = 1e-8  # in any unit: a column that is smaller is 0
 COLUMNS = ("input_angle", "input_speed", "output_angle", "transmission_error", "output_speed", "torque")
 
 
@@ -91,11 +91,16 @@ class Excited:
 def at_limit(drive: sw.Drive, run: sw.Recording) -> bool:
     """Whether its controller gives all that it may, so that what it gives can switch."""
     law = getattr(drive.control, "law", drive.control)
-    return float(np.abs(run[actuation(drive).name]).max()) >= getattr(law, "limit", np.inf)
+    if isinstance(drive.motor, sw.motor.BrushlessDC | sw.motor.PMSM):  # whose limits follow the speed
+        return True
+    limit = getattr(law, "limit", getattr(law, "voltage_limit", np.inf))
+    return float(np.abs(run[actuation(drive).name]).max()) >= limit
 
 
 def calm(drive: sw.Drive) -> bool:
     """Whether its gear reduces the speed, makes no energy, and vibrates with its bristles no faster than `FASTEST`."""
+    if any("Encoder" in repr(getattr(drive.sensors, field["name"])) for field in sw.Sensors.fields):
+        return False  # which jumps with each count
     fastest = max(_core.natural_frequency(drive, 1e-3), _core.bristle_frequency(drive))
     return 30.0 <= abs(drive.gear.kinematics.ratio) <= 320.0 and fastest < FASTEST and cannot_create_energy(drive.gear)
 

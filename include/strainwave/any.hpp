@@ -126,7 +126,7 @@ struct Choice {
     template <Holds what, int few = 4>
     using StorageFor = Storage<S, std::max({detail::kept_size<what, S, Law>()...}), what, few>;
     using State = StorageFor<Holds::state, (detail::mostly_stateless<Law> || ...) ? 0 : 4>;
-    using Output = StorageFor<Holds::output>;
+    using Output = StorageFor<Holds::output, 64>;
 
     /// f of the model chosen. A chain of comparisons, which inlines where a table of functions would not.
     template <int i = 0, class F>
@@ -194,6 +194,11 @@ struct Choice {
     SW_VERB(falling)
     SW_VERB(virgin)
     SW_VERB(virgin_work)
+    SW_VERB(power)
+    SW_VERB(of_stiffness)
+    SW_VERB(of_hysteresis)
+    SW_VERB(dissipation_rate)
+    SW_VERB(gear_rate)
 #undef SW_VERB
 
     // Control, sampled or not.
@@ -229,9 +234,31 @@ struct Choice {
         return visit([]<class Chosen>(const Chosen&) { return put_in<Discrete>(control::DiscreteOf<S, Chosen>{}); });
     }
 
-    // What a motor shows of itself in recordings.
-    constexpr Output output(const State& x, const S& actuation, const S& speed) const {
-        return visit([&](const auto& law) { return put_in<Output>(law.output(own(law, x), actuation, speed)); });
+    constexpr const char* gives() const {
+        return visit([](const auto& law) { return control::given_by(law); });
+    }
+    constexpr bool needs_current() const {
+        return visit([](const auto& law) { return control::needs_current(law); });
+    }
+
+    // Motors, temperatures, meters: what they show of themselves in recordings, and what a motor takes.
+    template <class... Arguments>
+    constexpr Output output(const Arguments&... arguments) const {
+        return visit([&](const auto& law) { return put_in<Output>(law.output(own(law, arguments)...)); });
+    }
+    constexpr const char* actuation() const {
+        return visit([](const auto& law) { return motor::taken_by(law); });
+    }
+    constexpr Limits<S> limits(const State& x, const motor::Rotor<S>& rotor) const {
+        return visit([&](const auto& law) { return motor::limits(law, own(law, x), rotor); });
+    }
+
+    // Loads.
+    constexpr S load_torque(const S& angle, const S& speed, const S& input) const {
+        return visit([&](const auto& law) { return strainwave::load_torque<S>(law, angle, speed, input); });
+    }
+    constexpr Braking<S> braking(const S& input) const {
+        return visit([&](const auto& law) { return strainwave::braking<S>(law, input); });
     }
 
     // Friction, modulated or not.
@@ -365,6 +392,14 @@ template <class S, class Law>
 struct AtRunTime<S, control::Sampled<S, Law>> {
     using type = control::Sampled<S, AnyOf<S, control::Continuous>>;
 };
+template <class S, class Law>
+struct AtRunTime<S, sensor::Delayed<S, Law>> {
+    using type = sensor::Delayed<S, AnyOf<S, sensor::Plain>>;
+};
+template <class S, class Law>
+struct AtRunTime<S, sensor::Noisy<S, Law>> {
+    using type = sensor::Noisy<S, AnyOf<S, sensor::Late>>;
+};
 template <class S, class Density>
 struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
     using type = hysteresis::Preisach<S, AnyOf<S, hysteresis::Densities>>;
@@ -382,6 +417,12 @@ template <class S, class... Load>
 constexpr bool prescribes(const Choice<S, Load...>& choice) {
     return choice.visit([]<class Chosen>(const Chosen&) { return load::can_prescribe<Chosen>; });
 }
+template <class S, class... Load>
+inline constexpr bool load::can_brake<Choice<S, Load...>> = (load::can_brake<Load> || ...);
+template <class S, class... Load>
+constexpr bool brakes(const Choice<S, Load...>& choice) {
+    return choice.visit([]<class Chosen>(const Chosen&) { return load::can_brake<Chosen>; });
+}
 namespace control::detail {
 template <class S, class... Law>
     requires(requires { typename Law::Discrete; } || ...)
@@ -398,12 +439,13 @@ constexpr S reduction_of(const Choice<S, Spring...>& spring) {
 template <class S>
 using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
                      AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>,
-                     AnyOf<S, friction::Models>, AnyOf<S, friction::Models>>;
+                     AnyOf<S, friction::Models>, AnyOf<S, friction::Models>, AnyOf<S, softening::Models>>;
 
 template <class S>
 using AnySensors = Sensors<S, AnyOf<S, sensor::Models>>;
 
 template <class S>
-using AnyDrive = Drive<S, AnyOf<S, control::Models>, AnyOf<S, motor::Models>, AnyGear<S>, AnyOf<S, load::Models>, AnySensors<S>>;
+using AnyDrive = Drive<S, AnyOf<S, control::Models>, AnyOf<S, motor::Models>, AnyGear<S>, AnyOf<S, load::Models>, AnySensors<S>,
+                       AnyOf<S, thermal::Models>, AnyOf<S, meter::Models>>;
 
 }  // namespace strainwave

@@ -4,9 +4,12 @@
 #include <strainwave/friction/contact.hpp>
 #include <strainwave/gear.hpp>
 #include <strainwave/load/load.hpp>
+#include <strainwave/meter/no_meter.hpp>
+#include <strainwave/motor/rotor.hpp>
 #include <strainwave/sensors.hpp>
 #include <strainwave/shaft.hpp>
 #include <strainwave/system.hpp>
+#include <strainwave/thermal/isothermal.hpp>
 
 namespace strainwave {
 
@@ -24,9 +27,9 @@ struct Input {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, command, "1", "Command of the controller, in the unit that it takes"));
         visit(SW_FIELD(m, command_rate, "1/s", "Its rate"));
-        visit(SW_FIELD(m, load, "1", "Input of the load: a torque that holds the output back, or an angle"));
+        visit(SW_FIELD(m, load, "1", "Input of the load: a torque that holds the output back, or what else it takes"));
         visit(SW_FIELD(m, load_rate, "1/s", "Its rate"));
-        visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
+        visit(SW_FIELD(m, temperature, "K", "Temperature around the drive"));
         visit(SW_FIELD(m, temperature_rate, "K/s", "Its rate"));
     }
 
@@ -53,7 +56,7 @@ struct Input {
 
 /// What changes continuously. The transmission error theta_in / i - theta_out replaces the output angle.
 template <class S, class MotorState, class ControlState, class SensorsState, class FrictionInputState, class FrictionMeshState,
-          class FrictionOutputState>
+          class FrictionOutputState, class ThermalState, class MeterState>
 struct Continuous {
     MotorState motor{};
     ControlState control{};
@@ -65,6 +68,8 @@ struct Continuous {
     FrictionInputState friction_input{};
     FrictionMeshState friction_mesh{};
     FrictionOutputState friction_output{};
+    ThermalState thermal{};
+    MeterState meter{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -78,6 +83,8 @@ struct Continuous {
         visit(SW_PART(m, friction_input, "State of the friction at the input"));
         visit(SW_PART(m, friction_mesh, "State of the friction of the mesh"));
         visit(SW_PART(m, friction_output, "State of the friction at the output"));
+        visit(SW_PART(m, thermal, "Temperatures"));
+        visit(SW_PART(m, meter, "Energies measured"));
     }
 };
 
@@ -120,11 +127,13 @@ struct State {
 };
 
 /// Everything worth recording, at one instant.
-template <class S, class MotorOutput>
+template <class S, class MotorOutput, class ThermalOutput, class MeterOutput>
 struct Output {
     S command, input_angle, input_speed, output_angle, output_speed, twist, kinematic_error, transmission_error, torque;
-    MotorOutput motor;
     S friction_input, friction_mesh, friction_output, load_torque, temperature;
+    MotorOutput motor;
+    ThermalOutput thermal;
+    MeterOutput meter;
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -137,22 +146,27 @@ struct Output {
         visit(SW_FIELD(m, kinematic_error, "rad", "Pure kinematic error, at the output"));
         visit(SW_FIELD(m, transmission_error, "rad", "Total error theta_in / i - theta_out"));
         visit(SW_FIELD(m, torque, "N.m", "Torque transmitted, at the output"));
-        visit(SW_PART(m, motor, "What the motor shows of itself"));
         visit(SW_FIELD(m, friction_input, "N.m", "Friction torque at the input, opposing its motion"));
         visit(SW_FIELD(m, friction_mesh, "N.m", "Friction torque of the mesh, opposing its motion, at the output's scale"));
         visit(SW_FIELD(m, friction_output, "N.m", "Friction torque at the output, opposing its motion"));
         visit(SW_FIELD(m, load_torque, "N.m", "Torque of the load, holding the output back"));
         visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
+        visit(SW_PART(m, motor, "What the motor shows of itself"));
+        visit(SW_PART(m, thermal, "What the thermal model shows of itself"));
+        visit(SW_PART(m, meter, "What the meter shows"));
     }
 };
 
-template <class S, class Control, class Motor, class Gear, class Load, class Sensors>
+template <class S, class Control, class Motor, class Gear, class Load, class Sensors, class Thermal = thermal::Isothermal<S>,
+          class Meter = meter::NoMeter<S>>
 struct Drive {
     Gear gear{};
     Motor motor{};
     Control control{};
     Load load{};
     Sensors sensors{};
+    Thermal thermal{};
+    Meter meter{};
 
     static constexpr auto name = "drive";
     static constexpr auto source = "document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)";
@@ -163,7 +177,8 @@ struct Drive {
                   J_{out} \ddot\theta_{out} = T - T_{load} - F_{out}
 
         with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear,
-        F the friction of each place. A load can also prescribe the motion of the output shaft.
+        F the friction of each place. A load can also prescribe the motion of the output shaft. The temperature of a run is that
+        of gear and winding, unless the drive has a thermal model: then it is that around them.
         Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
         told apart: it is reported in proportion to what each can hold.
         Angles are carried relative to the rigid motion, so an hour of rotation is as accurate as a second.
@@ -180,19 +195,30 @@ struct Drive {
         visit(SW_PART(m, control, "What turns the command into the motor's voltage, current or torque"));
         visit(SW_PART(m, load, "What the output shaft carries"));
         visit(SW_PART(m, sensors, "What the controller sees the drive by"));
+        visit(SW_PART(m, thermal, "How warm gear and winding become"));
+        visit(SW_PART(m, meter, "What is measured of powers and energies"));
     }
 
     constexpr const char* problem() const {
-        return all(input_inertia() > S(0.0))
-                   ? nullptr
-                   : "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
+        if (!all(input_inertia() > S(0.0)))
+            return "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
+        const char* given = control::given_by(control);
+        if (*given != 0 && !same(given, motor::taken_by(motor)))
+            return "control gives a voltage, and the motor takes none; a PositionSpeed suits a motor that takes a current or a "
+                   "torque";
+        if (control::needs_current(control) && !motor::has_current<S>(motor))
+            return "control acts at once on the current, which follows the motor's voltage at once: give the motor an inductance, "
+                   "or "
+                   "let the control be Sampled";
+        return nullptr;
     }
 
     /// Every part as the integrator wants it.
     constexpr auto compile() const {
         return Drive<S, decltype(compiled(control)), decltype(compiled(motor)), decltype(gear.compile()), decltype(compiled(load)),
-                     decltype(sensors.compile())>{gear.compile(), compiled(motor), compiled(control), compiled(load),
-                                                  sensors.compile()};
+                     decltype(sensors.compile()), decltype(compiled(thermal)), decltype(compiled(meter))>{
+            gear.compile(),    compiled(motor),   compiled(control), compiled(load),
+            sensors.compile(), compiled(thermal), compiled(meter)};
     }
 
     using FrictionInput = decltype(Gear{}.friction_input);
@@ -200,13 +226,15 @@ struct Drive {
     using FrictionOutput = decltype(Gear{}.friction_output);
     using Hysteresis = decltype(Gear{}.hysteresis);
 
-    using Continuous =
-        strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
-                               typename FrictionInput::State, typename FrictionMesh::State, typename FrictionOutput::State>;
+    using Continuous = strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
+                                              typename FrictionInput::State, typename FrictionMesh::State,
+                                              typename FrictionOutput::State, typename Thermal::State, typename Meter::State>;
     using Discrete = strainwave::Discrete<S, control::DiscreteOf<S, Control>>;
     using State = strainwave::State<S, Continuous, Discrete, typename Hysteresis::State>;
     using Input = strainwave::Input<S>;
-    using Output = strainwave::Output<S, typename Motor::Output>;
+    using Output = strainwave::Output<S, typename Motor::Output, typename Thermal::Output, typename Meter::Output>;
+    using Rotor = motor::Rotor<S>;
+    using Powers = meter::Powers<S>;
     using Measurement = control::Measurement<S>;
     using Shaft = strainwave::Shaft<S>;
     using Contact = friction::Contact<S>;
@@ -222,6 +250,7 @@ struct Drive {
         typename Gear::Mesh mesh;
         Contacts contacts;
         S actuation, load_torque;
+        Braking<S> braking;                                ///< of the load
         S friction_input, friction_mesh, friction_output;  ///< N.m, of places that slip
         S input_driving_torque, output_driving_torque;     ///< N.m, all but set-valued friction
     };
@@ -249,6 +278,8 @@ struct Drive {
         visit("friction_input", gear.friction_input);
         visit("friction_mesh", gear.friction_mesh);
         visit("friction_output", gear.friction_output);
+        visit("thermal", thermal);
+        visit("meter", meter);
     }
 
     /// All parts without history, and angles, speeds and twist zero.
@@ -262,6 +293,8 @@ struct Drive {
         x.continuous.friction_input = strainwave::initial_state(gear.friction_input);
         x.continuous.friction_mesh = strainwave::initial_state(gear.friction_mesh);
         x.continuous.friction_output = strainwave::initial_state(gear.friction_output);
+        x.continuous.thermal = strainwave::initial_state(thermal);
+        x.continuous.meter = strainwave::initial_state(meter);
         return x;
     }
 
@@ -273,7 +306,7 @@ struct Drive {
             x.continuous.transmission_error = gear.geometry({}, S(0.0), x.continuous.transmission_error, S(0.0)).error;
         x.input_slip_direction = S(input_sticks() ? 0.0 : 1.0);
         x.output_slip_direction = S(output_sticks() ? 0.0 : 1.0);
-        x.continuous.sensors = sensors.settled(measurable(x, x.continuous, S(0.0)));
+        x.continuous.sensors = sensors.settled(measurable(x, x.continuous, Input{}, S(0.0)));
         return x;
     }
 
@@ -281,10 +314,10 @@ struct Drive {
         if constexpr (load::can_prescribe<Load>) {
             if (prescribes(load)) {
                 const Continuous z = placed(x, y, u);
-                return derivatives(x, z, u, mesh(x, z));
+                return derivatives(x, z, u, mesh(x, z, u));
             }
         }
-        return derivatives(x, y, u, mesh(x, y));
+        return derivatives(x, y, u, mesh(x, y, u));
     }
 
     /// Brings the memory of a state up to date.
@@ -297,41 +330,73 @@ struct Drive {
         }
         const auto geometry = this->geometry(x, x.continuous);
         commit(x, geometry);
-        return {x, derivatives(x, x.continuous, u, gear.loaded(geometry, x.hysteresis, x.held_twist))};
+        return {x, derivatives(x, x.continuous, u,
+                               gear.loaded(geometry, x.hysteresis, x.held_twist, temperatures(x.continuous, u).gear))};
     }
 
     constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const typename Gear::Mesh& mesh) const {
         const auto asked = command(u);
-        const Measurement actual = measurable(x, y, mesh.torque), measured = sensors.shown(y.sensors, actual);
+        const Measurement actual = measurable(x, y, u, mesh.torque), measured = sensors.shown(y.sensors, actual);
         const S actuation = control::actuation(control, y.control, x.discrete.control, asked, measured);
-        const S motor_torque = motor.torque(y.motor, actuation, y.input_speed);
+        const Rotor rotor = this->rotor(x, y, u);
+        const S motor_torque = motor.torque(y.motor, actuation, rotor);
 
         Continuous rate{};
         const Contacts at = contacts(x, y, mesh, u);
         const Resistance input = resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
         const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
         const Resistance output = resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
-        const S load_torque = prescribes(load) ? mesh.torque - output.torque() : load.torque(output_angle(x, y)) + u.load;
+        const S load_torque = prescribes(load) ? mesh.torque - output.torque()
+                                               : strainwave::load_torque<S>(load, output_angle(x, y), y.output_speed, u.load);
+        const Braking<S> braking = this->braking(u);
+        const S brake = x.output_slip_direction * braking.slip;
         const S input_driving_torque = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
         const S output_driving_torque = mesh.torque - load_torque - output.always;
-        rate.motor = motor.rate(y.motor, actuation, y.input_speed);
+        rate.motor = motor.rate(y.motor, actuation, rotor);
         rate.control = control.rate(y.control, asked, measured);
         rate.sensors = sensors.rate(y.sensors, actual);
         rate.input_angle = y.input_speed;
         rate.input_speed =
             moving(at.input, input_driving_torque - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
-        rate.output_speed = moving(at.output, output_driving_torque - output.sliding) / output_inertia();
-        return {rate,
-                mesh,
-                at,
-                actuation,
-                load_torque,
-                input.torque(),
-                meshing.torque(),
-                output.torque(),
-                input_driving_torque,
-                output_driving_torque};
+        rate.output_speed = moving(at.output, output_driving_torque - output.sliding - brake) / output_inertia();
+        Derivatives now{rate,
+                        mesh,
+                        at,
+                        actuation,
+                        load_torque + brake,
+                        braking,
+                        input.torque(),
+                        meshing.torque(),
+                        output.torque(),
+                        input_driving_torque,
+                        output_driving_torque};
+        measure(x, y, u, now);
+        return now;
+    }
+
+    /// Where the power goes.
+    constexpr Powers powers(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
+        const auto electric = motor.power(y.motor, now.actuation, rotor(x, y, u));
+        const S temperature = temperatures(y, u).gear, twist_rate = now.mesh.twist_rate, damped = gear.damping * twist_rate;
+        const S remembered = now.mesh.torque - damped - gear.spring_torque(now.mesh.twist, temperature);
+        const S warming = thermal.gear_rate(now.rate.thermal, u.temperature_rate);
+        return {electric.supplied,
+                electric.lost,
+                now.friction_input * y.input_speed,
+                now.friction_mesh * (now.mesh.per_input * y.input_speed),
+                now.friction_output * y.output_speed,
+                damped * twist_rate,
+                remembered * twist_rate,
+                gear.softening.dissipation_rate(warming) * gear.spring_energy(now.mesh.twist, temperature),
+                now.load_torque * y.output_speed};
+    }
+    constexpr meter::Stored<S> stored(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
+        // A shaft that is moved from outside has no inertia of its own.
+        const S output = prescribes(load) ? S(0.0) : S(0.5) * output_inertia() * y.output_speed * y.output_speed;
+        return {S(0.5) * input_inertia() * y.input_speed * y.input_speed, output,
+                gear.spring_energy(now.mesh.twist, temperatures(y, u).gear),
+                motor.power(y.motor, now.actuation, rotor(x, y, u)).stored};
     }
 
     constexpr Continuous relaxation_rate(const Continuous& y, const Derivatives& now) const {
@@ -360,7 +425,7 @@ struct Drive {
 
     /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
     constexpr State aged(State x, const Input& u, const S& dt) const {
-        const Contacts at = contacts(x, x.continuous, mesh(x, x.continuous), u);
+        const Contacts at = contacts(x, x.continuous, mesh(x, x.continuous, u), u);
         x.continuous.friction_input = friction::advance(gear.friction_input, x.continuous.friction_input, at.input, dt);
         x.continuous.friction_mesh = friction::advance(gear.friction_mesh, x.continuous.friction_mesh, at.mesh, dt);
         x.continuous.friction_output = friction::advance(gear.friction_output, x.continuous.friction_output, at.output, dt);
@@ -401,7 +466,7 @@ struct Drive {
     constexpr bool due(const State& x, const S& within) const { return control::due(control, x.discrete.control, within); }
     constexpr State sampled(const Evaluation& at, const Input& u, const S& within) const {
         State x = at.state;
-        const Measurement actual = measurable(x, x.continuous, at.derivatives.mesh.torque);
+        const Measurement actual = measurable(x, x.continuous, u, at.derivatives.mesh.torque);
         x.discrete.control =
             control::sampled(control, x.discrete.control, within, command(u), sensors.shown(x.continuous.sensors, actual));
         return x;
@@ -469,7 +534,7 @@ struct Drive {
         (i == 0 ? x.input_slip_direction : x.output_slip_direction) = slip_direction;
     }
     constexpr S slip_friction(int i, const State& x, const Derivatives& now, const S& direction) const {
-        return i == 0 ? input_friction(x, now, direction) : output_friction(x, now, direction);
+        return i == 0 ? input_friction(x, now, direction) : output_friction(x, now, direction) + direction * now.braking.slip;
     }
     constexpr void move_positions(State& x, const State& before, const S& dt) const {
         const S half = S(0.5) * dt, inverse = gear.kinematics.inverse_ratio();
@@ -512,25 +577,42 @@ struct Drive {
     constexpr typename Gear::Mesh geometry(const State& x, const Continuous& y) const {
         return gear.geometry({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
     }
-    constexpr typename Gear::Mesh mesh(const State& x, const Continuous& y) const {
-        return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist);
+    constexpr typename Gear::Mesh mesh(const State& x, const Continuous& y, const Input& u) const {
+        return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist, temperatures(y, u).gear);
+    }
+    constexpr thermal::Temperatures<S> temperatures(const Continuous& y, const Input& u) const {
+        return thermal.at(y.thermal, u.temperature);
+    }
+    constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u) const {
+        return {{y.input_angle, x.turns}, y.input_speed, temperatures(y, u).winding};
     }
 
     /// What sensors can measure, under this torque of the gear.
-    constexpr Measurement measurable(const State& x, const Continuous& y, const S& torque) const {
-        const S held = control::held<S>(control, x.discrete.control);
+    constexpr Measurement measurable(const State& x, const Continuous& y, const Input& u, const S& torque) const {
+        return measurable(x, y, u, torque, control::held<S>(control, x.discrete.control));
+    }
+    constexpr Measurement measurable(const State& x, const Continuous& y, const Input& u, const S& torque,
+                                     const S& actuation) const {
+        const Rotor rotor = this->rotor(x, y, u);
         return {input_angle(x, y),
                 y.input_speed,
                 output_angle(x, y),
                 y.output_speed,
-                motor.current(y.motor, held, y.input_speed),
-                torque};
+                motor.current(y.motor, actuation, rotor),
+                torque,
+                motor::limits(motor, y.motor, rotor)};
+    }
+    /// What a controller from outside sees, which has set the actuation that there is.
+    constexpr Measurement seen(const Evaluation& at, const Input& u) const {
+        const Continuous& y = at.state.continuous;
+        return sensors.shown(y.sensors, measurable(at.state, y, u, at.derivatives.mesh.torque, at.derivatives.actuation));
     }
     constexpr Output output(const Evaluation& at, const Input& u) const {
         const State& x = at.state;
         const Derivatives& now = at.derivatives;
         const Continuous& y = x.continuous;
         const S of_input = input_shaft(x, now).share_of_hold(), of_output = output_shaft(x, now).share_of_hold();
+        const S braked = select(now.contacts.output.sliding == S(0.0), of_output * now.braking.hold, S(0.0));
         return {u.command,
                 input_angle(x, y),
                 y.input_speed,
@@ -540,12 +622,14 @@ struct Drive {
                 now.mesh.error,
                 y.transmission_error,
                 now.mesh.torque,
-                motor.output(y.motor, now.actuation, y.input_speed),
                 reported(gear.friction_input, now.contacts.input, now.friction_input, of_input),
                 reported(gear.friction_mesh, now.contacts.mesh, now.friction_mesh, along(now.mesh.per_input, of_input)),
                 reported(gear.friction_output, now.contacts.output, now.friction_output, of_output),
-                now.load_torque,
-                u.temperature};
+                now.load_torque + braked,
+                temperatures(y, u).gear,
+                motor.output(y.motor, now.actuation, rotor(x, y, u)),
+                thermal.output(y.thermal, u.temperature),
+                measured(x, y, u, now)};
     }
 
 private:
@@ -563,12 +647,39 @@ private:
         return {found.torque, S(0.0)};
     }
 
+    /// What warms up and what is measured, of an instant at which all else is known.
+    constexpr void measure(const State& x, const Continuous& y, const Input& u, Derivatives& now) const {
+        if constexpr (size_of<S, typename Thermal::State> > 0 || size_of<S, typename Meter::State> > 0) {
+            if (!thermal.active() && !meter.active()) return;
+            Powers power = powers(x, y, u, now);
+            if (thermal.active()) {
+                const S of_gear =
+                    power.friction_input + power.friction_mesh + power.friction_output + power.damping + power.hysteresis;
+                now.rate.thermal = thermal.rate(y.thermal, thermal::Heat<S>{power.motor, of_gear}, u.temperature);
+                power = powers(x, y, u, now);  // how fast the gear warms up is known by now
+            }
+            if (meter.active()) now.rate.meter = meter.rate(power);
+        }
+    }
+    constexpr typename Meter::Output measured(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
+        if constexpr (size_of<S, typename Meter::Output> > 0)
+            if (meter.active()) return meter.output(y.meter, powers(x, y, u, now), stored(x, y, u, now));
+        return {};
+    }
     constexpr S input_inertia() const { return inertia_of<S>(motor) + gear.input_inertia; }
     constexpr bool input_sticks() const {
         return friction::set_valued(gear.friction_input) || friction::set_valued(gear.friction_mesh);
     }
     constexpr S output_inertia() const { return inertia_of<S>(load); }
-    constexpr bool output_sticks() const { return !prescribes(load) && friction::set_valued(gear.friction_output); }
+    constexpr bool output_sticks() const {
+        return !prescribes(load) && (friction::set_valued(gear.friction_output) || brakes(load));
+    }
+    constexpr Braking<S> braking(const Input& u) const {
+        if constexpr (load::can_brake<Load>)
+            return strainwave::braking<S>(load, u.load);
+        else
+            return {};
+    }
 
     constexpr Shaft input_shaft(const State& x, const Derivatives& now) const {
         const S hold = input_sticks() ? input_hold(now) : S(0.0);
@@ -583,14 +694,14 @@ private:
     /// How each place moves and what it bears. The output's angle is split into whole turns before it is multiplied out.
     constexpr Contacts contacts(const State& x, const Continuous& y, const typename Gear::Mesh& mesh, const Input& u) const {
         const S inverse = gear.kinematics.inverse_ratio(), turned = x.turns * inverse, turns = rint(turned);
-        const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse;
-        return {{y.input_speed, x.input_slip_direction, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, u.temperature},
+        const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse, temperature = temperatures(y, u).gear;
+        return {{y.input_speed, x.input_slip_direction, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, temperature},
                 {y.input_speed * mesh.per_input,
                  along(mesh.per_input, x.input_slip_direction),
                  {rigid, turns},
                  mesh.torque,
-                 u.temperature},
-                {y.output_speed, x.output_slip_direction, {rigid - y.transmission_error, turns}, mesh.torque, u.temperature}};
+                 temperature},
+                {y.output_speed, x.output_slip_direction, {rigid - y.transmission_error, turns}, mesh.torque, temperature}};
     }
 
     /// The contacts of an instant, moving at other speeds.
@@ -608,7 +719,7 @@ private:
     }
     constexpr S output_hold(const Derivatives& now) const {
         const S held = friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_driving_torque)));
-        return max(held, S(negligible_hold));
+        return max(held + now.braking.hold, S(negligible_hold));
     }
 
     /// The torque of set-valued friction against a shaft that slips one way.

@@ -10,6 +10,15 @@ inline constexpr double unbounded = 1.7976931348623157e308;
 /// A bound that excludes zero: the smallest normal number of every scalar, float included.
 inline constexpr double smallest = 1.1754943508222875e-38;
 
+/// Whether two texts are the same.
+constexpr bool same(const char* one, const char* other) {
+    while (*one != 0 && *one == *other) {
+        ++one;
+        ++other;
+    }
+    return *one == *other;
+}
+
 /// What is known of a member besides its value. The default value stands in the struct.
 struct Field {
     const char* name;

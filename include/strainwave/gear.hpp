@@ -16,7 +16,7 @@ constexpr S reduction_of(const Spring& spring) {
 }
 
 template <class S, class Kinematics, class KinematicError, class KinematicNoise, class Stiffness, class Hysteresis,
-          class FrictionInput, class FrictionMesh, class FrictionOutput>
+          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening>
 struct Gear {
     Kinematics kinematics{};
     KinematicError kinematic_error{};
@@ -28,6 +28,7 @@ struct Gear {
     FrictionMesh friction_mesh{};
     FrictionOutput friction_output{};
     S input_inertia{0.0};
+    Softening softening{};
 
     static constexpr auto name = "gear";
     static constexpr auto source =
@@ -67,6 +68,7 @@ struct Gear {
         visit(SW_PART(m, friction_mesh, "Friction of the mesh, at the output's scale, over the speed of the input referred to it"));
         visit(SW_PART(m, friction_output, "Friction at the output, over the output speed"));
         visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
+        visit(SW_PART(m, softening, "How stiffness and hysteresis give way as the gear warms up"));
     }
 
     constexpr const char* problem() const {
@@ -80,12 +82,13 @@ struct Gear {
     constexpr auto compile() const {
         return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), decltype(compiled(kinematic_noise)),
                     decltype(compiled(stiffness)), decltype(compiled(hysteresis)), decltype(compiled(friction_input)),
-                    decltype(compiled(friction_mesh)), decltype(compiled(friction_output))>{
+                    decltype(compiled(friction_mesh)), decltype(compiled(friction_output)), decltype(compiled(softening))>{
             compiled(kinematics),      compiled(kinematic_error),
             compiled(kinematic_noise), compiled(stiffness),
             compiled(hysteresis),      damping,
             compiled(friction_input),  compiled(friction_mesh),
-            compiled(friction_output), input_inertia};
+            compiled(friction_output), input_inertia,
+            compiled(softening)};
     }
 
     /// How the two shafts stand to each other.
@@ -104,10 +107,23 @@ struct Gear {
         const S per_input = kinematics.inverse_ratio() - error.slope;
         return {error.value, per_input, transmission_error - error.value, per_input * input_speed - output_speed, S(0.0)};
     }
-    /// The torque of a gear that stands so, its hysteresis last brought up to date at `held_twist`.
-    constexpr Mesh loaded(Mesh mesh, const typename Hysteresis::State& held, const S& held_twist) const {
-        mesh.torque = stiffness.torque(mesh.twist) + hysteresis.torque(held, mesh.twist - held_twist) + damping * mesh.twist_rate;
+    /// The torque of a gear that stands so at a temperature [K], its hysteresis last brought up to date at `held_twist`.
+    constexpr Mesh loaded(Mesh mesh, const typename Hysteresis::State& held, const S& held_twist, const S& temperature) const {
+        mesh.torque = held_torque(mesh.twist, held, mesh.twist - held_twist, temperature) + damping * mesh.twist_rate;
         return mesh;
+    }
+    /// What spring and hysteresis hold at a twist [rad], `moved` [rad] from where the hysteresis was last brought up to date, N.m.
+    constexpr S held_torque(const S& twist, const typename Hysteresis::State& held, const S& moved, const S& temperature) const {
+        const S elastic = stiffness.torque(twist), remembered = hysteresis.torque(held, moved);
+        if (!softening.active()) return elastic + remembered;
+        return softening.of_stiffness(temperature) * elastic + softening.of_hysteresis(temperature) * remembered;
+    }
+    /// What the spring alone holds, N.m, and the energy in it, J.
+    constexpr S spring_torque(const S& twist, const S& temperature) const {
+        return spring_factor(temperature) * stiffness.torque(twist);
+    }
+    constexpr S spring_energy(const S& twist, const S& temperature) const {
+        return spring_factor(temperature) * stiffness.energy(twist);
     }
 
     /// The largest stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign, and with it that of the
@@ -121,6 +137,9 @@ struct Gear {
     }
 
 private:
+    constexpr S spring_factor(const S& temperature) const {
+        return softening.active() ? softening.of_stiffness(temperature) : S(1.0);
+    }
     /// The noise follows the elastic torque that there is without it, so that neither waits for the other.
     constexpr kinematic_error::Error<S> error(const Angle<S>& input_angle, const S& input_speed,
                                               const S& transmission_error) const {

@@ -39,12 +39,16 @@ class Search {
     const Drive& drive;
     const Known<S>& known;
     const Input<S>& u;
-    const QuasiStatic<S, decltype(Drive{}.gear)> spring;
     typename Drive::State x;
+    const QuasiStatic<S, decltype(Drive{}.gear)> spring;
 
 public:
     constexpr Search(const Drive& drive_, const Known<S>& known_, const Input<S>& u_)
-        : drive(drive_), known(known_), u(u_), spring(drive_.gear), x(drive_.initial_state()) {}
+        : drive(drive_),
+          known(known_),
+          u(u_),
+          x(drive_.initial_state()),
+          spring(drive_.gear, drive_.temperatures(x.continuous, u_).gear) {}
 
     /// Its transmission error is infinite where the rounds do not come to an end.
     constexpr typename Drive::State found() {
@@ -125,7 +129,7 @@ private:
         at = system::up_to_date(drive, at, u, S(0.0));  // before the first sample none is due but that
         x = at.state;
         settle_motor(at.derivatives);
-        x.continuous.sensors = drive.sensors.settled(drive.measurable(x, x.continuous, at.derivatives.mesh.torque));
+        x.continuous.sensors = drive.sensors.settled(drive.measurable(x, x.continuous, u, at.derivatives.mesh.torque));
     }
     constexpr void settle_motor(const typename Drive::Derivatives& now) {
         auto numbers = flattened<S>(x.continuous.motor);

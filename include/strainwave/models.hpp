@@ -1,12 +1,18 @@
 #pragma once
+#include <strainwave/control/cascade.hpp>
+#include <strainwave/control/lead_lag.hpp>
 #include <strainwave/control/open_loop.hpp>
+#include <strainwave/control/pi.hpp>
 #include <strainwave/control/pid.hpp>
+#include <strainwave/control/position_speed.hpp>
 #include <strainwave/control/sampled.hpp>
+#include <strainwave/control/state_feedback.hpp>
 #include <strainwave/friction/coulomb.hpp>
 #include <strainwave/friction/cyclic.hpp>
 #include <strainwave/friction/load_dependent.hpp>
 #include <strainwave/friction/lugre.hpp>
 #include <strainwave/friction/maxwell_slip_friction.hpp>
+#include <strainwave/friction/mixed_lubrication.hpp>
 #include <strainwave/friction/position_dependent.hpp>
 #include <strainwave/friction/stribeck.hpp>
 #include <strainwave/friction/thermal.hpp>
@@ -21,19 +27,35 @@
 #include <strainwave/kinematic_error/misalignment.hpp>
 #include <strainwave/kinematic_error/stochastic.hpp>
 #include <strainwave/kinematics.hpp>
+#include <strainwave/load/aerodynamic.hpp>
+#include <strainwave/load/brake.hpp>
 #include <strainwave/load/inertia.hpp>
 #include <strainwave/load/pendulum.hpp>
 #include <strainwave/load/prescribed.hpp>
+#include <strainwave/load/spring.hpp>
+#include <strainwave/load/table.hpp>
+#include <strainwave/meter/energy_meter.hpp>
+#include <strainwave/meter/no_meter.hpp>
+#include <strainwave/motor/brushless_dc.hpp>
 #include <strainwave/motor/current_source.hpp>
 #include <strainwave/motor/dc.hpp>
+#include <strainwave/motor/pmsm.hpp>
 #include <strainwave/motor/torque_source.hpp>
+#include <strainwave/sensor/delayed.hpp>
+#include <strainwave/sensor/encoder.hpp>
 #include <strainwave/sensor/first_order.hpp>
+#include <strainwave/sensor/gain.hpp>
 #include <strainwave/sensor/ideal.hpp>
+#include <strainwave/sensor/noisy.hpp>
+#include <strainwave/sensor/second_order.hpp>
+#include <strainwave/softening/exponential.hpp>
 #include <strainwave/stiffness/cubic.hpp>
 #include <strainwave/stiffness/linear.hpp>
 #include <strainwave/stiffness/multi_compliance.hpp>
 #include <strainwave/stiffness/piecewise.hpp>
 #include <strainwave/stiffness/three_segment.hpp>
+#include <strainwave/thermal/heating.hpp>
+#include <strainwave/thermal/isothermal.hpp>
 
 /// The closed lists of models. A new model is one header, and here its include and its name. The first of a family is its default.
 namespace strainwave {
@@ -61,7 +83,8 @@ using Models = List<Fourier, Misalignment>;
 using Noises = List<Stochastic>;
 }  // namespace kinematic_error
 namespace friction {
-using Plain = List<Viscous, Coulomb, Stribeck, PositionDependent, LuGre, MaxwellSlipFriction, LoadDependent, TorqueEfficiency>;
+using Plain = List<Viscous, Coulomb, Stribeck, PositionDependent, LuGre, MaxwellSlipFriction, LoadDependent, TorqueEfficiency,
+                   MixedLubrication>;
 using Varying = Extended<Plain, Cyclic>;
 using Models = Extended<Varying, Thermal>;
 }  // namespace friction
@@ -73,17 +96,28 @@ using Models = List<MaxwellSlip, FadingMemory, BoucWen, Preisach, Regimes>;
 using Densities = List<PowerDensity, GridDensity>;
 }  // namespace hysteresis
 namespace motor {
-using Models = List<DC, TorqueSource, CurrentSource>;
+using Models = List<DC, BrushlessDC, PMSM, TorqueSource, CurrentSource>;
 }
 namespace control {
-using Continuous = List<OpenLoop, PID>;
+using Continuous = List<OpenLoop, PID, PI, PositionSpeed, Cascade, LeadLag, StateFeedback>;
 using Models = Extended<Continuous, Sampled>;
 }  // namespace control
 namespace load {
-using Models = List<Inertia, Pendulum, Prescribed>;
+using Models = List<Inertia, Pendulum, Spring, Aerodynamic, Table, Brake, Prescribed>;
 }
 namespace sensor {
-using Models = List<Ideal, FirstOrder>;
+using Plain = List<Ideal, Gain, FirstOrder, SecondOrder, Encoder>;
+using Late = Extended<Plain, Delayed>;
+using Models = Extended<Late, Noisy>;
+}  // namespace sensor
+namespace softening {
+using Models = List<Exponential>;
+}
+namespace thermal {
+using Models = List<Isothermal, Heating>;
+}
+namespace meter {
+using Models = List<NoMeter, EnergyMeter>;
 }
 
 }  // namespace strainwave

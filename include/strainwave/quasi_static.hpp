@@ -3,19 +3,21 @@
 
 namespace strainwave {
 
-/// Spring and hysteresis of a gear whose input is held, twisted slowly from `begin` on, where it has no history.
+/// Spring and hysteresis of a gear at a temperature [K], whose input is held, twisted slowly from `begin` on, where it has no
+/// history.
 template <class S, class Gear>
 class QuasiStatic {
     const Gear& gear;
+    const S temperature;
     typename decltype(Gear{}.hysteresis)::State held;
     S at;
 
 public:
-    constexpr explicit QuasiStatic(const Gear& gear_, const S& begin = S(0.0))
-        : gear(gear_), held(initial_state(gear_.hysteresis)), at(begin) {}
+    constexpr QuasiStatic(const Gear& gear_, const S& temperature_, const S& begin = S(0.0))
+        : gear(gear_), temperature(temperature_), held(initial_state(gear_.hysteresis)), at(begin) {}
 
     /// At a twist [rad] that is reached without turning back on the way, N.m.
-    constexpr S torque(const S& twist) const { return gear.stiffness.torque(twist) + gear.hysteresis.torque(held, twist - at); }
+    constexpr S torque(const S& twist) const { return gear.held_torque(twist, held, twist - at, temperature); }
     constexpr void move(const S& twist) {
         held = gear.hysteresis.advance(held, twist - at);
         at = twist;

@@ -4,6 +4,22 @@
 
 namespace strainwave {
 
+/// The state of each sensor of a drive.
+template <class S, class Each>
+struct SensorStates {
+    Each input_angle{}, input_speed{}, output_angle{}, output_speed{}, current{}, torque{};
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, input_angle, "State of that sensor"));
+        visit(SW_PART(m, input_speed, "State of that sensor"));
+        visit(SW_PART(m, output_angle, "State of that sensor"));
+        visit(SW_PART(m, output_speed, "State of that sensor"));
+        visit(SW_PART(m, current, "State of that sensor"));
+        visit(SW_PART(m, torque, "State of that sensor"));
+    }
+};
+
 template <class S, class Sensor>
 struct Sensors {
     Sensor input_angle{};
@@ -40,19 +56,7 @@ struct Sensors {
                                                       compiled(output_speed), compiled(current),     compiled(torque)};
     }
 
-    struct States {
-        typename Sensor::State input_angle{}, input_speed{}, output_angle{}, output_speed{}, current{}, torque{};
-
-        template <class Self, class Visit>
-        static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_PART(m, input_angle, "State of that sensor"));
-            visit(SW_PART(m, input_speed, "State of that sensor"));
-            visit(SW_PART(m, output_angle, "State of that sensor"));
-            visit(SW_PART(m, output_speed, "State of that sensor"));
-            visit(SW_PART(m, current, "State of that sensor"));
-            visit(SW_PART(m, torque, "State of that sensor"));
-        }
-    };
+    using States = SensorStates<S, typename Sensor::State>;
     static constexpr bool stateless = size_of<S, typename Sensor::State> == 0;
     using State = typename detail::Either<stateless, Stateless<S>, States>::type;
     using Measurement = control::Measurement<S>;
@@ -67,7 +71,8 @@ struct Sensors {
                 shown(output_angle, x, &States::output_angle, actual.output_angle),
                 shown(output_speed, x, &States::output_speed, actual.output_speed),
                 shown(current, x, &States::current, actual.current),
-                shown(torque, x, &States::torque, actual.torque)};
+                shown(torque, x, &States::torque, actual.torque),
+                actual.limits};
     }
     constexpr State rate(const State& x, const Measurement& actual) const {
         if constexpr (stateless)

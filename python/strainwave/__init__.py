@@ -23,9 +23,12 @@ from strainwave._core import (
     kinematic_error,
     kinematics,
     loads,
+    meter,
     motor,
     sensor,
+    softening,
     stiffness,
+    thermal,
 )
 
 if TYPE_CHECKING:
@@ -110,6 +113,7 @@ __all__ = [
     "linearise",
     "load",
     "loads",
+    "meter",
     "motor",
     "save",
     "scenario",
@@ -118,7 +122,9 @@ __all__ = [
     "simulate_adaptively",
     "simulate_many",
     "simulate_to",
+    "softening",
     "stiffness",
+    "thermal",
     "twin",
 ]
 

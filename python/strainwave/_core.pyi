@@ -15,9 +15,12 @@ from strainwave import (
     kinematic_error as kinematic_error,
     kinematics as kinematics,
     loads as loads,
+    meter as meter,
     motor as motor,
     sensor as sensor,
-    stiffness as stiffness
+    softening as softening,
+    stiffness as stiffness,
+    thermal as thermal
 )
 import strainwave.control
 import strainwave.friction
@@ -25,10 +28,13 @@ import strainwave.hysteresis
 import strainwave.kinematic_error
 import strainwave.kinematics
 import strainwave.loads
+import strainwave.meter
 import strainwave.motor
 import strainwave.sensor
 import strainwave.simulation.state
+import strainwave.softening
 import strainwave.stiffness
+import strainwave.thermal
 
 
 families: dict[str, dict[str, type[Any]]]
@@ -100,6 +106,7 @@ class Gear:
     friction_mesh: Friction of the mesh, at the output's scale, over the speed of the input referred to it; default Viscous(viscous=0.0)
     friction_output: Friction at the output, over the output speed; default Viscous(viscous=0.0)
     input_inertia: Inertia of the wave generator [kg.m2], in [0, inf); default 0.0
+    softening: How stiffness and hysteresis give way as the gear warms up; default Exponential(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15)
 
     Raises
     ------
@@ -111,9 +118,9 @@ class Gear:
     physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)
     """
 
-    def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ...) -> None: ...
+    def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ..., softening: strainwave.softening.Exponential = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ...) -> Gear:
+    def replace(self, changes: dict[str, Any] = ..., /, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ..., softening: strainwave.softening.Exponential = ...) -> Gear:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -143,22 +150,26 @@ class Gear:
         """Torque per rate of twist [N.m.s/rad]"""
 
     @property
-    def friction_input(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal:
+    def friction_input(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal:
         """Friction at the wave generator, over the input speed"""
 
     @property
-    def friction_mesh(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal:
+    def friction_mesh(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal:
         """
         Friction of the mesh, at the output's scale, over the speed of the input referred to it
         """
 
     @property
-    def friction_output(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.Cyclic | strainwave.friction.Thermal:
+    def friction_output(self) -> strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal:
         """Friction at the output, over the output speed"""
 
     @property
     def input_inertia(self) -> float:
         """Inertia of the wave generator [kg.m2]"""
+
+    @property
+    def softening(self) -> strainwave.softening.Exponential:
+        """How stiffness and hysteresis give way as the gear warms up"""
 
     def __repr__(self) -> str: ...
 
@@ -221,35 +232,35 @@ class Sensors:
     definition
     """
 
-    def __init__(self, *, input_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., input_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., current: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., torque: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ...) -> None: ...
+    def __init__(self, *, input_angle: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., input_speed: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., output_angle: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., output_speed: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., current: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., torque: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, input_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., input_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_angle: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., output_speed: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., current: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ..., torque: strainwave.sensor.Ideal | strainwave.sensor.FirstOrder = ...) -> Sensors:
+    def replace(self, changes: dict[str, Any] = ..., /, *, input_angle: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., input_speed: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., output_angle: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., output_speed: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., current: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ..., torque: strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy = ...) -> Sensors:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def input_angle(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+    def input_angle(self) -> strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy:
         """Sensor of the input angle: the motor's encoder"""
 
     @property
-    def input_speed(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+    def input_speed(self) -> strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy:
         """Sensor of the input speed"""
 
     @property
-    def output_angle(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+    def output_angle(self) -> strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy:
         """Sensor of the output angle"""
 
     @property
-    def output_speed(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+    def output_speed(self) -> strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy:
         """Sensor of the output speed"""
 
     @property
-    def current(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+    def current(self) -> strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy:
         """Sensor of the motor current"""
 
     @property
-    def torque(self) -> strainwave.sensor.Ideal | strainwave.sensor.FirstOrder:
+    def torque(self) -> strainwave.sensor.Ideal | strainwave.sensor.Gain | strainwave.sensor.FirstOrder | strainwave.sensor.SecondOrder | strainwave.sensor.Encoder | strainwave.sensor.Delayed | strainwave.sensor.Noisy:
         """Sensor of the torque transmitted, at the output"""
 
     def __repr__(self) -> str: ...
@@ -278,7 +289,8 @@ class Drive:
               J_{out} \\ddot\\theta_{out} = T - T_{load} - F_{out}
 
     with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear,
-    F the friction of each place. A load can also prescribe the motion of the output shaft.
+    F the friction of each place. A load can also prescribe the motion of the output shaft. The temperature of a run is that
+    of gear and winding, unless the drive has a thermal model: then it is that around them.
     Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
     told apart: it is reported in proportion to what each can hold.
     Angles are carried relative to the rigid motion, so an hour of rotation is as accurate as a second.
@@ -290,11 +302,13 @@ class Drive:
 
     Parameters
     ----------
-    gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0)
-    motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05)
+    gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=Exponential(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15))
+    motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05, brush_drop=0.0, resistance_rise=0.0)
     control: What turns the command into the motor's voltage, current or torque; default OpenLoop(gain=1.0)
     load: What the output shaft carries; default Inertia(inertia=0.01)
     sensors: What the controller sees the drive by; default Sensors(input_angle=Ideal(), input_speed=Ideal(), output_angle=Ideal(), output_speed=Ideal(), current=Ideal(), torque=Ideal())
+    thermal: How warm gear and winding become; default Isothermal()
+    meter: What is measured of powers and energies; default NoMeter()
 
     Raises
     ------
@@ -306,9 +320,9 @@ class Drive:
     document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)
     """
 
-    def __init__(self, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Prescribed = ..., sensors: Sensors = ...) -> None: ...
+    def __init__(self, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Spring | strainwave.loads.Aerodynamic | strainwave.loads.Table | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Prescribed = ..., sensors: Sensors = ...) -> Drive:
+    def replace(self, changes: dict[str, Any] = ..., /, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Spring | strainwave.loads.Aerodynamic | strainwave.loads.Table | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> Drive:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -318,20 +332,28 @@ class Drive:
         """The gear"""
 
     @property
-    def motor(self) -> strainwave.motor.DC | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource:
+    def motor(self) -> strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource:
         """The motor on the input shaft"""
 
     @property
-    def control(self) -> strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.Sampled:
+    def control(self) -> strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled:
         """What turns the command into the motor's voltage, current or torque"""
 
     @property
-    def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Prescribed:
+    def load(self) -> strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.Spring | strainwave.loads.Aerodynamic | strainwave.loads.Table | strainwave.loads.Brake | strainwave.loads.Prescribed:
         """What the output shaft carries"""
 
     @property
     def sensors(self) -> Sensors:
         """What the controller sees the drive by"""
+
+    @property
+    def thermal(self) -> strainwave.thermal.Isothermal | strainwave.thermal.Heating:
+        """How warm gear and winding become"""
+
+    @property
+    def meter(self) -> strainwave.meter.NoMeter | strainwave.meter.EnergyMeter:
+        """What is measured of powers and energies"""
 
     def __repr__(self) -> str: ...
 
@@ -354,12 +376,12 @@ class Drive:
     def rest(self) -> strainwave.simulation.state.State:
         """The state at rest, untwisted and without history, input angle 0."""
 
-    def step(self, state: strainwave.simulation.state.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, output_angle: float = 0.0, output_speed: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave.simulation.state.State:
+    def step(self, state: strainwave.simulation.state.State, *, command: float = 0.0, command_rate: float = 0.0, load_torque: float = 0.0, brake_torque: float = 0.0, output_angle: float = 0.0, output_speed: float = 0.0, temperature: float = 293.15, dt: float) -> strainwave.simulation.state.State:
         """
         The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
         """
 
-output_count: int = 16
+output_count: int = 41
 
 def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]:
     """
@@ -399,6 +421,11 @@ def bristle_frequency(drive: Drive) -> float:
 
 def now(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """All channels in `state`, shape (channels, 1)."""
+
+def measured(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    What a controller sees through the sensors: input angle and speed, output angle and speed, current, torque; then the least and the largest actuation that the motor can follow.
+    """
 
 def differentiate_rates(drive: Drive, state: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

@@ -69,7 +69,8 @@ class PID:
     with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
     u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
     kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
-    error is referred to the input, so that the gains mean the same. The integral rests while the voltage is limited.
+    error is referred to the input, so that the gains mean the same. The integral rests while the voltage is limited, here
+    or by the motor.
 
     u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
     read A or N.m in place of V.
@@ -141,6 +142,490 @@ class PID:
 
     fields: tuple[dict[str, Any], ...]
 
+class PI:
+    """
+    Speed controller: proportional and integral.
+
+    .. math:: u = \\operatorname{clip}(k_p \\epsilon + k_i \\textstyle\\int \\epsilon\\,dt, \\pm u_{max}), \\qquad
+              \\epsilon = i r - \\omega_{in} \\text{ or } \\epsilon = i\\,(r - \\omega_{out})
+
+    with r the commanded output speed [rad/s], i the signed ratio, k_p = proportional, k_i = integral, u_max = limit. The error
+    is that of the shaft which feedback names, referred to the input. The integral rests where it would lead further beyond
+    what limit or motor allow.
+
+    u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
+    read A or N.m in place of V.
+
+    >>> from strainwave.control import PI
+    >>> PI(proportional=0.2, integral=5.0).limit
+    48.0
+
+    Parameters
+    ----------
+    proportional: Voltage per error of the input speed [V.s/rad], in [0, inf); default 0.1
+    integral: Voltage per integral of the error of the input speed [V/rad], in [0, inf); default 0.0
+    limit: Largest voltage, of either sign [V], in (0, inf); default 48.0
+    feedback: The shaft whose speed the loop closes on, one of ('input', 'output'); default 'input'
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    AstromHagglund1995, chapter 3; anti-windup by conditional integration, section 3.5
+    """
+
+    def __init__(self, *, proportional: float = ..., integral: float = ..., limit: float = ..., feedback: str = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, proportional: float = ..., integral: float = ..., limit: float = ..., feedback: str = ...) -> PI:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def proportional(self) -> float:
+        """Voltage per error of the input speed [V.s/rad]"""
+
+    @property
+    def integral(self) -> float:
+        """Voltage per integral of the error of the input speed [V/rad]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest voltage, of either sign [V]"""
+
+    @property
+    def feedback(self) -> str:
+        """The shaft whose speed the loop closes on"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'pi'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class PositionSpeed:
+    """
+    Position loop around a speed loop, for motors that take a current or a torque.
+
+    .. math:: \\omega_r = \\operatorname{clip}(k_p \\epsilon + f\\, i \\dot r, \\pm \\omega_{max}), \\qquad
+              u = \\operatorname{clip}(k_s (\\omega_r - \\omega) + k_i \\textstyle\\int (\\omega_r - \\omega)\\,dt
+              + b\\, i \\dot r + c \\operatorname{sgn}(i \\dot r), \\pm u_{max})
+
+    with r the commanded output angle, i the signed ratio, omega the input speed, epsilon the error of the angle, referred to the
+    input: that of the input shaft, i r - theta_in, or of the output shaft, i (r - theta_out), as feedback names it.
+    k_p = position_gain, k_s = speed_proportional, k_i = speed_integral, f, b, c = speed_, viscous_ and coulomb_feedforward,
+    omega_max = speed_limit, u_max = limit. The integral rests where it would lead further beyond what limit or motor allow.
+
+    u is a current, and the units below are those, of a motor that takes one. For a motor that takes a torque or a voltage
+    read N.m or V in place of A.
+
+    >>> from strainwave.control import PositionSpeed
+    >>> PositionSpeed(position_gain=30.0, speed_proportional=0.1, speed_integral=2.0).speed_limit
+    500.0
+
+    Parameters
+    ----------
+    position_gain: Input speed per error of the input angle [1/s], in [0, inf); default 20.0
+    speed_proportional: Current per error of the input speed [A.s/rad], in [0, inf); default 0.05
+    speed_integral: Current per integral of the error of the input speed [A/rad], in [0, inf); default 0.0
+    speed_limit: Largest input speed that is asked for [rad/s], in (0, inf); default 500.0
+    limit: Largest current, of either sign [A], in (0, inf); default 10.0
+    speed_feedforward: Share of the commanded speed that is asked for without any error; default 0.0
+    viscous_feedforward: Current per commanded input speed [A.s/rad]; default 0.0
+    coulomb_feedforward: Current in the sense of the commanded speed [A]; default 0.0
+    feedback: The shaft whose encoder the position loop closes on, one of ('input', 'output'); default 'input'
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    GrossHamannWiegaertner2001, cascade of position and speed; anti-windup by conditional integration: AstromHagglund1995, section 3.5
+    """
+
+    def __init__(self, *, position_gain: float = ..., speed_proportional: float = ..., speed_integral: float = ..., speed_limit: float = ..., limit: float = ..., speed_feedforward: float = ..., viscous_feedforward: float = ..., coulomb_feedforward: float = ..., feedback: str = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, position_gain: float = ..., speed_proportional: float = ..., speed_integral: float = ..., speed_limit: float = ..., limit: float = ..., speed_feedforward: float = ..., viscous_feedforward: float = ..., coulomb_feedforward: float = ..., feedback: str = ...) -> PositionSpeed:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def position_gain(self) -> float:
+        """Input speed per error of the input angle [1/s]"""
+
+    @property
+    def speed_proportional(self) -> float:
+        """Current per error of the input speed [A.s/rad]"""
+
+    @property
+    def speed_integral(self) -> float:
+        """Current per integral of the error of the input speed [A/rad]"""
+
+    @property
+    def speed_limit(self) -> float:
+        """Largest input speed that is asked for [rad/s]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest current, of either sign [A]"""
+
+    @property
+    def speed_feedforward(self) -> float:
+        """Share of the commanded speed that is asked for without any error"""
+
+    @property
+    def viscous_feedforward(self) -> float:
+        """Current per commanded input speed [A.s/rad]"""
+
+    @property
+    def coulomb_feedforward(self) -> float:
+        """Current in the sense of the commanded speed [A]"""
+
+    @property
+    def feedback(self) -> str:
+        """The shaft whose encoder the position loop closes on"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'position_speed'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class Cascade:
+    """
+    Position loop around a speed loop around a current loop, for motors that take a voltage.
+
+    .. math:: u = \\operatorname{clip}(k_c (i_r - i_m) + k_{ci} \\textstyle\\int (i_r - i_m)\\,dt + K \\omega, \\pm u_{max})
+
+    with i_r what the loops of PositionSpeed ask for, limited to current_limit, i_m the measured current, omega the measured input
+    speed, k_c = current_proportional, k_ci = current_integral, K = back_emf_feedforward, u_max = voltage_limit. The motor
+    hands back what it can follow: where u_max or the motor limits the voltage, neither integral leads further beyond; where
+    the current is limited the integral of the speed does not.
+
+    A current loop of the bandwidth w [rad/s] around resistance R and inductance L has k_c = L w and k_ci = R w. The motor must
+    have an inductance, or the controller must be sampled: else voltage and current would determine each other at once.
+
+    >>> from strainwave.control import Cascade
+    >>> law = Cascade(position_gain=30.0, speed_proportional=0.1, speed_integral=2.0, current_proportional=2.0)
+    >>> law.current_limit
+    10.0
+
+    Parameters
+    ----------
+    position_gain: Input speed per error of the input angle [1/s], in [0, inf); default 20.0
+    speed_proportional: Current per error of the input speed [A.s/rad], in [0, inf); default 0.05
+    speed_integral: Current per integral of the error of the input speed [A/rad], in [0, inf); default 0.0
+    current_proportional: Voltage per error of the current [V/A], in [0, inf); default 1.0
+    current_integral: Voltage per integral of the error of the current [V/(A.s)], in [0, inf); default 0.0
+    speed_limit: Largest input speed that is asked for [rad/s], in (0, inf); default 500.0
+    current_limit: Largest current that is asked for, of either sign [A], in (0, inf); default 10.0
+    voltage_limit: Largest voltage, of either sign [V], in (0, inf); default 48.0
+    speed_feedforward: Share of the commanded speed that is asked for without any error; default 0.0
+    viscous_feedforward: Current per commanded input speed [A.s/rad]; default 0.0
+    coulomb_feedforward: Current in the sense of the commanded speed [A]; default 0.0
+    back_emf_feedforward: Voltage per input speed, as the back-EMF takes it [V.s/rad]; default 0.0
+    feedback: The shaft whose encoder the position loop closes on, one of ('input', 'output'); default 'input'
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    GrossHamannWiegaertner2001, cascade of position, speed and current; anti-windup by conditional integration: AstromHagglund1995, section 3.5
+    """
+
+    def __init__(self, *, position_gain: float = ..., speed_proportional: float = ..., speed_integral: float = ..., current_proportional: float = ..., current_integral: float = ..., speed_limit: float = ..., current_limit: float = ..., voltage_limit: float = ..., speed_feedforward: float = ..., viscous_feedforward: float = ..., coulomb_feedforward: float = ..., back_emf_feedforward: float = ..., feedback: str = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, position_gain: float = ..., speed_proportional: float = ..., speed_integral: float = ..., current_proportional: float = ..., current_integral: float = ..., speed_limit: float = ..., current_limit: float = ..., voltage_limit: float = ..., speed_feedforward: float = ..., viscous_feedforward: float = ..., coulomb_feedforward: float = ..., back_emf_feedforward: float = ..., feedback: str = ...) -> Cascade:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def position_gain(self) -> float:
+        """Input speed per error of the input angle [1/s]"""
+
+    @property
+    def speed_proportional(self) -> float:
+        """Current per error of the input speed [A.s/rad]"""
+
+    @property
+    def speed_integral(self) -> float:
+        """Current per integral of the error of the input speed [A/rad]"""
+
+    @property
+    def current_proportional(self) -> float:
+        """Voltage per error of the current [V/A]"""
+
+    @property
+    def current_integral(self) -> float:
+        """Voltage per integral of the error of the current [V/(A.s)]"""
+
+    @property
+    def speed_limit(self) -> float:
+        """Largest input speed that is asked for [rad/s]"""
+
+    @property
+    def current_limit(self) -> float:
+        """Largest current that is asked for, of either sign [A]"""
+
+    @property
+    def voltage_limit(self) -> float:
+        """Largest voltage, of either sign [V]"""
+
+    @property
+    def speed_feedforward(self) -> float:
+        """Share of the commanded speed that is asked for without any error"""
+
+    @property
+    def viscous_feedforward(self) -> float:
+        """Current per commanded input speed [A.s/rad]"""
+
+    @property
+    def coulomb_feedforward(self) -> float:
+        """Current in the sense of the commanded speed [A]"""
+
+    @property
+    def back_emf_feedforward(self) -> float:
+        """Voltage per input speed, as the back-EMF takes it [V.s/rad]"""
+
+    @property
+    def feedback(self) -> str:
+        """The shaft whose encoder the position loop closes on"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'cascade'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class LeadLag:
+    """
+    Position controller of two sections, one to lead and one to lag.
+
+    .. math:: u = \\operatorname{clip}\\left(k\\, \\frac{1 + a_1 s}{1 + b_1 s}\\, \\frac{1 + a_2 s}{1 + b_2 s}\\, \\epsilon,
+              \\pm u_{max}\\right)
+
+    with epsilon the error of the angle, referred to the input, of the shaft which feedback names: i r - theta_in or
+    i (r - theta_out); k = gain, a_1, b_1 = lead_numerator, lead_denominator, a_2, b_2 = lag_numerator, lag_denominator,
+    u_max = limit. The first leads where a_1 > b_1, the second lags where a_2 < b_2; either may do either. Both sections
+    begin at rest.
+
+    u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
+    read A or N.m in place of V.
+
+    >>> from strainwave.control import LeadLag
+    >>> LeadLag(gain=2.0, lead_numerator=0.02, lead_denominator=0.002).limit
+    48.0
+
+    Parameters
+    ----------
+    gain: Voltage per error of the input angle, at rest [V/rad], in [0, inf); default 1.0
+    lead_numerator: Time constant a_1 [s], in [0, inf); default 0.05
+    lead_denominator: Time constant b_1 [s], in (0, inf); default 0.005
+    lag_numerator: Time constant a_2 [s], in [0, inf); default 1.0
+    lag_denominator: Time constant b_2 [s], in (0, inf); default 1.0
+    limit: Largest voltage, of either sign [V], in (0, inf); default 48.0
+    feedback: The shaft whose encoder the loop closes on, one of ('input', 'output'); default 'input'
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    FranklinPowellEmamiNaeini2002, section 6.7
+    """
+
+    def __init__(self, *, gain: float = ..., lead_numerator: float = ..., lead_denominator: float = ..., lag_numerator: float = ..., lag_denominator: float = ..., limit: float = ..., feedback: str = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, gain: float = ..., lead_numerator: float = ..., lead_denominator: float = ..., lag_numerator: float = ..., lag_denominator: float = ..., limit: float = ..., feedback: str = ...) -> LeadLag:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def gain(self) -> float:
+        """Voltage per error of the input angle, at rest [V/rad]"""
+
+    @property
+    def lead_numerator(self) -> float:
+        """Time constant a_1 [s]"""
+
+    @property
+    def lead_denominator(self) -> float:
+        """Time constant b_1 [s]"""
+
+    @property
+    def lag_numerator(self) -> float:
+        """Time constant a_2 [s]"""
+
+    @property
+    def lag_denominator(self) -> float:
+        """Time constant b_2 [s]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest voltage, of either sign [V]"""
+
+    @property
+    def feedback(self) -> str:
+        """The shaft whose encoder the loop closes on"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'lead_lag'
+
+    source: str = 'FranklinPowellEmamiNaeini2002, section 6.7'
+
+    fields: tuple[dict[str, Any], ...]
+
+class StateFeedback:
+    """
+    Position controller that feeds back all that is measured, each with a gain of its own.
+
+    .. math:: u = \\operatorname{clip}\\big(k_1 (i r - \\theta_{in}) + k_2 (i \\dot r - \\omega_{in}) + k_3 (r - \\theta_{out})
+              + k_4 (\\dot r - \\omega_{out}) - k_5 i_m - k_6 T, \\pm u_{max}\\big)
+
+    with r the commanded output angle, i the signed ratio, i_m the current, T the torque transmitted, k_1 to k_6 = input_angle,
+    input_speed, output_angle, output_speed, current, torque, u_max = limit. ``sw.linearise`` gives the matrices from which the
+    gains follow, by placing poles or as a linear-quadratic regulator.
+
+    u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
+    read A or N.m in place of V.
+
+    >>> from strainwave.control import StateFeedback
+    >>> StateFeedback(input_angle=2.0, input_speed=0.05, torque=0.01).limit
+    48.0
+
+    Parameters
+    ----------
+    input_angle: Voltage per error k_1 of the input angle [V/rad]; default 0.0
+    input_speed: Voltage per error k_2 of the input speed [V.s/rad]; default 0.0
+    output_angle: Voltage per error k_3 of the output angle [V/rad]; default 0.0
+    output_speed: Voltage per error k_4 of the output speed [V.s/rad]; default 0.0
+    current: Voltage k_5 taken away per current [V/A]; default 0.0
+    torque: Voltage k_6 taken away per torque transmitted [V/(N.m)]; default 0.0
+    limit: Largest voltage, of either sign [V], in (0, inf); default 48.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    FranklinPowellEmamiNaeini2002, section 7.5
+    """
+
+    def __init__(self, *, input_angle: float = ..., input_speed: float = ..., output_angle: float = ..., output_speed: float = ..., current: float = ..., torque: float = ..., limit: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, input_angle: float = ..., input_speed: float = ..., output_angle: float = ..., output_speed: float = ..., current: float = ..., torque: float = ..., limit: float = ...) -> StateFeedback:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def input_angle(self) -> float:
+        """Voltage per error k_1 of the input angle [V/rad]"""
+
+    @property
+    def input_speed(self) -> float:
+        """Voltage per error k_2 of the input speed [V.s/rad]"""
+
+    @property
+    def output_angle(self) -> float:
+        """Voltage per error k_3 of the output angle [V/rad]"""
+
+    @property
+    def output_speed(self) -> float:
+        """Voltage per error k_4 of the output speed [V.s/rad]"""
+
+    @property
+    def current(self) -> float:
+        """Voltage k_5 taken away per current [V/A]"""
+
+    @property
+    def torque(self) -> float:
+        """Voltage k_6 taken away per torque transmitted [V/(N.m)]"""
+
+    @property
+    def limit(self) -> float:
+        """Largest voltage, of either sign [V]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'state_feedback'
+
+    source: str = 'FranklinPowellEmamiNaeini2002, section 7.5'
+
+    fields: tuple[dict[str, Any], ...]
+
 class Sampled:
     """
     A controller that runs in a computer: it acts at instants and holds its output between them.
@@ -175,15 +660,15 @@ class Sampled:
     AstromWittenmark1997, chapter 8: zero-order hold, integrals by forward differences
     """
 
-    def __init__(self, *, law: OpenLoop | PID = ..., period: float = ..., delay: float = ...) -> None: ...
+    def __init__(self, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., period: float = ..., delay: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: OpenLoop | PID = ..., period: float = ..., delay: float = ...) -> Sampled:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., period: float = ..., delay: float = ...) -> Sampled:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def law(self) -> OpenLoop | PID:
+    def law(self) -> OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback:
         """What is worked out at each instant"""
 
     @property

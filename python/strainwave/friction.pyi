@@ -1137,6 +1137,141 @@ class TorqueEfficiency:
 
     odd: bool = True
 
+class MixedLubrication:
+    """
+    Friction of a lubricated bearing, as that of the wave generator: boundary, mixed and hydrodynamic by one number.
+
+    .. math:: F = p \\left[F_c + (F_s - F_c) e^{-h^2}\\right] \\operatorname{sgn} v + b\\, \\eta\\, v \\quad (v \\ne 0), \\qquad
+              |F| \\le p F_s \\quad (v = 0), \\\\
+              h = \\frac{\\eta |v|}{v_s\\, p}, \\qquad \\eta = e^{-\\beta (T - T_0)}, \\qquad p = 1 + s\\,|T_{load}|
+
+    with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous, beta =
+    viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque transmitted. eta is
+    the viscosity, p the load on the bearing, both relative to T_0 and no load. The speed at which the lubricant carries grows
+    as the load grows and as the lubricant thins: h is the number of Hersey. Warm oil lowers the viscous part, and lets dry
+    friction last to higher speeds: one cause, opposite signs, as ``Thermal`` around ``Stribeck`` does not have it.
+
+    >>> from strainwave.friction import MixedLubrication
+    >>> law = MixedLubrication(coulomb=0.02, breakaway=0.05, stribeck_speed=5.0, viscous=1e-3, viscosity_fall=0.03)
+    >>> cold, warm = (float(law.steady(speed, temperature=333.15)) > float(law.steady(speed)) for speed in (5.0, 100.0))
+    >>> cold, warm  # warm oil: more friction at 5 rad/s, less at 100
+    (True, False)
+
+    Parameters
+    ----------
+    coulomb: Friction torque F_c of a full film, without its viscous part [N.m], in [0, inf); required
+    breakaway: Static friction torque F_s [N.m], in [0, inf); required
+    stribeck_speed: Speed v_s at which the excess has fallen to 1/e, at T_0 without load [rad/s], in (0, inf); required
+    viscous: Torque per speed at T_0 [N.m.s/rad], in [0, inf); default 0.0
+    viscosity_fall: Relative fall beta of the viscosity per kelvin [1/K], in [0, inf); default 0.0
+    load_sensitivity: Rise s of the load on the bearing with the torque transmitted [1/(N.m)], in [0, inf); default 0.0
+    reference_temperature: Temperature T_0 at which the numbers hold [K], in (0, inf); default 293.15
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    Stribeck1902: friction over viscosity times speed per load (Hersey1914); that its curve is this one, and how load and temperature enter, is assumed
+    """
+
+    def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, viscous: float = ..., viscosity_fall: float = ..., load_sensitivity: float = ..., reference_temperature: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous: float = ..., viscosity_fall: float = ..., load_sensitivity: float = ..., reference_temperature: float = ...) -> MixedLubrication:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def coulomb(self) -> float:
+        """Friction torque F_c of a full film, without its viscous part [N.m]"""
+
+    @property
+    def breakaway(self) -> float:
+        """Static friction torque F_s [N.m]"""
+
+    @property
+    def stribeck_speed(self) -> float:
+        """
+        Speed v_s at which the excess has fallen to 1/e, at T_0 without load [rad/s]
+        """
+
+    @property
+    def viscous(self) -> float:
+        """Torque per speed at T_0 [N.m.s/rad]"""
+
+    @property
+    def viscosity_fall(self) -> float:
+        """Relative fall beta of the viscosity per kelvin [1/K]"""
+
+    @property
+    def load_sensitivity(self) -> float:
+        """
+        Rise s of the load on the bearing with the torque transmitted [1/(N.m)]
+        """
+
+    @property
+    def reference_temperature(self) -> float:
+        """Temperature T_0 at which the numbers hold [K]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'mixed_lubrication'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
 class Cyclic:
     """
     Friction that varies with the angle, as the wave generator's contacts do over its turn.
@@ -1172,15 +1307,15 @@ class Cyclic:
     document R, section 2, cyclic part of the friction torque; erratum E-R7
     """
 
-    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
+    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Cyclic:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Cyclic:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency:
+    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication:
         """The friction that varies"""
 
     @property
@@ -1323,15 +1458,15 @@ class Thermal:
     exponential fall of lubricant viscosity with temperature (Reynolds1886); rates: the user's
     """
 
-    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> None: ...
+    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> Thermal:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> Thermal:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | Cyclic:
+    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication | Cyclic:
         """The friction at the reference temperature"""
 
     @property

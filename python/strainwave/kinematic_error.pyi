@@ -406,4 +406,4 @@ class Stochastic:
 
     @property
     def active(self) -> bool:
-        """Whether there is any."""
+        """Whether it makes any difference."""

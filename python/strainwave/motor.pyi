@@ -7,12 +7,15 @@ class DC:
     """
     Armature-controlled DC motor.
 
-    .. math:: L \\dot i = u - R i - K_b \\omega, \\qquad \\tau = K_m i
+    .. math:: L \\dot i = u - R i - K_b \\omega - V_b \\operatorname{sgn} i, \\qquad \\tau = K_m i, \\qquad
+              R = R_0\\,(1 + \\alpha\\,(T - 293.15\\,\\mathrm{K}))
 
-    with u the voltage, omega the input speed, R = resistance, L = inductance, K_m = torque_constant, K_b = back_emf. With
-    inductance = 0 the current follows at once, i = (u - K_b omega) / R, as document P assumes. Leaves out cogging, iron
-    losses, saturation and the warming of the winding. A motor whose current is controlled by its amplifier
-    is a CurrentSource.
+    with u the voltage, omega the input speed, T the temperature of the winding, R_0 = resistance, L = inductance,
+    K_m = torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
+    inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R, and with a brush drop no
+    current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
+    difference counts as lost, as iron losses do. Leaves out cogging, and limits of the supply: those of BrushlessDC. A
+    motor whose current is controlled by its amplifier is a CurrentSource.
 
     >>> from strainwave.motor import DC
     >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
@@ -20,11 +23,13 @@ class DC:
 
     Parameters
     ----------
-    resistance: Armature resistance R [Ohm], in (0, inf); default 1.0
+    resistance: Armature resistance R_0 at 20 degC [Ohm], in (0, inf); default 1.0
     inductance: Armature inductance L; 0 lets the current follow at once [H], in [0, inf); default 0.0
     torque_constant: Torque per current K_m [N.m/A], in [0, inf); default 0.05
     back_emf: Back-electromotive force per speed K_b [V.s/rad], in [0, inf); default 0.05
     inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
+    brush_drop: Voltage V_b that the brushes take from any current [V], in [0, inf); default 0.0
+    resistance_rise: Relative rise alpha of the resistance per kelvin [1/K], in [0, inf); default 0.0
 
     Raises
     ------
@@ -36,16 +41,16 @@ class DC:
     document P, armature equation u = R i + L di/dt + K_b omega
     """
 
-    def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ...) -> None: ...
+    def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ..., brush_drop: float = ..., resistance_rise: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ...) -> DC:
+    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., back_emf: float = ..., inertia: float = ..., brush_drop: float = ..., resistance_rise: float = ...) -> DC:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
     def resistance(self) -> float:
-        """Armature resistance R [Ohm]"""
+        """Armature resistance R_0 at 20 degC [Ohm]"""
 
     @property
     def inductance(self) -> float:
@@ -63,6 +68,14 @@ class DC:
     def inertia(self) -> float:
         """Rotor inertia [kg.m2]"""
 
+    @property
+    def brush_drop(self) -> float:
+        """Voltage V_b that the brushes take from any current [V]"""
+
+    @property
+    def resistance_rise(self) -> float:
+        """Relative rise alpha of the resistance per kelvin [1/K]"""
+
     def __repr__(self) -> str: ...
 
     def __eq__(self, other: object, /) -> bool: ...
@@ -76,6 +89,229 @@ class DC:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
     name: str = 'dc'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class BrushlessDC:
+    """
+    Brushless DC motor as the DC motor that equals it, with the limits of its amplifier.
+
+    .. math:: L \\dot i = u - R i - K \\omega, \\qquad \\tau = K i, \\qquad
+              |u| \\le U, \\quad |u - K \\omega| \\le R I
+
+    with u the voltage between the two phases that conduct, omega the input speed, R = resistance, L = inductance of those two
+    phases in series, K = torque_constant, of torque and back-EMF both, U = supply_voltage, I = current_limit. The amplifier
+    limits the voltage so that the current never exceeds I; what it can give at each instant it hands back to the controller,
+    whose integrals rest meanwhile. R rises with the temperature of the winding by resistance_rise per kelvin above 20 degC.
+    Leaves out commutation, cogging, and ripple: those of PMSM. Beyond the speed (U + R I) / K the supply cannot hold the
+    current back any more, and it exceeds I.
+
+    >>> from strainwave.motor import BrushlessDC
+    >>> BrushlessDC(supply_voltage=24.0, current_limit=5.0).supply_voltage
+    24.0
+
+    Parameters
+    ----------
+    resistance: Resistance R of two phases in series, at 20 degC [Ohm], in (0, inf); default 1.0
+    inductance: Inductance L of two phases in series [H], in (0, inf); default 0.001
+    torque_constant: Torque per current K, and voltage per speed [N.m/A], in [0, inf); default 0.05
+    inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
+    supply_voltage: Largest voltage U, of either sign [V], in (0, inf); default 48.0
+    current_limit: Largest current I, of either sign [A], in (0, inf); default 10.0
+    resistance_rise: Relative rise of the resistance per kelvin [1/K], in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document A, section Electric Motor: a brushless DC motor, simplified; the limits of amplifier and supply are ours
+    """
+
+    def __init__(self, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., resistance_rise: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., inductance: float = ..., torque_constant: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., resistance_rise: float = ...) -> BrushlessDC:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def resistance(self) -> float:
+        """Resistance R of two phases in series, at 20 degC [Ohm]"""
+
+    @property
+    def inductance(self) -> float:
+        """Inductance L of two phases in series [H]"""
+
+    @property
+    def torque_constant(self) -> float:
+        """Torque per current K, and voltage per speed [N.m/A]"""
+
+    @property
+    def inertia(self) -> float:
+        """Rotor inertia [kg.m2]"""
+
+    @property
+    def supply_voltage(self) -> float:
+        """Largest voltage U, of either sign [V]"""
+
+    @property
+    def current_limit(self) -> float:
+        """Largest current I, of either sign [A]"""
+
+    @property
+    def resistance_rise(self) -> float:
+        """Relative rise of the resistance per kelvin [1/K]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'brushless_dc'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+class PMSM:
+    """
+    Permanent-magnet synchronous motor in the frame of its rotor, with an inverter that keeps the field oriented.
+
+    .. math:: L_d \\dot i_d = u_d - R i_d + p \\omega L_q i_q, \\qquad
+              L_q \\dot i_q = u_q - R i_q - p \\omega\\,(L_d i_d + \\psi), \\\\
+              \\tau = \\tfrac{3}{2} p\\,(\\psi i_q + (L_d - L_q) i_d i_q) + \\tau_c \\sin(n \\theta)
+
+    Currents and voltages are amplitudes of a phase. omega is the input speed, theta the input angle, R = resistance, L_d, L_q =
+    direct_ and quadrature_inductance, psi = flux_linkage, p = pole_pairs, tau_c = cogging_torque, n = cogging_order. The
+    controller gives u_q. The inverter gives u_d = R i_d0 - p omega L_q i_q, so that i_d settles at i_d0 = direct_current: 0
+    for most motors, negative to gain reluctance torque where L_q exceeds L_d, or to weaken the field by hand.
+
+    The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d comes first, and u_q has what is left; u_q
+    is limited besides so that the length of the current does not exceed current_limit. What is left is handed back to the
+    controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls.
+
+    The sensors of the phase currents may be off: the controller then sees i_q + I_o sin(p theta), I_o = current_offset, and
+    makes a ripple of the torque out of it. The energy of cogging is held, not lost. R rises with the temperature of the
+    winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
+    and the switching of the inverter.
+
+    >>> from strainwave.motor import PMSM
+    >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)
+    >>> round(1.5 * motor.pole_pairs * motor.flux_linkage, 12)  # torque per current, N.m/A
+    0.21
+
+    Parameters
+    ----------
+    resistance: Resistance R of a phase, at 20 degC [Ohm], in (0, inf); default 0.5
+    direct_inductance: Inductance L_d along the magnets [H], in (0, inf); default 0.001
+    quadrature_inductance: Inductance L_q across the magnets [H], in (0, inf); default 0.001
+    flux_linkage: Amplitude psi of the flux of the magnets, linked with a phase [V.s/rad], in [0, inf); default 0.01
+    pole_pairs: Pairs p of poles, in [1, 1000]; default 4.0
+    inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
+    supply_voltage: Voltage of the direct-current supply of the inverter [V], in (0, inf); default 48.0
+    current_limit: Largest amplitude of a phase current [A], in (0, inf); default 10.0
+    direct_current: Current i_d0 along the magnets [A]; default 0.0
+    cogging_torque: Amplitude tau_c of the cogging [N.m], in [0, inf); default 0.0
+    cogging_order: Periods n of the cogging per input revolution, in [1, 10000]; default 24.0
+    current_offset: Amplitude I_o of what the current sensors show too much [A], in [0, inf); default 0.0
+    resistance_rise: Relative rise of the resistance per kelvin [1/K], in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    PillayKrishnan1989, eqs. (1)-(7), in amplitudes; limits of the inverter and their order of precedence are ours
+    """
+
+    def __init__(self, *, resistance: float = ..., direct_inductance: float = ..., quadrature_inductance: float = ..., flux_linkage: float = ..., pole_pairs: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., direct_current: float = ..., cogging_torque: float = ..., cogging_order: float = ..., current_offset: float = ..., resistance_rise: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, resistance: float = ..., direct_inductance: float = ..., quadrature_inductance: float = ..., flux_linkage: float = ..., pole_pairs: float = ..., inertia: float = ..., supply_voltage: float = ..., current_limit: float = ..., direct_current: float = ..., cogging_torque: float = ..., cogging_order: float = ..., current_offset: float = ..., resistance_rise: float = ...) -> PMSM:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def resistance(self) -> float:
+        """Resistance R of a phase, at 20 degC [Ohm]"""
+
+    @property
+    def direct_inductance(self) -> float:
+        """Inductance L_d along the magnets [H]"""
+
+    @property
+    def quadrature_inductance(self) -> float:
+        """Inductance L_q across the magnets [H]"""
+
+    @property
+    def flux_linkage(self) -> float:
+        """
+        Amplitude psi of the flux of the magnets, linked with a phase [V.s/rad]
+        """
+
+    @property
+    def pole_pairs(self) -> float:
+        """Pairs p of poles"""
+
+    @property
+    def inertia(self) -> float:
+        """Rotor inertia [kg.m2]"""
+
+    @property
+    def supply_voltage(self) -> float:
+        """Voltage of the direct-current supply of the inverter [V]"""
+
+    @property
+    def current_limit(self) -> float:
+        """Largest amplitude of a phase current [A]"""
+
+    @property
+    def direct_current(self) -> float:
+        """Current i_d0 along the magnets [A]"""
+
+    @property
+    def cogging_torque(self) -> float:
+        """Amplitude tau_c of the cogging [N.m]"""
+
+    @property
+    def cogging_order(self) -> float:
+        """Periods n of the cogging per input revolution"""
+
+    @property
+    def current_offset(self) -> float:
+        """Amplitude I_o of what the current sensors show too much [A]"""
+
+    @property
+    def resistance_rise(self) -> float:
+        """Relative rise of the resistance per kelvin [1/K]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'pmsm'
 
     source: str = ...
 
@@ -142,7 +378,8 @@ class CurrentSource:
 
     .. math:: i = u, \\qquad \\tau = K_m i
 
-    with u what the controller asks for [A], K_m = torque_constant. Leaves out that the supply limits the current as the
+    with u what the controller asks for [A], K_m = torque_constant. The resistance tells what the current loses as
+    heat, and nothing else. Leaves out that the supply limits the current as the
     speed grows.
 
     >>> from strainwave.motor import CurrentSource
@@ -153,6 +390,7 @@ class CurrentSource:
     ----------
     torque_constant: Torque per current K_m [N.m/A], in [0, inf); default 0.05
     inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
+    resistance: Resistance of the winding [Ohm], in [0, inf); default 0.0
 
     Raises
     ------
@@ -164,9 +402,9 @@ class CurrentSource:
     definition
     """
 
-    def __init__(self, *, torque_constant: float = ..., inertia: float = ...) -> None: ...
+    def __init__(self, *, torque_constant: float = ..., inertia: float = ..., resistance: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, torque_constant: float = ..., inertia: float = ...) -> CurrentSource:
+    def replace(self, changes: dict[str, Any] = ..., /, *, torque_constant: float = ..., inertia: float = ..., resistance: float = ...) -> CurrentSource:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -178,6 +416,10 @@ class CurrentSource:
     @property
     def inertia(self) -> float:
         """Rotor inertia [kg.m2]"""
+
+    @property
+    def resistance(self) -> float:
+        """Resistance of the winding [Ohm]"""
 
     def __repr__(self) -> str: ...
 

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
-from strainwave.friction import LuGre, PositionDependent
+from strainwave.friction import LuGre, MixedLubrication, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.simulation.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
@@ -90,9 +90,12 @@ def innermost(law: Any) -> Any:
 
 
 def widened(law: Any) -> Any:
-    """The same law; but for a curve over the angle that is so narrow that a single step passes it."""
+    """The same law; but for a curve over angle or speed that is so narrow that a single step passes it."""
     if isinstance(law, PositionDependent):
-        return law.replace(domain_end=max(law.domain_end, law.domain_start + 0.1))
+        begins_anew = {"quadratic": 0.0, "linear": 0.0} if law.outside == "periodic" else {}  # there the curve would jump
+        return law.replace(domain_end=max(law.domain_end, law.domain_start + 0.1), **begins_anew)
+    if isinstance(law, MixedLubrication):
+        return law.replace(stribeck_speed=max(law.stribeck_speed, 0.1))
     return law.replace(law=widened(law.law)) if hasattr(law, "law") else law
 
 

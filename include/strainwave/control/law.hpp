@@ -1,5 +1,5 @@
 #pragma once
-#include <strainwave/field.hpp>
+#include <strainwave/limits.hpp>
 
 /// What every controller is given and asked. A law of control turns a command and a measurement into the motor's actuation: its
 /// voltage, current or torque, whatever the motor takes. It has
@@ -7,6 +7,11 @@
 ///     State                                 what changes continuously; Stateless if nothing does
 ///     act(state, command, measurement)      -> actuation
 ///     rate(state, command, measurement)     -> State
+///
+/// and, where it does not act on every motor,
+///
+///     gives                                 the actuation that a motor must take, by name
+///     needs_current()                       whether it acts by the current that it measures, without delay
 ///
 /// A law that acts at instants only has besides
 ///
@@ -26,10 +31,11 @@ struct Command {
     S ratio{1.0};  ///< Signed, of the gear: input angle per output angle
 };
 
-/// What a controller knows of its drive, each number through its sensor.
+/// What a controller knows of its drive: each number through its sensor, and what its motor can follow.
 template <class S>
 struct Measurement {
     S input_angle{0.0}, input_speed{0.0}, output_angle{0.0}, output_speed{0.0}, current{0.0}, torque{0.0};
+    Limits<S> limits{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -39,6 +45,7 @@ struct Measurement {
         visit(SW_FIELD(m, output_speed, "rad/s", "Output speed"));
         visit(SW_FIELD(m, current, "A", "Motor current, under the actuation that a sampled controller holds"));
         visit(SW_FIELD(m, torque, "N.m", "Torque transmitted, at the output"));
+        visit(SW_PART(m, limits, "What the motor can follow"));
     }
 };
 
@@ -66,6 +73,28 @@ struct DiscreteOf<S, Law> {
 /// What changes at the instants of a law only; nothing, for a law that acts all the time.
 template <class S, class Law>
 using DiscreteOf = typename detail::DiscreteOf<S, Law>::type;
+
+/// What a law's motor must take, by name; nothing, if any will do.
+template <class Law>
+constexpr const char* given_by(const Law& law) {
+    if constexpr (requires { law.gives(); })
+        return law.gives();
+    else if constexpr (requires { Law::gives; })
+        return Law::gives;
+    else if constexpr (requires { law.law; })
+        return given_by(law.law);
+    else
+        return "";
+}
+
+/// Whether a law acts at once by the current it measures: then the current must not follow the actuation at once.
+template <class Law>
+constexpr bool needs_current(const Law& law) {
+    if constexpr (requires { law.needs_current(); })
+        return law.needs_current();
+    else
+        return false;
+}
 
 template <class S, class Law, class State, class Discrete>
 constexpr S actuation(const Law& law, const State& x, const Discrete& held, const Command<S>& command,

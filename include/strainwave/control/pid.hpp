@@ -25,7 +25,8 @@ struct PID {
         with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
         u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
         kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
-        error is referred to the input, so that the gains mean the same. The integral rests while the voltage is limited.
+        error is referred to the input, so that the gains mean the same. The integral rests while the voltage is limited, here
+        or by the motor.
 
         u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
         read A or N.m in place of V.
@@ -53,11 +54,13 @@ struct PID {
     };
 
     constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        return clip(unlimited(x, error(command, measured)), -limit, limit);
+        return measured.limits.within(limit).limited(unlimited(x, error(command, measured)));
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const Error now = error(command, measured);
-        return {select(abs(unlimited(x, now)) < limit, now.angle, S(0.0))};
+        const Limits<S> reach = measured.limits.within(limit);
+        const S asked = unlimited(x, now);
+        return {select((asked > reach.low) & (asked < reach.high), now.angle, S(0.0))};
     }
 
 private:

@@ -25,7 +25,7 @@ struct Inertia {
         visit(SW_FIELD(m, inertia, "kg.m2", "Inertia about the output axis", smallest));
     }
 
-    constexpr S torque(const S&) const { return S(0.0); }
+    constexpr S torque(const S&, const S&) const { return S(0.0); }
 };
 
 }  // namespace strainwave::load

@@ -1,7 +1,16 @@
 #pragma once
 #include <strainwave/field.hpp>
 
-/// What every load is asked. It has an inertia and a torque(output angle), or prescribes the motion of the output shaft.
+/// What every load is asked. It has
+///
+///     inertia                       kg.m2
+///     torque(angle, speed)          -> N.m, holding the output back
+///
+/// or prescribes the motion of the output shaft. A load names its input, unless that is a torque that adds to its own. One that
+/// holds the output shaft at rest, as a brake, has besides
+///
+///     slip(input)                   -> N.m, against slip of either sense
+///     hold(input)                   -> N.m, the most that it balances at rest
 namespace strainwave::load {
 
 /// The input of a load that names no other.
@@ -10,6 +19,10 @@ inline constexpr Field torque_input{"load_torque", "N.m", "Torque that holds the
 /// Whether a load takes the output shaft where its input says; of a choice, whether one of its loads does.
 template <class Load>
 inline constexpr bool can_prescribe = requires { Load::prescribes; };
+
+/// Whether a load brakes the output shaft; of a choice, whether one of its loads does.
+template <class Load>
+inline constexpr bool can_brake = requires(const Load& load) { load.hold(0.0); };
 
 /// kg.m2: of a shaft that no torque moves.
 inline constexpr double immovable = 1e30;
@@ -21,6 +34,37 @@ namespace strainwave {
 template <class Load>
 constexpr bool prescribes(const Load&) {
     return load::can_prescribe<Load>;
+}
+
+template <class Load>
+constexpr bool brakes(const Load&) {
+    return load::can_brake<Load>;
+}
+
+/// What a load resists slip by, and the most that it balances at rest, N.m.
+template <class S>
+struct Braking {
+    S slip{0.0}, hold{0.0};
+};
+template <class S, class Load>
+constexpr Braking<S> braking(const Load& load, const S& input) {
+    if constexpr (requires { load.braking(input); })
+        return load.braking(input);
+    else if constexpr (requires { load.hold(input); })
+        return {load.slip(input), load.hold(input)};
+    else
+        return {};
+}
+
+/// The torque [N.m] of a load, without braking, that holds the output back.
+template <class S, class Load>
+constexpr S load_torque(const Load& load, const S& angle, const S& speed, const S& input) {
+    if constexpr (requires { load.load_torque(angle, speed, input); })
+        return load.load_torque(angle, speed, input);
+    else if constexpr (requires { Load::input; })
+        return load.torque(angle, speed);
+    else
+        return load.torque(angle, speed) + input;
 }
 
 /// The inertia of a part [kg.m2].

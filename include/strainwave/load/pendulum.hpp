@@ -28,7 +28,7 @@ struct Pendulum {
         visit(SW_FIELD(m, gravity_torque, "N.m", "Weight times distance of the centre of mass", 0));
     }
 
-    constexpr S torque(const S& output_angle) const { return gravity_torque * sin(output_angle); }
+    constexpr S torque(const S& angle, const S&) const { return gravity_torque * sin(angle); }
 };
 
 }  // namespace strainwave::load

@@ -27,7 +27,7 @@ struct Prescribed {
     static constexpr Field input{"output_angle", "rad", "Angle at which the output shaft is"};
     static constexpr bool prescribes = true;
 
-    constexpr S torque(const S&) const { return S(0.0); }
+    constexpr S torque(const S&, const S&) const { return S(0.0); }
 };
 
 }  // namespace strainwave::load

@@ -1,5 +1,5 @@
 #pragma once
-#include <strainwave/field.hpp>
+#include <strainwave/motor/rotor.hpp>
 
 namespace strainwave::motor {
 
@@ -7,6 +7,7 @@ template <class S>
 struct CurrentSource {
     S torque_constant{0.05};
     S inertia{1e-5};
+    S resistance{0.0};
 
     static constexpr auto name = "current_source";
     static constexpr auto actuation = "current";
@@ -16,7 +17,8 @@ struct CurrentSource {
 
         .. math:: i = u, \qquad \tau = K_m i
 
-        with u what the controller asks for [A], K_m = torque_constant. Leaves out that the supply limits the current as the
+        with u what the controller asks for [A], K_m = torque_constant. The resistance tells what the current loses as
+        heat, and nothing else. Leaves out that the supply limits the current as the
         speed grows.
 
         >>> from strainwave.motor import CurrentSource
@@ -27,6 +29,7 @@ struct CurrentSource {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per current K_m", 0));
         visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
+        visit(SW_FIELD(m, resistance, "Ohm", "Resistance of the winding", 0));
     }
 
     using State = Stateless<S>;
@@ -39,10 +42,14 @@ struct CurrentSource {
         }
     };
 
-    constexpr S torque(const State&, const S& asked, const S&) const { return torque_constant * asked; }
-    constexpr S current(const State&, const S& asked, const S&) const { return asked; }
-    constexpr Output output(const State&, const S& asked, const S&) const { return {asked}; }
-    constexpr State rate(const State&, const S&, const S&) const { return {}; }
+    constexpr S torque(const State&, const S& asked, const Rotor<S>&) const { return torque_constant * asked; }
+    constexpr S current(const State&, const S& asked, const Rotor<S>&) const { return asked; }
+    constexpr Output output(const State&, const S& asked, const Rotor<S>&) const { return {asked}; }
+    constexpr Power<S> power(const State& x, const S& asked, const Rotor<S>& rotor) const {
+        const S lost = resistance * asked * asked;
+        return {torque(x, asked, rotor) * rotor.speed + lost, lost, S(0.0)};
+    }
+    constexpr State rate(const State&, const S&, const Rotor<S>&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-#include <strainwave/field.hpp>
-#include <strainwave/math.hpp>
+#include <strainwave/motor/rotor.hpp>
+#include <strainwave/motor/winding.hpp>
 
 namespace strainwave::motor {
 
@@ -11,6 +11,8 @@ struct DC {
     S torque_constant{0.05};
     S back_emf{0.05};
     S inertia{1e-5};
+    S brush_drop{0.0};
+    S resistance_rise{0.0};
 
     static constexpr auto name = "dc";
     static constexpr auto actuation = "voltage";
@@ -18,12 +20,15 @@ struct DC {
     static constexpr auto doc = R"(
         Armature-controlled DC motor.
 
-        .. math:: L \dot i = u - R i - K_b \omega, \qquad \tau = K_m i
+        .. math:: L \dot i = u - R i - K_b \omega - V_b \operatorname{sgn} i, \qquad \tau = K_m i, \qquad
+                  R = R_0\,(1 + \alpha\,(T - 293.15\,\mathrm{K}))
 
-        with u the voltage, omega the input speed, R = resistance, L = inductance, K_m = torque_constant, K_b = back_emf. With
-        inductance = 0 the current follows at once, i = (u - K_b omega) / R, as document P assumes. Leaves out cogging, iron
-        losses, saturation and the warming of the winding. A motor whose current is controlled by its amplifier
-        is a CurrentSource.
+        with u the voltage, omega the input speed, T the temperature of the winding, R_0 = resistance, L = inductance,
+        K_m = torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
+        inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R, and with a brush drop no
+        current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
+        difference counts as lost, as iron losses do. Leaves out cogging, and limits of the supply: those of BrushlessDC. A
+        motor whose current is controlled by its amplifier is a CurrentSource.
 
         >>> from strainwave.motor import DC
         >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
@@ -31,11 +36,19 @@ struct DC {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, resistance, "Ohm", "Armature resistance R", smallest));
+        visit(SW_FIELD(m, resistance, "Ohm", "Armature resistance R_0 at 20 degC", smallest));
         visit(SW_FIELD(m, inductance, "H", "Armature inductance L; 0 lets the current follow at once", 0));
         visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per current K_m", 0));
         visit(SW_FIELD(m, back_emf, "V.s/rad", "Back-electromotive force per speed K_b", 0));
         visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
+        visit(SW_FIELD(m, brush_drop, "V", "Voltage V_b that the brushes take from any current", 0));
+        visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise alpha of the resistance per kelvin", 0));
+    }
+
+    constexpr const char* problem() const {
+        return all((brush_drop == S(0.0)) | (inductance == S(0.0)))
+                   ? nullptr
+                   : "a brush_drop needs inductance = 0: with both, the current would stick at 0";
     }
 
     struct State {
@@ -57,38 +70,61 @@ struct DC {
         }
     };
 
-    constexpr S torque(const State& x, const S& voltage, const S& speed) const { return compile().torque(x, voltage, speed); }
-    constexpr S current(const State& x, const S& voltage, const S& speed) const { return compile().current(x, voltage, speed); }
-    constexpr Output output(const State& x, const S& voltage, const S& speed) const { return compile().output(x, voltage, speed); }
-    constexpr State rate(const State& x, const S& voltage, const S& speed) const { return compile().rate(x, voltage, speed); }
-    /// How fast the current relaxes [1/s].
-    constexpr State relaxation_rate() const { return compile().relaxation_rate(); }
-
-    /// The same motor with its divisions done.
+    /// The motor with its divisions done.
     struct Compiled {
         using State = typename DC::State;
         using Output = typename DC::Output;
-        S resistance, conductance, per_inductance, torque_constant, back_emf, inertia;
+        Winding<S> winding;
+        S per_inductance, torque_constant, back_emf, inertia, brush_drop;
+        bool has_brush_drop;
 
-        constexpr S torque(const State& x, const S& voltage, const S& speed) const {
-            return torque_constant * current(x, voltage, speed);
+        constexpr S torque(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+            return torque_constant * current(x, voltage, rotor);
         }
-        constexpr S current(const State& x, const S& voltage, const S& speed) const {
-            return select(per_inductance > S(0.0), x.current, (voltage - back_emf * speed) * conductance);
+        constexpr S current(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+            S driving = voltage - back_emf * rotor.speed;
+            if (has_brush_drop) driving = driving - clip(driving, -brush_drop, brush_drop);
+            return select(per_inductance > S(0.0), x.current, driving * winding.conductance_at(rotor.temperature));
         }
-        constexpr Output output(const State& x, const S& voltage, const S& speed) const {
-            return {current(x, voltage, speed), voltage};
+        constexpr Output output(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+            return {current(x, voltage, rotor), voltage};
         }
-        constexpr State rate(const State& x, const S& voltage, const S& speed) const {
-            return {(voltage - resistance * x.current - back_emf * speed) * per_inductance};
+        constexpr Power<S> power(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+            const S i = current(x, voltage, rotor), copper = winding.resistance_at(rotor.temperature) * i * i;
+            const S inductance = select(per_inductance > S(0.0), S(1.0) / max(per_inductance, S(smallest)), S(0.0));
+            return {voltage * i, copper + brush_drop * abs(i) + (back_emf - torque_constant) * rotor.speed * i,
+                    S(0.5) * inductance * i * i};
         }
-        constexpr State relaxation_rate() const { return {resistance * per_inductance}; }
+        constexpr State rate(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+            return {(voltage - winding.resistance_at(rotor.temperature) * x.current - back_emf * rotor.speed) * per_inductance};
+        }
+        /// How fast the current relaxes [1/s].
+        constexpr State relaxation_rate() const { return {winding.resistance * per_inductance}; }
     };
 
     constexpr Compiled compile() const {
         const S per_inductance = select(inductance > S(0.0), S(1.0) / max(inductance, S(smallest)), S(0.0));
-        return {resistance, S(1.0) / resistance, per_inductance, torque_constant, back_emf, inertia};
+        return {Winding<S>::of(resistance, resistance_rise),   per_inductance, torque_constant, back_emf, inertia, brush_drop,
+                sought(brush_drop) || any(brush_drop > S(0.0))};
     }
+
+    // The same, for a motor that is not compiled.
+    constexpr S torque(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+        return compile().torque(x, voltage, rotor);
+    }
+    constexpr S current(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+        return compile().current(x, voltage, rotor);
+    }
+    constexpr Output output(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+        return compile().output(x, voltage, rotor);
+    }
+    constexpr Power<S> power(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+        return compile().power(x, voltage, rotor);
+    }
+    constexpr State rate(const State& x, const S& voltage, const Rotor<S>& rotor) const {
+        return compile().rate(x, voltage, rotor);
+    }
+    constexpr State relaxation_rate() const { return compile().relaxation_rate(); }
 };
 
 }  // namespace strainwave::motor

@@ -1,5 +1,5 @@
 #pragma once
-#include <strainwave/field.hpp>
+#include <strainwave/motor/rotor.hpp>
 
 namespace strainwave::motor {
 
@@ -36,10 +36,13 @@ struct TorqueSource {
         }
     };
 
-    constexpr S torque(const State&, const S& asked, const S&) const { return asked; }
-    constexpr S current(const State&, const S&, const S&) const { return S(0.0); }
-    constexpr Output output(const State&, const S& asked, const S&) const { return {asked}; }
-    constexpr State rate(const State&, const S&, const S&) const { return {}; }
+    constexpr S torque(const State&, const S& asked, const Rotor<S>&) const { return asked; }
+    constexpr S current(const State&, const S&, const Rotor<S>&) const { return S(0.0); }
+    constexpr Output output(const State&, const S& asked, const Rotor<S>&) const { return {asked}; }
+    constexpr Power<S> power(const State&, const S& asked, const Rotor<S>& rotor) const {
+        return {asked * rotor.speed, S(0.0), S(0.0)};
+    }
+    constexpr State rate(const State&, const S&, const Rotor<S>&) const { return {}; }
     constexpr State relaxation_rate() const { return {}; }
 };
 

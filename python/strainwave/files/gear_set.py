@@ -17,6 +17,7 @@ from types import MappingProxyType
 from typing import Any, Protocol, TypeVar, overload, runtime_checkable
 
 from strainwave import Drive, arguments
+from strainwave import motor as motors
 from strainwave._core import Gear
 from strainwave.files import gear_file
 from strainwave.files.described import all_paths, default_of, parts
@@ -63,8 +64,8 @@ class GearSet:
         maker: who makes it
         note: what else is to be said
         ratings: what the maker allows, by name; no part of the model
-        motor, control, load, sensors: the rest of a drive, models of `sw.motor`, `sw.control` and `sw.loads`, and `sw.Sensors`;
-            None if not known
+        motor, control, load, sensors, thermal, meter: the rest of a drive, models of `sw.motor`, `sw.control`, `sw.loads`,
+            `sw.thermal` and `sw.meter`, and `sw.Sensors`; None if not known
 
     Raises:
         ValueError: a number has no source, a source has no number, or name or maker is no line of text
@@ -87,6 +88,8 @@ class GearSet:
     control: Any = None
     load: Any = None
     sensors: Any = None
+    thermal: Any = None
+    meter: Any = None
 
     def __post_init__(self) -> None:
         _check_texts(self.name, self.maker, self.note)
@@ -200,14 +203,21 @@ class GearSet:
         return dataclasses.replace(self, **changes)
 
     def with_parts(
-        self, *, source: str, motor: Any = None, control: Any = None, load: Any = None, sensors: Any = None
+        self,
+        *,
+        source: str,
+        motor: Any = None,
+        control: Any = None,
+        load: Any = None,
+        sensors: Any = None,
+        thermal: Any = None,
+        meter: Any = None,
     ) -> GearSet:
         """The same with these parts of a drive, whose numbers come from one source.
 
         Args:
             source: where they come from, one line of text; a number that equals its default says so, as in `of`
-            motor, control, load, sensors: models of `sw.motor`, `sw.control` and `sw.loads`, and `sw.Sensors`; what is not
-                given stays
+            motor, control, load, sensors, thermal, meter: as the set has them; what is not given stays
 
         >>> import strainwave as sw
         >>> disc = sw.loads.Inertia(inertia=2.0)
@@ -215,8 +225,9 @@ class GearSet:
         >>> whole.sources["motor.resistance"].source, whole.drive.load.inertia
         ('data sheet', 2.0)
         """
-        given = {"motor": motor, "control": control, "load": load, "sensors": sensors}
-        added = {name: part for name, part in given.items() if part is not None}
+        given = (motor, control, load, sensors, thermal, meter)
+        names = ("motor", "control", "load", "sensors", "thermal", "meter")
+        added = {name: part for name, part in zip(names, given, strict=True) if part is not None}
         old = tuple(f"{name}." for name in added)
         kept = {path: entry for path, entry in self.sources.items() if not path.startswith(old)}
         _drive({"gear": self.gear} | added)  # refuses what is no model of its family
@@ -365,6 +376,10 @@ def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
 def _drive(models: Mapping[str, Any]) -> Drive:
     """The drive of these models, with the default for each that is None."""
     rest = {name: models[name] for name in _PARTS if name == "gear" or models.get(name) is not None}
+    if "motor" not in rest:
+        rest["motor"] = (
+            motors.BrushlessDC()
+        )  # every controller can act on it: what it does not fit is told once the motor is known
     return Drive(**rest)
 
 

@@ -26,7 +26,7 @@ def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 
         TypeError: it is no mapping, or a value is no number
         ValueError: a quantity is not known, not finite, or not one value for each member, or they contradict each other
     """
-    prescribed = load_input(drive) != "load_torque"
+    prescribed = load_input(drive) == "output_angle"
     if initial is None and not prescribed:
         return None
     if initial is not None:

@@ -313,11 +313,11 @@ def differentiate(
     time_grid = excitation.time_grid(dt, samples, instants)
     check_resolution(drive, time_grid.longest, 0.0)
     inputs = excitation.over(time_grid)
-    with room_for("samples", len(time_grid.times), 8.0 * _core.output_count * (1 + len(numbers)), "sample less often"):
+    recorded = signals.outputs(drive)
+    with room_for("samples", len(time_grid.times), 8.0 * len(recorded) * (1 + len(numbers)), "sample less often"):
         outputs, slopes = _core.differentiate(
             drive, known(drive, initial), time_grid.instants, inputs, time_grid.samples[1:], list(numbers)
         )
-    recorded = signals.outputs(drive)
     channels = [each.channel for each in recorded.values()]
     return recording(drive, time_grid, recorded, outputs[channels]), slopes[:, channels]
 

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, _core, arguments, meter, thermal
 from strainwave.messages import shortened
 from strainwave.simulation.memory import check_instants
 
@@ -40,16 +41,21 @@ def outputs(drive: Drive) -> Mapping[str, Output]:
     >>> "voltage" in outputs(Drive()), "voltage" in outputs(Drive(motor=motor.CurrentSource()))
     (True, False)
     """
-    return _outputs_with(drive.motor.name)
+    return _outputs_with(drive.motor.name, drive.thermal.name, drive.meter.name)
 
 
 @cache
-def _outputs_with(motor: str) -> Mapping[str, Output]:
-    """Drives differ in what their motors show; whatever its numbers, a motor shows the same."""
-    kind = _core.families["motor"][motor]
-    required = {field["name"]: field["default"] for field in kind.fields if field["required"]}
-    found = [Output(*each) for each in _core.outputs(Drive(motor=kind(**required)))]
+def _outputs_with(motor: str, thermal: str, meter: str) -> Mapping[str, Output]:
+    """Drives differ in what these parts show; whatever its numbers, a part shows the same."""
+    parts = {"motor": motor, "thermal": thermal, "meter": meter}
+    models = {family: any_of(_core.families[family][name]) for family, name in parts.items()}
+    found = [Output(*each) for each in _core.outputs(Drive(**models))]
     return MappingProxyType({each.name: each for each in found})
+
+
+def any_of(kind: Any) -> Any:
+    """A model with the numbers that stand in its description, those that must be given too."""
+    return kind(**{field["name"]: field["default"] for field in kind.fields if field["required"]})
 
 
 TWIST = outputs(Drive())["twist"].channel
@@ -126,12 +132,23 @@ def check_continuous(drive: Drive, what: str) -> None:
     """Refuses a drive that is not one system of differential equations, of which `what` is asked.
 
     Raises:
-        ValueError: its controller acts at instants only, or its load prescribes the motion of the output shaft
+        ValueError: its controller acts at instants only, its load prescribes the motion of the output shaft or brakes it, it warms
+            up, its energy is measured, or a sensor has noise
     """
     if _core.schedule(drive, drive.rest().numbers)[1] > 0.0:
         raise ValueError(
             f"{what} needs a controller that acts all the time; this one is sampled. "
             "Give drive.replace(control=drive.control.law)"
         )
-    if load_input(drive) != "load_torque":
+    if load_input(drive) == "output_angle":
         raise ValueError(f"{what} needs an output shaft that torques move; the load of this drive prescribes its motion")
+    if load_input(drive) != "load_torque":
+        raise ValueError(f"{what} needs a load that does not brake; give another load")
+    for part, kind in (("meter", meter.NoMeter), ("thermal", thermal.Isothermal)):
+        if not isinstance(getattr(drive, part), kind):
+            raise ValueError(
+                f"{what} is of no use to the {part} of a drive; give drive.replace({part}=sw.{part}.{kind.__name__}())"
+            )
+    if clocked := [name for name, _, _ in _core.state(drive)[0] if name.endswith(".clock")]:
+        sensor = clocked[0].removesuffix(".clock")
+        raise ValueError(f"{what} needs sensors without noise; {sensor} has some")

@@ -20,7 +20,7 @@ from strainwave import _core
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, catalogue, load, save
 
-from tests.strategies import drives
+from tests.strategies import drives, made
 
 ROOT = Path(__file__).resolve().parents[3]
 SHIPPED = {file.stem: file for file in (ROOT / "python" / "strainwave" / "catalogue").glob("*.toml")}
@@ -122,7 +122,7 @@ def test_a_source_may_be_named_for_a_number_a_sequence_or_a_part_and_the_longer_
             {"\x1b[2J": Entry("x")},
             ValueError,
             "x: sources name \\x1b[2J, which is no number or part of the model; near it are "
-            "gear.stiffness.k, gear.kinematics.flexspline_teeth, gear.kinematics.circular_spline_teeth",
+            "gear.stiffness.k, gear.softening.stiffness_fall, gear.softening.reference_temperature",
         ),
         ({"gear": "x"}, TypeError, "gear must have a strainwave.Entry, not 'x'"),
         (3, TypeError, 'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not 3'),
@@ -199,7 +199,9 @@ def test_a_catalogue_set_becomes_a_drive_with_the_parts_it_lacks() -> None:
 
 
 def test_a_part_of_another_family_is_refused() -> None:
-    with pytest.raises(TypeError, match=exactly("drive.motor must be one of DC, TorqueSource, CurrentSource, not 3")):
+    with pytest.raises(
+        TypeError, match=exactly("drive.motor must be one of DC, BrushlessDC, PMSM, TorqueSource, CurrentSource, not 3")
+    ):
         GearSet.read("csg-20-80").with_parts(motor=3, source="x")
 
 
@@ -248,7 +250,7 @@ def test_a_set_is_saved_under_its_own_name(tmp_path: Path) -> None:
         (
             lambda: GearSet.read("hfuc-25-100").replace(motor=3),
             TypeError,
-            "drive.motor must be one of DC, TorqueSource, CurrentSource, not 3",
+            "drive.motor must be one of DC, BrushlessDC, PMSM, TorqueSource, CurrentSource, not 3",
         ),
         (
             lambda: GearSet.read("hfuc-25-100").replace(ratings={"peak_torque": 4.0}),
@@ -288,7 +290,7 @@ def test_the_uncertainty_of_a_temperature_is_a_difference() -> None:
 def whole_set() -> GearSet:
     """A set that has every member."""
     drive = sw.Drive(gear=load("csg-20-80"), control=sw.control.OpenLoop(gain=2.0), load=sw.loads.Inertia(inertia=3.0))
-    drive = drive.replace(sensors=sw.Sensors(torque=sw.sensor.FirstOrder(time_constant=1e-3)))
+    drive = drive.replace(sensors=sw.Sensors(torque=sw.sensor.FirstOrder(time_constant=1e-3)), thermal=made(sw.thermal.Heating))
     ratings = {"peak_torque": Quantity(value=1.0, unit="N.m", source="x")}
     return GearSet.of(drive, name="whole", source="x").replace(maker="x", note="x", ratings=ratings)
 
@@ -304,9 +306,10 @@ def changed(gear_set: GearSet, member: str) -> dict[str, Any]:
         "control": sw.control.OpenLoop(gain=3.0),
         "load": sw.loads.Inertia(inertia=4.0),
     }
-    if member == "sensors":  # ideal ones have no numbers, and so no sources
-        sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith("sensors.")}
-        return {"sensors": sw.Sensors(), "sources": sources}
+    without_numbers = {"sensors": sw.Sensors(), "thermal": sw.thermal.Isothermal(), "meter": sw.meter.EnergyMeter()}
+    if member in without_numbers:  # and so without sources
+        sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith(f"{member}.")}
+        return {member: without_numbers[member], "sources": sources}
     return {member: others.get(member, "other")}
 
 

@@ -262,7 +262,9 @@ def test_steps_by_hand_are_the_steps_of_a_run() -> None:
     state = STICKING.rest()
     for _ in range(200):
         state = STICKING.step(state, command=0.02, dt=DT)
-    by_hand = _core.now(STICKING, state.numbers, Excitation(HELD).first())[:, 0]
+    by_hand = _core.now(STICKING, state.numbers, Excitation(HELD).first())[
+        [each.channel for each in outputs(STICKING).values()], 0
+    ]
     run = sw.simulate(STICKING, sw.scenario.constant(0.02, 200 * DT), DT)
     assert by_hand == pytest.approx([run[name][-1] for name in COLUMNS], rel=1e-12)
 

@@ -24,6 +24,7 @@ HOLDING = {
     "load_dependent": sw.friction.LoadDependent(
         driving_forward=1.5, driving_reverse=1.5, backdriving_forward=1.5, backdriving_reverse=1.5
     ),
+    "mixed_lubrication": sw.friction.MixedLubrication(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, load_sensitivity=0.1),
     "cyclic": sw.friction.Cyclic(law=COULOMB, order=[2.0], amplitude=[0.2], phase=[0.3]),
     "thermal": sw.friction.Thermal(law=COULOMB, dry_fall=0.01, reference_temperature=300.0),
 }  # of the input's scale

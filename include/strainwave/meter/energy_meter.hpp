@@ -1,0 +1,66 @@
+#pragma once
+#include <strainwave/meter/meter.hpp>
+
+namespace strainwave::meter {
+
+template <class S>
+struct EnergyMeter {
+    static constexpr auto name = "energy";
+    static constexpr auto source = "definition; the balance is that of GoldsteinPooleSafko2002, section 1.3";
+    static constexpr auto doc = R"(
+        Powers and energies of a drive, as outputs of its runs.
+
+        .. math:: E_{supplied} = \sum_{places} E_{lost} + E_{load} + \Delta E_{stored}
+
+        Each energy is the integral of its power since the start of the run. Lost are those of the motor, of friction at the three
+        places, of damping, and of hysteresis; stored are those of both shafts, of the spring and of the motor, which a run
+        may begin with. Hysteresis and bristles of friction give part of what they take back: over a cycle what they took
+        is lost. What a brake takes counts to the load. The balance is as exact as the steps are; a random kinematic error whose
+        amplitude changes with load or speed does work besides, which no place takes.
+
+        >>> import strainwave as sw
+        >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01), meter=sw.meter.EnergyMeter())
+        >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
+        >>> float(run["energy_supplied"][-1]) > float(run["energy_motor"][-1]) > 0.0
+        True)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    struct State {
+        S supplied{0.0}, motor{0.0}, friction_input{0.0}, friction_mesh{0.0}, friction_output{0.0}, damping{0.0}, hysteresis{0.0},
+            softening{0.0}, load{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, supplied, "J", "Energy that the motor has taken from its supply"));
+            visit(SW_FIELD(m, motor, "J", "Energy that the motor has lost"));
+            visit(SW_FIELD(m, friction_input, "J", "Energy that friction at the input has taken"));
+            visit(SW_FIELD(m, friction_mesh, "J", "Energy that friction of the mesh has taken"));
+            visit(SW_FIELD(m, friction_output, "J", "Energy that friction at the output has taken"));
+            visit(SW_FIELD(m, damping, "J", "Energy that the damping of the gear has taken"));
+            visit(SW_FIELD(m, hysteresis, "J", "Energy that the hysteresis has taken, and not given back"));
+            visit(SW_FIELD(m, softening, "J", "Elastic energy that has turned to heat as the gear warmed up"));
+            visit(SW_FIELD(m, load, "J", "Energy that the load has taken"));
+        }
+    };
+
+    struct Output {
+        Powers<S> power;
+        State energy;
+        Stored<S> stored;
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_PART(m, power, "Powers"));
+            visit(SW_PART(m, energy, "Energies since the start"));
+            visit(SW_PART(m, stored, "Energies held"));
+        }
+    };
+    static constexpr bool active() { return true; }
+
+    constexpr State rate(const Powers<S>& power) const { return shaped<State>(flattened<S>(power)); }
+    constexpr Output output(const State& x, const Powers<S>& power, const Stored<S>& stored) const { return {power, x, stored}; }
+};
+
+}  // namespace strainwave::meter

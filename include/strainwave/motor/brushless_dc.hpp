@@ -1,0 +1,92 @@
+#pragma once
+#include <strainwave/motor/rotor.hpp>
+#include <strainwave/motor/winding.hpp>
+
+namespace strainwave::motor {
+
+template <class S>
+struct BrushlessDC {
+    S resistance{1.0};
+    S inductance{1e-3};
+    S torque_constant{0.05};
+    S inertia{1e-5};
+    S supply_voltage{48.0};
+    S current_limit{10.0};
+    S resistance_rise{0.0};
+
+    static constexpr auto name = "brushless_dc";
+    static constexpr auto actuation = "voltage";
+    static constexpr auto source =
+        "document A, section Electric Motor: a brushless DC motor, simplified; the limits of amplifier and supply are ours";
+    static constexpr auto doc = R"(
+        Brushless DC motor as the DC motor that equals it, with the limits of its amplifier.
+
+        .. math:: L \dot i = u - R i - K \omega, \qquad \tau = K i, \qquad
+                  |u| \le U, \quad |u - K \omega| \le R I
+
+        with u the voltage between the two phases that conduct, omega the input speed, R = resistance, L = inductance of those two
+        phases in series, K = torque_constant, of torque and back-EMF both, U = supply_voltage, I = current_limit. The amplifier
+        limits the voltage so that the current never exceeds I; what it can give at each instant it hands back to the controller,
+        whose integrals rest meanwhile. R rises with the temperature of the winding by resistance_rise per kelvin above 20 degC.
+        Leaves out commutation, cogging, and ripple: those of PMSM. Beyond the speed (U + R I) / K the supply cannot hold the
+        current back any more, and it exceeds I.
+
+        >>> from strainwave.motor import BrushlessDC
+        >>> BrushlessDC(supply_voltage=24.0, current_limit=5.0).supply_voltage
+        24.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, resistance, "Ohm", "Resistance R of two phases in series, at 20 degC", smallest));
+        visit(SW_FIELD(m, inductance, "H", "Inductance L of two phases in series", smallest));
+        visit(SW_FIELD(m, torque_constant, "N.m/A", "Torque per current K, and voltage per speed", 0));
+        visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
+        visit(SW_FIELD(m, supply_voltage, "V", "Largest voltage U, of either sign", smallest));
+        visit(SW_FIELD(m, current_limit, "A", "Largest current I, of either sign", smallest));
+        visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
+    }
+
+    struct State {
+        S current{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, current, "A", "Motor current"));
+        }
+    };
+
+    struct Output {
+        S current, voltage;
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, current, "A", "Motor current"));
+            visit(SW_FIELD(m, voltage, "V", "Motor voltage, as the amplifier limits it"));
+        }
+    };
+
+    constexpr S torque(const State& x, const S&, const Rotor<S>&) const { return torque_constant * x.current; }
+    constexpr S current(const State& x, const S&, const Rotor<S>&) const { return x.current; }
+    constexpr Limits<S> limits(const State&, const Rotor<S>& rotor) const {
+        const S induced = torque_constant * rotor.speed, most = winding().resistance_at(rotor.temperature) * current_limit;
+        return {max(induced - most, -supply_voltage), min(induced + most, supply_voltage)};
+    }
+    constexpr Output output(const State& x, const S& asked, const Rotor<S>& rotor) const {
+        return {x.current, limits(x, rotor).limited(asked)};
+    }
+    constexpr Power<S> power(const State& x, const S& asked, const Rotor<S>& rotor) const {
+        const S i = x.current;
+        return {limits(x, rotor).limited(asked) * i, winding().resistance_at(rotor.temperature) * i * i,
+                S(0.5) * inductance * i * i};
+    }
+    constexpr State rate(const State& x, const S& asked, const Rotor<S>& rotor) const {
+        const S voltage = limits(x, rotor).limited(asked), resistance_now = winding().resistance_at(rotor.temperature);
+        return {(voltage - resistance_now * x.current - torque_constant * rotor.speed) / inductance};
+    }
+    constexpr State relaxation_rate() const { return {resistance / inductance}; }
+
+private:
+    constexpr Winding<S> winding() const { return Winding<S>::of(resistance, resistance_rise); }
+};
+
+}  // namespace strainwave::motor

@@ -1,0 +1,144 @@
+#pragma once
+#include <strainwave/motor/rotor.hpp>
+#include <strainwave/motor/winding.hpp>
+
+namespace strainwave::motor {
+
+template <class S>
+struct PMSM {
+    S resistance{0.5};
+    S direct_inductance{1e-3};
+    S quadrature_inductance{1e-3};
+    S flux_linkage{0.01};
+    S pole_pairs{4.0};
+    S inertia{1e-5};
+    S supply_voltage{48.0};
+    S current_limit{10.0};
+    S direct_current{0.0};
+    S cogging_torque{0.0};
+    S cogging_order{24.0};
+    S current_offset{0.0};
+    S resistance_rise{0.0};
+
+    static constexpr auto name = "pmsm";
+    static constexpr auto actuation = "voltage";
+    static constexpr auto source =
+        "PillayKrishnan1989, eqs. (1)-(7), in amplitudes; limits of the inverter and their order of precedence are ours";
+    static constexpr auto doc = R"(
+        Permanent-magnet synchronous motor in the frame of its rotor, with an inverter that keeps the field oriented.
+
+        .. math:: L_d \dot i_d = u_d - R i_d + p \omega L_q i_q, \qquad
+                  L_q \dot i_q = u_q - R i_q - p \omega\,(L_d i_d + \psi), \\
+                  \tau = \tfrac{3}{2} p\,(\psi i_q + (L_d - L_q) i_d i_q) + \tau_c \sin(n \theta)
+
+        Currents and voltages are amplitudes of a phase. omega is the input speed, theta the input angle, R = resistance, L_d, L_q =
+        direct_ and quadrature_inductance, psi = flux_linkage, p = pole_pairs, tau_c = cogging_torque, n = cogging_order. The
+        controller gives u_q. The inverter gives u_d = R i_d0 - p omega L_q i_q, so that i_d settles at i_d0 = direct_current: 0
+        for most motors, negative to gain reluctance torque where L_q exceeds L_d, or to weaken the field by hand.
+
+        The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d comes first, and u_q has what is left; u_q
+        is limited besides so that the length of the current does not exceed current_limit. What is left is handed back to the
+        controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls.
+
+        The sensors of the phase currents may be off: the controller then sees i_q + I_o sin(p theta), I_o = current_offset, and
+        makes a ripple of the torque out of it. The energy of cogging is held, not lost. R rises with the temperature of the
+        winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
+        and the switching of the inverter.
+
+        >>> from strainwave.motor import PMSM
+        >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)
+        >>> round(1.5 * motor.pole_pairs * motor.flux_linkage, 12)  # torque per current, N.m/A
+        0.21)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, resistance, "Ohm", "Resistance R of a phase, at 20 degC", smallest));
+        visit(SW_FIELD(m, direct_inductance, "H", "Inductance L_d along the magnets", smallest));
+        visit(SW_FIELD(m, quadrature_inductance, "H", "Inductance L_q across the magnets", smallest));
+        visit(SW_FIELD(m, flux_linkage, "V.s/rad", "Amplitude psi of the flux of the magnets, linked with a phase", 0));
+        visit(SW_FIELD(m, pole_pairs, "1", "Pairs p of poles", 1, 1000, true));
+        visit(SW_FIELD(m, inertia, "kg.m2", "Rotor inertia", 0));
+        visit(SW_FIELD(m, supply_voltage, "V", "Voltage of the direct-current supply of the inverter", smallest));
+        visit(SW_FIELD(m, current_limit, "A", "Largest amplitude of a phase current", smallest));
+        visit(SW_FIELD(m, direct_current, "A", "Current i_d0 along the magnets"));
+        visit(SW_FIELD(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
+        visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
+        visit(SW_FIELD(m, current_offset, "A", "Amplitude I_o of what the current sensors show too much", 0));
+        visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
+    }
+
+    constexpr const char* problem() const {
+        return all(abs(direct_current) < current_limit) ? nullptr : "direct_current must lie within current_limit";
+    }
+
+    struct State {
+        S quadrature_current{0.0}, direct_current{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, quadrature_current, "A", "Current i_q across the magnets, which makes the torque"));
+            visit(SW_FIELD(m, direct_current, "A", "Current i_d along the magnets"));
+        }
+    };
+
+    struct Output {
+        S current, voltage, direct_current, direct_voltage;
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, current, "A", "Current i_q across the magnets, which makes the torque"));
+            visit(SW_FIELD(m, voltage, "V", "Voltage u_q across the magnets, as the inverter limits it"));
+            visit(SW_FIELD(m, direct_current, "A", "Current i_d along the magnets"));
+            visit(SW_FIELD(m, direct_voltage, "V", "Voltage u_d along the magnets"));
+        }
+    };
+
+    constexpr S torque(const State& x, const S&, const Rotor<S>& rotor) const {
+        const S saliency = (direct_inductance - quadrature_inductance) * x.direct_current;
+        const S electric = S(1.5) * pole_pairs * (flux_linkage + saliency) * x.quadrature_current;
+        return electric + cogging_torque * sin(cogging_order * rotor.angle.within);
+    }
+    constexpr S current(const State& x, const S&, const Rotor<S>& rotor) const {
+        return x.quadrature_current + current_offset * sin(pole_pairs * rotor.angle.within);
+    }
+    constexpr Limits<S> limits(const State& x, const Rotor<S>& rotor) const {
+        const S direct = direct_voltage(x, rotor), reach = sqrt(max(length() * length() - direct * direct, S(smallest)));
+        const S others = current_limit * current_limit - x.direct_current * x.direct_current;
+        const S most = winding().resistance_at(rotor.temperature) * sqrt(max(others, S(smallest))), induced = back_emf(x, rotor);
+        return {max(induced - most, -reach), min(induced + most, reach)};
+    }
+    constexpr Output output(const State& x, const S& asked, const Rotor<S>& rotor) const {
+        return {x.quadrature_current, limits(x, rotor).limited(asked), x.direct_current, direct_voltage(x, rotor)};
+    }
+    constexpr Power<S> power(const State& x, const S& asked, const Rotor<S>& rotor) const {
+        const S i_q = x.quadrature_current, i_d = x.direct_current;
+        const S supplied = limits(x, rotor).limited(asked) * i_q + direct_voltage(x, rotor) * i_d;
+        const S lost = winding().resistance_at(rotor.temperature) * (i_q * i_q + i_d * i_d);
+        const S magnetic = S(0.75) * (quadrature_inductance * i_q * i_q + direct_inductance * i_d * i_d);
+        const S cogging = cogging_torque / cogging_order * cos(cogging_order * rotor.angle.within);
+        return {S(1.5) * supplied, S(1.5) * lost, magnetic + cogging};
+    }
+    constexpr State rate(const State& x, const S& asked, const Rotor<S>& rotor) const {
+        const S resistance_now = winding().resistance_at(rotor.temperature);
+        const S across = limits(x, rotor).limited(asked) - resistance_now * x.quadrature_current - back_emf(x, rotor);
+        const S along = direct_voltage(x, rotor) - resistance_now * x.direct_current +
+                        pole_pairs * rotor.speed * quadrature_inductance * x.quadrature_current;
+        return {across / quadrature_inductance, along / direct_inductance};
+    }
+    constexpr State relaxation_rate() const { return {resistance / quadrature_inductance, resistance / direct_inductance}; }
+
+private:
+    constexpr Winding<S> winding() const { return Winding<S>::of(resistance, resistance_rise); }
+    /// The longest voltage that the inverter can give, V.
+    constexpr S length() const { return supply_voltage * S(0.57735026918962576); }
+    constexpr S back_emf(const State& x, const Rotor<S>& rotor) const {
+        return pole_pairs * rotor.speed * (direct_inductance * x.direct_current + flux_linkage);
+    }
+    constexpr S direct_voltage(const State& x, const Rotor<S>& rotor) const {
+        const S wanted = winding().resistance_at(rotor.temperature) * direct_current -
+                         pole_pairs * rotor.speed * quadrature_inductance * x.quadrature_current;
+        return clip(wanted, -length(), length());
+    }
+};
+
+}  // namespace strainwave::motor

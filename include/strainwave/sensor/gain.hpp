@@ -1,0 +1,38 @@
+#pragma once
+#include <strainwave/field.hpp>
+
+namespace strainwave::sensor {
+
+template <class S>
+struct Gain {
+    S gain{1.0};
+    S offset{0.0};
+
+    static constexpr auto name = "gain";
+    static constexpr auto source = "definition; document A takes current sensors of order zero";
+    static constexpr auto doc = R"(
+        A sensor that shows too much or too little, at once.
+
+        .. math:: y = g x + y_0
+
+        with g = gain, y_0 = offset.
+
+        >>> from strainwave.sensor import Gain
+        >>> Gain(gain=1.02, offset=0.05).gain
+        1.02)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, gain, "1", "What it shows per what there is"));
+        visit(SW_FIELD(m, offset, "1", "What it shows where there is nothing, in the unit of what it measures"));
+    }
+
+    using State = Stateless<S>;
+
+    constexpr S shown(const State&, const S& value) const { return gain * value + offset; }
+    constexpr State rate(const State&, const S&) const { return {}; }
+    constexpr State relaxation_rate() const { return {}; }
+    constexpr State settled(const S&) const { return {}; }
+};
+
+}  // namespace strainwave::sensor

@@ -1,0 +1,88 @@
+#pragma once
+#include <strainwave/compiled.hpp>
+#include <strainwave/random.hpp>
+#include <strainwave/sensor/ideal.hpp>
+#include <strainwave/sensor/nested.hpp>
+
+namespace strainwave::sensor {
+
+template <class S, class Law_ = Ideal<S>>
+struct Noisy {
+    using Law = Law_;
+
+    Law law{};
+    S amplitude{0.0};
+    S bandwidth{1000.0};
+    S seed{0.0};
+
+    static constexpr auto name = "noisy";
+    static constexpr auto source = "spectral representation: ShinozukaDeodatis1991; random numbers: WichmannHill1982";
+    static constexpr auto doc = R"(
+        A sensor with noise: a flat spectrum up to a bandwidth, the same for the same seed.
+
+        .. math:: y = x + A \sqrt{\frac{2}{N}} \sum_{k=1}^{N} \cos(2 \pi f_k t + \varphi_k)
+
+        with x what the law shows, t the time since the start of the run, A = amplitude. The band from 0 to bandwidth has N = 32
+        equal cells; each holds one frequency f_k, its place in the cell and its phase phi_k drawn by ``seed``. A smooth function of
+        time: no step length and no method changes it. Its values are close to Gaussian, and of a controller that samples
+        slower than twice the bandwidth close to independent. Steps must resolve the bandwidth. Sensors that are to differ
+        need different seeds.
+
+        >>> from strainwave.sensor import FirstOrder, Noisy
+        >>> Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.02, bandwidth=500.0, seed=7).amplitude
+        0.02)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, law, "The sensor without noise"));
+        visit(SW_REQUIRED(m, amplitude, "1", "Root mean square A, in the unit of what it measures", 0));
+        visit(SW_FIELD(m, bandwidth, "Hz", "Highest frequency of the noise", smallest));
+        visit(SW_FIELD(m, seed, "1", "Whole number that says which of all such noises it is", 0, 16777215, true));
+    }
+
+    struct State {
+        S clock{0.0};
+        Numbers<S, Law> own{};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, clock, "s", "Time since the start"));
+            visit(SW_FIELD(m, own, "1", "State of the sensor without noise"));
+        }
+    };
+
+    /// The same with its frequencies and phases drawn.
+    struct Compiled {
+        using Inner = decltype(compiled(Law{}));
+        using State = typename Noisy<S, Inner>::State;
+        Inner law{};
+        S weight{0.0};
+        Spectrum<S> spectrum{};
+
+        constexpr State initial_state() const { return {}; }
+        constexpr S shown(const State& x, const S& value) const {
+            S sum{0.0};
+            for (int k = 0; k < Spectrum<S>::waves; ++k) {
+                const S turned = spectrum.order[k] * x.clock;
+                sum = sum + cos(S(2.0 * pi) * (turned - rint(turned)) + spectrum.phase[k]);
+            }
+            return law.shown(state(law, x.own), value) + weight * sum;
+        }
+        constexpr State rate(const State& x, const S& value) const {
+            return {S(1.0), numbers<S, Inner>(law.rate(state(law, x.own), value))};
+        }
+        constexpr State relaxation_rate() const { return {S(0.0), numbers<S, Inner>(law.relaxation_rate())}; }
+        constexpr State settled(const S& value) const { return {S(0.0), numbers<S, Inner>(law.settled(value))}; }
+    };
+    constexpr Compiled compile() const {
+        return {compiled(law), S(Spectrum<S>::weight) * amplitude, Spectrum<S>::drawn(S(0.0), bandwidth, seed)};
+    }
+
+    constexpr State initial_state() const { return {}; }
+    constexpr S shown(const State& x, const S& value) const { return compile().shown(x, value); }
+    constexpr State rate(const State& x, const S& value) const { return compile().rate(x, value); }
+    constexpr State relaxation_rate() const { return compile().relaxation_rate(); }
+    constexpr State settled(const S& value) const { return compile().settled(value); }
+};
+
+}  // namespace strainwave::sensor

@@ -1,0 +1,49 @@
+#pragma once
+#include <strainwave/field.hpp>
+
+namespace strainwave::sensor {
+
+template <class S>
+struct SecondOrder {
+    S natural_frequency{1000.0};
+    S damping_ratio{0.7};
+
+    static constexpr auto name = "second_order";
+    static constexpr auto source = "definition; document A takes position sensors of second order";
+    static constexpr auto doc = R"(
+        A sensor that follows like a damped oscillator.
+
+        .. math:: \ddot y = \omega_0^2\,(x - y) - 2 \zeta \omega_0 \dot y
+
+        with omega_0 = natural_frequency, zeta = damping_ratio. Behind a steady motion it stays back by 2 zeta / omega_0 seconds.
+        At the start of a run it has settled. Steps must follow omega_0.
+
+        >>> from strainwave.sensor import SecondOrder
+        >>> SecondOrder(natural_frequency=1200.0).damping_ratio
+        0.7)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_REQUIRED(m, natural_frequency, "rad/s", "Natural frequency omega_0", smallest));
+        visit(SW_FIELD(m, damping_ratio, "1", "Damping ratio zeta", 0));
+    }
+
+    struct State {
+        S shown{0.0}, rate{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, shown, "1", "What it shows, in the unit of what it measures"));
+            visit(SW_FIELD(m, rate, "1/s", "Its rate"));
+        }
+    };
+
+    constexpr S shown(const State& x, const S&) const { return x.shown; }
+    constexpr State rate(const State& x, const S& value) const {
+        return {x.rate, natural_frequency * (natural_frequency * (value - x.shown) - S(2.0) * damping_ratio * x.rate)};
+    }
+    constexpr State relaxation_rate() const { return {S(0.0), S(2.0) * damping_ratio * natural_frequency}; }
+    constexpr State settled(const S& value) const { return {value, S(0.0)}; }
+};
+
+}  // namespace strainwave::sensor

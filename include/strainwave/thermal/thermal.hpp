@@ -1,0 +1,26 @@
+#pragma once
+
+/// What every model of the temperatures of a drive is asked. It has
+///
+///     State, Output                    what changes continuously, and what it shows in recordings
+///     active()                         whether it takes heat: else nobody works out how much there is
+///     at(state, ambient)               -> Temperatures
+///     rate(state, heat, ambient)       -> State
+///     gear_rate(rate, ambient_rate)    -> K/s, how fast the gear warms up
+///     output(state, ambient)           -> Output
+///
+/// The temperature that a run gives is the ambient one.
+namespace strainwave::thermal {
+
+template <class S>
+struct Temperatures {
+    S winding, gear;  ///< K
+};
+
+/// What warms the bodies, W.
+template <class S>
+struct Heat {
+    S winding, gear;
+};
+
+}  // namespace strainwave::thermal
