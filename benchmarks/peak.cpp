@@ -62,7 +62,8 @@ using S = counting::Counted;
 auto reference_drive() {
     Drive<S, control::PID<S>, motor::DC<S>,
           Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>, stiffness::Cubic<S>,
-               hysteresis::MaxwellSlip<S>, friction::LuGre<S>, friction::Viscous<S>, friction::Viscous<S>>,
+               hysteresis::MaxwellSlip<S>, friction::LuGre<S>, friction::Viscous<S>, friction::Viscous<S>,
+               softening::ThermalSoftening<S>>,
           load::Pendulum<S>, Sensors<S, sensor::Ideal<S>>>
         drive{};
 #include "reference_drive.inc"  // its numbers, written by peak.py
@@ -77,7 +78,7 @@ double operations_of_a_step() {
     const auto input = [](double t) {
         const double w = 2.0 * pi * COMMAND_FREQUENCY;
         const double angle = COMMAND_SLOPE * t + COMMAND_AMPLITUDE * std::sin(w * t);
-        return Input<S>{angle, COMMAND_SLOPE + COMMAND_AMPLITUDE * w * std::cos(w * t), 0.0, 293.15};
+        return Input<S>{angle, COMMAND_SLOPE + COMMAND_AMPLITUDE * w * std::cos(w * t)};
     };
     auto at = drive.evaluate(drive.rest(), input(0.0));
     counting::operations = 0;

@@ -39,12 +39,12 @@ struct Short<most, Layers<Pack<n>, Law, Modulator...>> : Short<most, Law> {};
 template <class Drive>
 struct ShortDriveOf;
 template <class S, class Control, class Motor, class Kinematics, class Error, class Noise, class Stiffness, class Hysteresis,
-          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Load, class Sensors_, class Thermal,
-          class Meter>
+          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Load, class Sensors_,
+          class ThermalModel, class Meter>
 struct ShortDriveOf<
     Drive<S, Control, Motor,
           Gear<S, Kinematics, Error, Noise, Stiffness, Hysteresis, FrictionInput, FrictionMesh, FrictionOutput, Softening>, Load,
-          Sensors_, Thermal, Meter>> {
+          Sensors_, ThermalModel, Meter>> {
     using type = Drive<
         S, Control, Motor,
         Gear<S, Kinematics, Error, Noise, Stiffness, typename Short<16, Hysteresis>::type, typename Short<1, FrictionInput>::type,
@@ -68,7 +68,7 @@ using Usual = Drive<S, AnyOf<S, List<control::OpenLoop, control::PID>>, motor::D
                     Gear<S, AnyOf<S, kinematics::Models>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
                          AnyOf<S, List<stiffness::Linear, stiffness::Piecewise, stiffness::ThreeSegment, stiffness::Cubic>>,
                          hysteresis::MaxwellSlip<S>, typename OneOf<S, FrictionInput...>::type, friction::Viscous<S>,
-                         friction::Viscous<S>, softening::Exponential<S>>,
+                         friction::Viscous<S>, softening::ThermalSoftening<S>>,
                     AnyOf<S, List<load::Inertia, load::Pendulum>>, Sensors<S, sensor::Ideal<S>>>;
 
 }  // namespace detail

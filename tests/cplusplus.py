@@ -23,9 +23,9 @@ ZIG = (sys.executable, "-m", "ziglang", "c++")
 
 # Python may not call a module as it calls the function `load`.
 NAMESPACE = {"loads": "load", "kinematic_noise": "kinematic_error"}
-GEAR = ("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", "friction", "friction", "friction")
-PLACES = 3  # of friction, the last parts of a gear
-DRIVE = ("control", "motor", "loads", "sensor")
+FRICTION = ("friction", "friction", "friction")
+GEAR = ("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", *FRICTION, "softening")
+DRIVE = ("control", "motor", "loads", "sensor", "thermal", "meter")
 
 
 def compiler(name: str) -> tuple[str, ...]:
@@ -61,11 +61,12 @@ def listed(family: str, scalar: str) -> Iterator[str]:
 def drives(scalar: str) -> list[str]:
     """As many drives as the longest list has models; shorter lists go round, friction is one ahead from place to place."""
     count = max(map(len, _core.families.values()))
-    gear = [islice(listed(family, scalar), max(0, i + PLACES - len(GEAR)), None) for i, family in enumerate(GEAR)]
-    control, motor, load, sensor = (listed(family, scalar) for family in DRIVE)
+    ahead = [GEAR[:i].count("friction") for i in range(len(GEAR))]
+    gear = [islice(listed(family, scalar), start, None) for family, start in zip(GEAR, ahead, strict=True)]
+    control, motor, load, sensor, thermal, meter = (listed(family, scalar) for family in DRIVE)
     return [
         f"strainwave::Drive<{scalar}, {next(control)}, {next(motor)}, "
         f"strainwave::Gear<{scalar}, {', '.join(map(next, gear))}>, {next(load)}, "
-        f"strainwave::Sensors<{scalar}, {next(sensor)}>>"
+        f"strainwave::Sensors<{scalar}, {next(sensor)}>, {next(thermal)}, {next(meter)}>"
         for _ in range(count)
     ]

@@ -28,6 +28,7 @@ TORSION_CURVE = "a spring that a measured torsion loop is told by"
 STEADY_TABLE = "a law that a table of torque over speed can tell"
 LOG = "viscous friction becomes Coulomb's where a log is to tell it"
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
+DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 USUAL = "one of the models whose drives run in code of their own, for speed"
 AT_REST = "friction whose breakaway a torsion loop from the input can tell"
@@ -57,7 +58,18 @@ ELSEWHERE = {
     "OpenLoop": {"specialised.hpp": USUAL},
     "PID": {"specialised.hpp": USUAL, "control/sampled.hpp": "what it samples by default"},
     "Sampled": {"any.hpp": BOUND_TO_ANY},
-    "Ideal": {"specialised.hpp": USUAL},
+    "BrushlessDC": {"files/gear_set.py": "suits every controller, so a set without a motor is checked with one"},
+    "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
+    "Ideal": {
+        "specialised.hpp": USUAL,
+        "sensor/delayed.hpp": "what it delays by default",
+        "sensor/noisy.hpp": "what it adds noise to by default",
+    },
+    "Delayed": {"any.hpp": BOUND_TO_ANY},
+    "Noisy": {"any.hpp": BOUND_TO_ANY},
+    "Isothermal": {"drive.hpp": DEFAULT},
+    "NoMeter": {"drive.hpp": DEFAULT},
+    "ThermalSoftening": {"specialised.hpp": USUAL},
     "Inertia": {"specialised.hpp": USUAL},
     "StrainWave": {"identify/explain.py": "the ratio that two encoders show, as one of teeth"},
     "Stochastic": {"specialised.hpp": USUAL, "analysis/steady.py": STEADY_RUNNING},
@@ -189,7 +201,7 @@ def with_one_more(folder: Path) -> Path:
         "#include <strainwave/friction/stribeck.hpp>\n",
         "#include <strainwave/friction/quadratic.hpp>\n#include <strainwave/friction/stribeck.hpp>\n",
     )
-    after, lists = re.subn(r"(using Plain = List<[^>]*)>", r"\1, Quadratic>", after)
+    after, lists = re.subn(r"(using Plain = List<Viscous[^>]*)>", r"\1, Quadratic>", after)
     assert lists == 1
     assert len(after.splitlines()) == len(before.splitlines()) + 1
     models.write_text(after)

@@ -157,7 +157,7 @@ struct Output {
     }
 };
 
-template <class S, class Control, class Motor, class Gear, class Load, class Sensors, class Thermal = thermal::Isothermal<S>,
+template <class S, class Control, class Motor, class Gear, class Load, class Sensors, class ThermalModel = thermal::Isothermal<S>,
           class Meter = meter::NoMeter<S>>
 struct Drive {
     Gear gear{};
@@ -165,7 +165,7 @@ struct Drive {
     Control control{};
     Load load{};
     Sensors sensors{};
-    Thermal thermal{};
+    ThermalModel thermal{};
     Meter meter{};
 
     static constexpr auto name = "drive";
@@ -228,11 +228,11 @@ struct Drive {
 
     using Continuous = strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
                                               typename FrictionInput::State, typename FrictionMesh::State,
-                                              typename FrictionOutput::State, typename Thermal::State, typename Meter::State>;
+                                              typename FrictionOutput::State, typename ThermalModel::State, typename Meter::State>;
     using Discrete = strainwave::Discrete<S, control::DiscreteOf<S, Control>>;
     using State = strainwave::State<S, Continuous, Discrete, typename Hysteresis::State>;
     using Input = strainwave::Input<S>;
-    using Output = strainwave::Output<S, typename Motor::Output, typename Thermal::Output, typename Meter::Output>;
+    using Output = strainwave::Output<S, typename Motor::Output, typename ThermalModel::Output, typename Meter::Output>;
     using Rotor = motor::Rotor<S>;
     using Powers = meter::Powers<S>;
     using Measurement = control::Measurement<S>;
@@ -649,7 +649,7 @@ private:
 
     /// What warms up and what is measured, of an instant at which all else is known.
     constexpr void measure(const State& x, const Continuous& y, const Input& u, Derivatives& now) const {
-        if constexpr (size_of<S, typename Thermal::State> > 0 || size_of<S, typename Meter::State> > 0) {
+        if constexpr (size_of<S, typename ThermalModel::State> > 0 || size_of<S, typename Meter::State> > 0) {
             if (!thermal.active() && !meter.active()) return;
             Powers power = powers(x, y, u, now);
             if (thermal.active()) {

@@ -6,7 +6,7 @@ namespace strainwave {
 /// The least and the largest actuation that a motor can follow. It hands them to its controller, so that no integral winds up.
 template <class S>
 struct Limits {
-    S low{-unbounded}, high{unbounded};
+    S low{S(-unbounded)}, high{S(unbounded)};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {

@@ -32,8 +32,8 @@
 #include <strainwave/load/inertia.hpp>
 #include <strainwave/load/pendulum.hpp>
 #include <strainwave/load/prescribed.hpp>
-#include <strainwave/load/spring.hpp>
-#include <strainwave/load/table.hpp>
+#include <strainwave/load/torque_table.hpp>
+#include <strainwave/load/torsion_spring.hpp>
 #include <strainwave/meter/energy_meter.hpp>
 #include <strainwave/meter/no_meter.hpp>
 #include <strainwave/motor/brushless_dc.hpp>
@@ -48,7 +48,7 @@
 #include <strainwave/sensor/ideal.hpp>
 #include <strainwave/sensor/noisy.hpp>
 #include <strainwave/sensor/second_order.hpp>
-#include <strainwave/softening/exponential.hpp>
+#include <strainwave/softening/thermal_softening.hpp>
 #include <strainwave/stiffness/cubic.hpp>
 #include <strainwave/stiffness/linear.hpp>
 #include <strainwave/stiffness/multi_compliance.hpp>
@@ -103,7 +103,7 @@ using Continuous = List<OpenLoop, PID, PI, PositionSpeed, Cascade, LeadLag, Stat
 using Models = Extended<Continuous, Sampled>;
 }  // namespace control
 namespace load {
-using Models = List<Inertia, Pendulum, Spring, Aerodynamic, Table, Brake, Prescribed>;
+using Models = List<Inertia, Pendulum, TorsionSpring, Aerodynamic, TorqueTable, Brake, Prescribed>;
 }
 namespace sensor {
 using Plain = List<Ideal, Gain, FirstOrder, SecondOrder, Encoder>;
@@ -111,7 +111,7 @@ using Late = Extended<Plain, Delayed>;
 using Models = Extended<Late, Noisy>;
 }  // namespace sensor
 namespace softening {
-using Models = List<Exponential>;
+using Models = List<ThermalSoftening>;
 }
 namespace thermal {
 using Models = List<Isothermal, Heating>;

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
 
-from strainwave.messages import one_line, unquoted, with_options
+from strainwave.messages import listed, one_line, unquoted, with_options
 
 if TYPE_CHECKING:
     from strainwave.files.gear_set import GearSet
@@ -156,13 +156,15 @@ def gears(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> 
 @app.command()
 def models(name: Annotated[str, typer.Argument(help="A model, to be described in full.")] = "") -> None:
     """List the models that a gear file may name, or describe one."""
+    from difflib import get_close_matches
     from inspect import cleandoc
 
     from strainwave import _core
 
     kinds = {model: kind for family in _core.families.values() for model, kind in family.items()}
     if name and name not in kinds:
-        raise ValueError(f"there is no model {unquoted(name)}; there are {', '.join(kinds)}")
+        near = get_close_matches(name, kinds, n=3) or list(kinds)
+        raise ValueError(f"there is no model {unquoted(name)}; near to it is {listed(near)}; strainwave models lists all")
     if name:
         print(cleandoc(str(kinds[name].__doc__)))
         return

@@ -119,7 +119,7 @@ class Pendulum:
 
     fields: tuple[dict[str, Any], ...]
 
-class Spring:
+class TorsionSpring:
     """
     A body that a spring and a damper tie to the housing.
 
@@ -127,8 +127,8 @@ class Spring:
 
     with k = stiffness, c = damping, theta_0 = rest_angle.
 
-    >>> from strainwave.loads import Spring
-    >>> Spring(inertia=0.05, stiffness=200.0).rest_angle
+    >>> from strainwave.loads import TorsionSpring
+    >>> TorsionSpring(inertia=0.05, stiffness=200.0).rest_angle
     0.0
 
     Parameters
@@ -150,7 +150,7 @@ class Spring:
 
     def __init__(self, *, inertia: float = ..., stiffness: float = ..., damping: float = ..., rest_angle: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ..., stiffness: float = ..., damping: float = ..., rest_angle: float = ...) -> Spring:
+    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ..., stiffness: float = ..., damping: float = ..., rest_angle: float = ...) -> TorsionSpring:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -183,7 +183,7 @@ class Spring:
 
     def __reduce__(self) -> tuple[Any, ...]: ...
 
-    name: str = 'spring'
+    name: str = 'torsion_spring'
 
     source: str = 'definition'
 
@@ -199,7 +199,7 @@ class Aerodynamic:
     with V = airspeed, rho = density, S = area, c = chord, C_0 = moment_coefficient, C_1 = moment_slope, theta_0 =
     neutral_angle, C_d = drag_coefficient of the surface as it turns, at the radius r = drag_radius. C_1 > 0 drives back to the
     neutral angle. The sine continues the linear law of small angles to all angles; it is no law of a particular body, whose
-    measured moments a Table takes. Gusts are the run's input load_torque.
+    measured moments a TorqueTable takes. Gusts are the run's input load_torque.
 
     >>> from strainwave.loads import Aerodynamic
     >>> Aerodynamic(area=0.5, chord=0.3, airspeed=40.0).density
@@ -293,7 +293,7 @@ class Aerodynamic:
 
     fields: tuple[dict[str, Any], ...]
 
-class Table:
+class TorqueTable:
     """
     A torque over the output angle, given as a table.
 
@@ -304,8 +304,8 @@ class Table:
     stays what it is there. What changes over time besides is the run's input load_torque, which adds to it: a table of
     time is a scenario.
 
-    >>> from strainwave.loads import Table
-    >>> Table(angle=[-1.0, 0.0, 1.0], held_torque=[-3.0, 0.0, 5.0]).held_torque[2]
+    >>> from strainwave.loads import TorqueTable
+    >>> TorqueTable(angle=[-1.0, 0.0, 1.0], held_torque=[-3.0, 0.0, 5.0]).held_torque[2]
     5.0
 
     Parameters
@@ -326,7 +326,7 @@ class Table:
 
     def __init__(self, *, inertia: float = ..., angle: float | Sequence[float] = ..., held_torque: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ..., angle: float | Sequence[float] = ..., held_torque: float | Sequence[float] = ...) -> Table:
+    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ..., angle: float | Sequence[float] = ..., held_torque: float | Sequence[float] = ...) -> TorqueTable:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -355,7 +355,7 @@ class Table:
 
     def __reduce__(self) -> tuple[Any, ...]: ...
 
-    name: str = 'table'
+    name: str = 'torque_table'
 
     source: str = 'definition'
 

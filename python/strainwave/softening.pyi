@@ -3,7 +3,7 @@
 from typing import Any
 
 
-class Exponential:
+class ThermalSoftening:
     """
     A gear whose spring and whose hysteresis give way as it warms up.
 
@@ -14,8 +14,8 @@ class Exponential:
     some 2e-4 to 3e-4 per kelvin (assumed). Valid over some tens of kelvin. Elastic energy that a spring loses while it
     warms up turns to heat.
 
-    >>> from strainwave.softening import Exponential
-    >>> Exponential(stiffness_fall=3e-4).stiffness_fall
+    >>> from strainwave.softening import ThermalSoftening
+    >>> ThermalSoftening(stiffness_fall=3e-4).stiffness_fall
     0.0003
 
     Parameters
@@ -36,7 +36,7 @@ class Exponential:
 
     def __init__(self, *, stiffness_fall: float = ..., hysteresis_fall: float = ..., reference_temperature: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, stiffness_fall: float = ..., hysteresis_fall: float = ..., reference_temperature: float = ...) -> Exponential:
+    def replace(self, changes: dict[str, Any] = ..., /, *, stiffness_fall: float = ..., hysteresis_fall: float = ..., reference_temperature: float = ...) -> ThermalSoftening:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -65,7 +65,7 @@ class Exponential:
 
     def __reduce__(self) -> tuple[Any, ...]: ...
 
-    name: str = 'exponential'
+    name: str = 'thermal_softening'
 
     source: str = ...
 

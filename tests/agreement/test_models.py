@@ -33,7 +33,7 @@ TIMED = ("control.period", "control.delay")  # when something happens
 
 def course(drive: Drive) -> dict[str, sw.scenario.Scenario]:
     """Inputs besides the command, by name."""
-    size = {"load_torque": 5.0, "output_angle": 1e-3}  # N.m, rad
+    size = {"load_torque": 5.0, "output_angle": 1e-3, "brake_torque": 3.0}  # N.m, rad, N.m
     load = load_input(drive)
     return {
         load: sw.scenario.sine(size[load], 17.0, DURATION),
@@ -42,9 +42,17 @@ def course(drive: Drive) -> dict[str, sw.scenario.Scenario]:
 
 
 CONTROLLED = DRIVE.replace(control=sw.control.PID(proportional=2.0, integral=1.0, derivative=0.05, limit=24.0))
+OTHER_FAMILIES = {
+    "motor": "motor",
+    "control": "control",
+    "load": "loads",
+    "sensors": "sensor",
+    "thermal": "thermal",
+    "meter": "meter",
+}
 OTHER_PARTS = [
     pytest.param(part, model, id=f"{part}={model.name}")
-    for part, family in (("motor", "motor"), ("control", "control"), ("load", "loads"), ("sensors", "sensor"))
+    for part, family in OTHER_FAMILIES.items()
     for model in _core.families[family].values()
 ]
 seeds = st.integers(0, 2**32 - 1)

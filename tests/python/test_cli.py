@@ -383,7 +383,7 @@ def test_a_model_is_described_in_full(tmp_path: Path) -> None:
 
 
 def test_a_model_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Path) -> None:
-    refused(tmp_path, ["models", "lugree"], "there is no model lugree", "lugre", "three_segment")
+    refused(tmp_path, ["models", "lugree"], "there is no model lugree", "near to it is lugre", "strainwave models lists all")
 
 
 def test_a_doubted_measurement_is_told_first_and_no_gear_is_written_until_it_is_accepted(tmp_path: Path) -> None:

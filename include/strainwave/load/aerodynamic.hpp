@@ -31,7 +31,7 @@ struct Aerodynamic {
         with V = airspeed, rho = density, S = area, c = chord, C_0 = moment_coefficient, C_1 = moment_slope, theta_0 =
         neutral_angle, C_d = drag_coefficient of the surface as it turns, at the radius r = drag_radius. C_1 > 0 drives back to the
         neutral angle. The sine continues the linear law of small angles to all angles; it is no law of a particular body, whose
-        measured moments a Table takes. Gusts are the run's input load_torque.
+        measured moments a TorqueTable takes. Gusts are the run's input load_torque.
 
         >>> from strainwave.loads import Aerodynamic
         >>> Aerodynamic(area=0.5, chord=0.3, airspeed=40.0).density

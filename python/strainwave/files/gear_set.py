@@ -123,7 +123,7 @@ class GearSet:
         """Tables that a file of the set does without, by path: parts that do nothing, of whose numbers no source is given.
 
         >>> sorted(GearSet.read("hfuc-25-100").left_out)
-        ['gear.friction_mesh', 'gear.kinematic_noise']
+        ['gear.friction_mesh', 'gear.kinematic_noise', 'gear.softening']
         """
         return gear_file.left_out(self)
 

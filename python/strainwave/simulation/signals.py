@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments, meter, thermal
+from strainwave import Drive, _core, arguments
 from strainwave.messages import shortened
 from strainwave.simulation.memory import check_instants
 
@@ -132,8 +132,8 @@ def check_continuous(drive: Drive, what: str) -> None:
     """Refuses a drive that is not one system of differential equations, of which `what` is asked.
 
     Raises:
-        ValueError: its controller acts at instants only, its load prescribes the motion of the output shaft or brakes it, it warms
-            up, its energy is measured, or a sensor has noise
+        ValueError: its controller acts at instants only, its load prescribes the motion of the output shaft or brakes it,
+            it warms up, its energy is measured, or a sensor has noise
     """
     if _core.schedule(drive, drive.rest().numbers)[1] > 0.0:
         raise ValueError(
@@ -144,8 +144,8 @@ def check_continuous(drive: Drive, what: str) -> None:
         raise ValueError(f"{what} needs an output shaft that torques move; the load of this drive prescribes its motion")
     if load_input(drive) != "load_torque":
         raise ValueError(f"{what} needs a load that does not brake; give another load")
-    for part, kind in (("meter", meter.NoMeter), ("thermal", thermal.Isothermal)):
-        if not isinstance(getattr(drive, part), kind):
+    for part in ("meter", "thermal"):
+        if not isinstance(getattr(drive, part), kind := type(getattr(Drive(), part))):
             raise ValueError(
                 f"{what} is of no use to the {part} of a drive; give drive.replace({part}=sw.{part}.{kind.__name__}())"
             )

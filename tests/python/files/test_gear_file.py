@@ -205,8 +205,8 @@ REFUSED = {
     with_line("name", "name = 'a'\ncolour = 3"): f"my.toml colour: not a part of a gear file; it has {PARTS}",
     with_line("[stiffness]", "[stifness]"): f"my.toml stifness: not a part of a gear file; it has {PARTS}",
     with_line("name", "name = 'a'\nload = 3"): (
-        'my.toml load = 3 must be a table; write [load] with model = "inertia" or "pendulum" or "spring" or '
-        '"aerodynamic" or "table" or "brake" or "prescribed"'
+        'my.toml load = 3 must be a table; write [load] with model = "inertia" or "pendulum" or "torsion_spring" or '
+        '"aerodynamic" or "torque_table" or "brake" or "prescribed"'
     ),
     BASE[: BASE.index("[stiffness]")]: (
         f"my.toml stiffness is missing; write [stiffness] with model = {SPRINGS}"

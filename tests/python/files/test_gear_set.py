@@ -356,7 +356,7 @@ def test_a_catalogue_set_is_read_number_by_number(name: str, tmp_path: Path) -> 
                 assert gear_set.sources[path] == Entry(entry["source"], entry.get("spread"))
                 counted += 1
     not_given = {path.rpartition(".")[0] for path, entry in gear_set.sources.items() if entry == Entry("not given")}
-    assert not_given == {"gear.kinematic_noise", "gear.friction_mesh"}
+    assert not_given == {"gear.kinematic_noise", "gear.friction_mesh", "gear.softening"}
     assert counted == sum(entry != Entry("not given") for entry in gear_set.sources.values())
     gear_set.save(tmp_path / "copy.toml")
     assert GearSet.read(tmp_path / "copy.toml") == gear_set

@@ -66,6 +66,7 @@ def complete(start: GearSet) -> sw.Twin:
         hysteresis=sw.hysteresis.Preisach(density=sw.hysteresis.GridDensity(limit=1e-3, weight=[1.0, 2.0, 1.0])),
         friction_mesh=sw.friction.Thermal(law=sw.friction.Cyclic(law=losses, order=[2.0], amplitude=[0.1], phase=[0.0])),
         friction_output=made(sw.friction.PositionDependent, cosine=[1e-3, 2e-3]),
+        softening=sw.softening.ThermalSoftening(stiffness_fall=3e-4),
     )
     return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
 

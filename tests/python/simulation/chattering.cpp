@@ -36,7 +36,8 @@ struct Chattering : Base {
 template <class S, class Hysteresis, class FrictionOutput>
 using Tried = Drive<S, control::OpenLoop<S>, motor::DC<S>,
                     strainwave::Gear<S, kinematics::PlainRatio<S>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
-                                     stiffness::Linear<S>, Hysteresis, friction::Coulomb<S>, friction::Viscous<S>, FrictionOutput>,
+                                     stiffness::Linear<S>, Hysteresis, friction::Coulomb<S>, friction::Viscous<S>, FrictionOutput,
+                                     softening::ThermalSoftening<S>>,
                     load::Inertia<S>, Sensors<S, sensor::Ideal<S>>>;
 
 template <class S>

@@ -6,14 +6,14 @@
 namespace strainwave::load {
 
 template <class S>
-struct Table {
+struct TorqueTable {
     static constexpr int capacity = 32;
 
     S inertia{0.01};
     Sequence<S, capacity> angle{};
     Sequence<S, capacity> held_torque{};
 
-    static constexpr auto name = "table";
+    static constexpr auto name = "torque_table";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
         A torque over the output angle, given as a table.
@@ -25,8 +25,8 @@ struct Table {
         stays what it is there. What changes over time besides is the run's input load_torque, which adds to it: a table of
         time is a scenario.
 
-        >>> from strainwave.loads import Table
-        >>> Table(angle=[-1.0, 0.0, 1.0], held_torque=[-3.0, 0.0, 5.0]).held_torque[2]
+        >>> from strainwave.loads import TorqueTable
+        >>> TorqueTable(angle=[-1.0, 0.0, 1.0], held_torque=[-3.0, 0.0, 5.0]).held_torque[2]
         5.0)";
 
     template <class Self, class Visit>

@@ -5,13 +5,13 @@
 namespace strainwave::load {
 
 template <class S>
-struct Spring {
+struct TorsionSpring {
     S inertia{0.01};
     S stiffness{0.0};
     S damping{0.0};
     S rest_angle{0.0};
 
-    static constexpr auto name = "spring";
+    static constexpr auto name = "torsion_spring";
     static constexpr auto source = "definition";
     static constexpr auto doc = R"(
         A body that a spring and a damper tie to the housing.
@@ -20,8 +20,8 @@ struct Spring {
 
         with k = stiffness, c = damping, theta_0 = rest_angle.
 
-        >>> from strainwave.loads import Spring
-        >>> Spring(inertia=0.05, stiffness=200.0).rest_angle
+        >>> from strainwave.loads import TorsionSpring
+        >>> TorsionSpring(inertia=0.05, stiffness=200.0).rest_angle
         0.0)";
 
     template <class Self, class Visit>

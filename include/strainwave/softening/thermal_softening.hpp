@@ -5,12 +5,12 @@
 namespace strainwave::softening {
 
 template <class S>
-struct Exponential {
+struct ThermalSoftening {
     S stiffness_fall{0.0};
     S hysteresis_fall{0.0};
     S reference_temperature{293.15};
 
-    static constexpr auto name = "exponential";
+    static constexpr auto name = "thermal_softening";
     static constexpr auto source =
         "document R, section on temperature, which states the direction only: the exponential form is assumed, its rates are the "
         "user's";
@@ -24,8 +24,8 @@ struct Exponential {
         some 2e-4 to 3e-4 per kelvin (assumed). Valid over some tens of kelvin. Elastic energy that a spring loses while it
         warms up turns to heat.
 
-        >>> from strainwave.softening import Exponential
-        >>> Exponential(stiffness_fall=3e-4).stiffness_fall
+        >>> from strainwave.softening import ThermalSoftening
+        >>> ThermalSoftening(stiffness_fall=3e-4).stiffness_fall
         0.0003)";
 
     template <class Self, class Visit>
