@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from strainwave.identify.fit import Fit, fit
     from strainwave.identify.twin import Twin, twin
     from strainwave.simulation import scenario
+    from strainwave.simulation.controller import Seen, simulate_controlled
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
     from strainwave.simulation.run import Run, simulate, simulate_adaptively
 
@@ -61,6 +62,7 @@ _LAZY = {
     "Quantity": "files.entries",
     "Recording": "files.recording",
     "Run": "simulation.run",
+    "Seen": "simulation.controller",
     "Twin": "identify.twin",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
@@ -74,6 +76,7 @@ _LAZY = {
     "scenario": "simulation.scenario",
     "simulate": "simulation.run",
     "simulate_adaptively": "simulation.run",
+    "simulate_controlled": "simulation.controller",
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
     "twin": "identify.twin",
@@ -96,6 +99,7 @@ __all__ = [
     "RatingWarning",
     "Recording",
     "Run",
+    "Seen",
     "Sensors",
     "Twin",
     "catalogue",
@@ -120,6 +124,7 @@ __all__ = [
     "sensor",
     "simulate",
     "simulate_adaptively",
+    "simulate_controlled",
     "simulate_many",
     "simulate_to",
     "softening",

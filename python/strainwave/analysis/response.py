@@ -193,7 +193,7 @@ class _Sines:
         channels = [each.channel for each in recorded.values()]
         inputs, state = excitation.over(time_grid), self.start
         while True:
-            outputs = beginning(self.drive, state, excitation, channels, len(time_grid.times))
+            outputs = beginning(self.drive, state, excitation.first(), channels, len(time_grid.times))
             keep, method = time_grid.samples[1:], _core.Method.exponential
             state = _core.simulate(self.drive, state, time_grid.instants, inputs, keep, method, channels, outputs, 1)
             run = recording(self.drive, time_grid, recorded, outputs)

@@ -48,7 +48,7 @@ class Run(Recording):
     def _made(cls, drive: Drive, time: Array, recorded: Mapping[str, Output], outputs: Array, end: State, method: str) -> Run:
         """Of outputs that mean something: to check them as any others takes a quarter of a call."""
         run = object.__new__(cls)
-        run._hold(_columns(time, recorded, outputs), signals.units(drive, recorded.values()), _title(method))
+        run._hold(columns_of(time, recorded, outputs), signals.units(drive, recorded.values()), _title(method))
         run._came_about(end, method)
         return run
 
@@ -163,8 +163,8 @@ def simulate(
         check_resolution(drive, time_grid.longest, 0.0)
     taken = method or "exponential"
     time = time_grid.times
-    channels = _channels(recorded)
-    outputs, first = beginning(drive, state, excitation, channels, len(time)), 1
+    channels = channels_of(recorded)
+    outputs, first = beginning(drive, state, excitation.first(), channels, len(time)), 1
     with progressing(progress, len(time_grid.instants) - 1) as shown:
         for number, chunk in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
@@ -173,7 +173,7 @@ def simulate(
                 drive, state, chunk.instants, laid_out, keep, _core.Method[taken], channels, outputs, first, report
             )
             first += int(np.count_nonzero(keep))
-    _check_meaning(time, recorded, outputs, remedy(time_grid.longest))
+    check_meaning(time, recorded, outputs, remedy(time_grid.longest))
     if method != "rosenbrock":
         check_resolution(drive, time_grid.longest, _largest_twist(outputs[channels.index(TWIST)]))
     warn_of_bristles(drive, time_grid.longest)
@@ -183,21 +183,20 @@ def simulate(
     return run
 
 
-def _channels(recorded: Mapping[str, Output]) -> list[int]:
+def channels_of(recorded: Mapping[str, Output]) -> list[int]:
     """The channels of what is recorded, and of the twist, which tells whether steps were short enough."""
     found = [each.channel for each in recorded.values()]
     return found if TWIST in found else [*found, TWIST]
 
 
-def beginning(drive: Drive, state: Array, excitation: Excitation, channels: Sequence[int], samples: int) -> Array:
-    """Room for the outputs of a run, shape (channels, samples), that of the start filled in.
+def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int], samples: int) -> Array:
+    """Room for the outputs of a run, shape (channels, samples), that of the start filled in, under the inputs `first`.
 
     There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from, and a sampled
     controller has acted if it was due.
     """
     with room_for("samples", samples, 8.0 * len(channels), "sample less often, or record fewer outputs"):
         outputs = np.empty((len(channels), samples))
-    first = excitation.first()
     outputs[:, 0] = _core.now(drive, _core.begin(drive, state, first), first)[list(channels), 0]
     return outputs
 
@@ -278,12 +277,12 @@ def simulate_adaptively(
     ends = excitation.ends(signals.instants(drive, state, command.duration))
     excitation.check_temperature(ends)
     channels = [each.channel for each in recorded.values()]
-    outputs = beginning(drive, state, excitation, channels, len(samples))
+    outputs = beginning(drive, state, excitation.first(), channels, len(samples))
     with progressing(progress, len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
             drive, state, *excitation.signals, ends, rtol, atol, max_steps, samples[1:], channels, outputs, 1, shown
         )
-    _check_meaning(samples, recorded, outputs, "check the parameters")
+    check_meaning(samples, recorded, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
     end = State.of(drive, state)
     run = Run._made(drive, samples, recorded, outputs, end, f"{_named('exponential', drive)}, {kept}")
@@ -325,20 +324,20 @@ def differentiate(
 def recording(drive: Drive, time_grid: TimeGrid, recorded: Mapping[str, Output], outputs: Array) -> Recording:
     """What a run recorded, shape (recorded, samples), the twist among it, if its numbers mean anything."""
     time = time_grid.times
-    _check_meaning(time, recorded, outputs, remedy(time_grid.longest))
+    check_meaning(time, recorded, outputs, remedy(time_grid.longest))
     check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]))
     units = signals.units(drive, recorded.values())
-    return Recording(_columns(time, recorded, outputs), units, title="simulation")
+    return Recording(columns_of(time, recorded, outputs), units, title="simulation")
 
 
-def _columns(time: Array, recorded: Mapping[str, Output], outputs: Array) -> dict[str, Array]:
+def columns_of(time: Array, recorded: Mapping[str, Output], outputs: Array) -> dict[str, Array]:
     """The columns of a recording, which need not be copied as nobody can change them."""
     time.setflags(write=False)
     outputs.setflags(write=False)
     return {"time": time} | {name: outputs[i] for i, name in enumerate(recorded)}
 
 
-def _check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, what_to_do: str) -> None:
+def check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, what_to_do: str) -> None:
     if not (outputs.max() <= LARGEST and outputs.min() >= -LARGEST):
         names = [*recorded, "twist"][: len(outputs)]
         raise FloatingPointError(diverged(time, names, outputs, what_to_do))

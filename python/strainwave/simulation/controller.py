@@ -1,0 +1,182 @@
+"""A run whose controller is a function of Python: called at instants, its result held between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments, control
+from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import drive_of, warn_of_ratings
+from strainwave.messages import shortened
+from strainwave.simulation import signals
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
+from strainwave.simulation.initial import beginning_numbers
+from strainwave.simulation.memory import check_instants
+from strainwave.simulation.resolution import check_resolution, remedy, warn_of_bristles
+from strainwave.simulation.run import Run, beginning, channels_of, check_meaning, columns_of, progressing
+from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.signals import TWIST
+from strainwave.simulation.state import State
+
+Array = NDArray[np.float64]
+
+
+class Seen(NamedTuple):
+    """What a controller sees at an instant: the time, the command, and the drive through its sensors.
+
+    Attributes:
+        time: since the start of the run [s]
+        command, command_rate: what is commanded, in its unit, and its rate
+        input_angle, input_speed: of the input shaft [rad], [rad/s]
+        output_angle, output_speed: of the output shaft [rad], [rad/s]
+        current: of the motor [A]
+        torque: transmitted by the gear, at the output [N.m]
+        low, high: the least and the largest actuation that the motor can follow now, in its unit; ±1.8e308 if it has no limits
+    """
+
+    time: float
+    command: float
+    command_rate: float
+    input_angle: float
+    input_speed: float
+    output_angle: float
+    output_speed: float
+    current: float
+    torque: float
+    low: float
+    high: float
+
+
+def simulate_controlled(
+    drive: Drive | GearSet,
+    controller: Callable[[Seen], float],
+    command: Scenario,
+    dt: float = 2e-4,
+    *,
+    period: float,
+    delay: float = 0.0,
+    unit: str = "rad",
+    sample: float | None = None,
+    load_torque: Scenario | float = 0.0,
+    temperature: Scenario | float = ROOM_TEMPERATURE,
+    inputs: Mapping[str, Scenario | float] | None = None,
+    start: State | None = None,
+    initial: Mapping[str, float] | None = None,
+    record: Sequence[str] | None = None,
+    progress: bool = False,
+) -> Run:
+    """Runs a drive under a controller that is a function of Python.
+
+    The controller is called at t = 0, period, 2 period … as a computer in a joint is. What it returns reaches the motor after
+    `delay` and stays until the next result does; before the first it is 0. So this is what `sw.control.Sampled` does around a
+    law of the package. What the controller remembers, such as an integral, is its own: an object with `__call__` is one.
+
+    Args:
+        drive: what is controlled, in open loop (`sw.control.OpenLoop`): then the motor takes the actuation
+        controller: called with what it sees, a `Seen`; returns the actuation, in the unit of the motor (voltage [V] of a DC
+            motor, current [A], torque [N.m])
+        command: what the controller is to do over time, in a unit of its choice
+        period: time from one call to the next [s]
+        delay: time from a call to its effect [s], at most `period`
+        unit: of the command
+        dt, sample, load_torque, temperature, inputs, start, initial, record, progress: as for `simulate`
+
+    Returns:
+        as `simulate`; the column `command` holds the command, the motor's columns what it made of the actuation
+
+    Raises:
+        ValueError: the drive has a controller of its own, `period` is not positive, `delay` lies outside of [0, period], the
+            controller returns no finite number, and as `simulate`
+        TypeError: the controller cannot be called or returns no number, and as `simulate`
+        FloatingPointError, MemoryError: as `simulate`
+
+    Warns:
+        RuntimeWarning: steps cannot follow a shaft on its bristles; take a smaller `dt`
+        RatingWarning: as `simulate`
+
+    >>> import strainwave as sw
+    >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> def pd(seen):
+    ...     return 5.0 * (seen.command - seen.output_angle) - 0.1 * seen.output_speed
+    >>> run = sw.simulate_controlled(drive, pd, sw.scenario.step(amplitude=0.5, duration=0.2), period=1e-3)
+    >>> round(float(run["voltage"].max()), 2)
+    2.5
+    """
+    model, drive = drive, drive_of(drive)
+    if not isinstance(drive.control, control.OpenLoop):
+        raise ValueError("the drive has a controller of its own; give drive.replace(control=sw.control.OpenLoop())")
+    if not callable(controller):
+        raise TypeError(f"controller = {shortened(controller)} must be a function of what it sees, which returns the actuation")
+    dt, period = arguments.seconds("dt", dt), arguments.seconds("period", period)
+    delay = arguments.number("delay", delay, "s", "[]", 0.0, period)
+    interval = dt if sample is None else arguments.seconds("sample", sample)
+    unit = arguments.text("unit", unit)
+    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
+    channels = channels_of(recorded)
+    excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
+    state = beginning_numbers(drive, start, initial, _under(0.0, excitation.first()))
+    actions = _actions(command.duration, period, delay)
+    time_grid = excitation.time_grid(dt, interval, actions)
+    time, steps = time_grid.times, len(time_grid.instants) - 1
+    check_resolution(drive, time_grid.longest, 0.0)
+    course = excitation.over(time_grid)
+    held = asked = 0.0
+    outputs, first = np.empty((0, 0)), 0
+    with progressing(progress, steps) as shown:
+        for number, (begin, end) in enumerate(pairwise([*_places(time_grid.instants, actions), steps])):
+            if number % 2 == 1:
+                held = asked
+            else:
+                now = course[begin, 0]
+                measured = _core.measured(drive, state, _under(held, now))
+                seen = Seen(float(time_grid.instants[begin]), float(now[0]), float(now[1]), *measured.tolist())
+                asked = arguments.number(f"what the controller returns at t = {seen.time:g} s", controller(seen))
+            if begin == end:
+                continue
+            if first == 0:
+                outputs, first = beginning(drive, state, _under(held, course[0, 0]), channels, len(time)), 1
+            keep = time_grid.samples[begin + 1 : end + 1]
+            instants, acting = time_grid.instants[begin : end + 1], _under(held, course[begin:end])
+            method = _core.Method.exponential
+            state = _core.simulate(drive, state, instants, acting, keep, method, channels, outputs, first)
+            first += int(np.count_nonzero(keep))
+            if shown is not None:
+                shown(end)
+    commanded = np.append(course[:1, 0, 0], course[:, 2, 0])[time_grid.samples.view(np.bool_)]
+    outputs[[each.name == "command" for each in recorded.values()] + [False] * (len(outputs) - len(recorded))] = commanded
+    check_meaning(time, recorded, outputs, remedy(time_grid.longest))
+    check_resolution(drive, time_grid.longest, float(np.abs(outputs[channels.index(TWIST)]).max()))
+    warn_of_bristles(drive, time_grid.longest)
+    units = {name: unit if name == "command" else own for name, own in signals.units(drive, recorded.values()).items()}
+    how = f"exponential Runge-Kutta, steps of {time_grid.longest:g} s, a controller called every {period:g} s"
+    run = Run(columns_of(time, recorded, outputs), units, State.of(drive, state), how)
+    warn_of_ratings(model, run)
+    return run
+
+
+def _actions(duration: float, period: float, delay: float) -> Array:
+    """When the controller is called and when its result arrives, in turns [s]."""
+    check_instants(duration, period, "take a longer period")
+    calls = period * np.arange(int(duration / period) + 1)
+    found: Array = np.stack([calls, calls + delay], axis=1).ravel()
+    return found[found < duration * (1.0 - 1e-12)]
+
+
+def _places(instants: Array, actions: Array) -> list[int]:
+    """The steps that begin at these actions: the nearest, as some coincide up to rounding."""
+    after = np.clip(np.searchsorted(instants, actions), 1, len(instants) - 1)
+    nearer = instants[after] - actions < actions - instants[after - 1]
+    found: list[int] = np.where(nearer, after, after - 1).tolist()
+    return found
+
+
+def _under(actuation: float, inputs: Array) -> Array:
+    """The same inputs, shape (..., 6), with an actuation that is held in place of the command."""
+    acting = inputs.copy()
+    acting[..., :2] = actuation, 0.0
+    return acting
