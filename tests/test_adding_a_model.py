@@ -55,7 +55,10 @@ ELSEWHERE = {
         "identify/torsion.py": AT_REST,
     },
     "DC": {"specialised.hpp": USUAL},
-    "OpenLoop": {"specialised.hpp": USUAL},
+    "OpenLoop": {
+        "specialised.hpp": USUAL,
+        "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
+    },
     "PID": {"specialised.hpp": USUAL, "control/sampled.hpp": "what it samples by default"},
     "Sampled": {"any.hpp": BOUND_TO_ANY},
     "BrushlessDC": {"files/gear_set.py": "suits every controller, so a set without a motor is checked with one"},

@@ -101,11 +101,13 @@ def simulate_controlled(
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-    >>> def pd(seen):
-    ...     return 5.0 * (seen.command - seen.output_angle) - 0.1 * seen.output_speed
-    >>> run = sw.simulate_controlled(drive, pd, sw.scenario.step(amplitude=0.5, duration=0.2), period=1e-3)
-    >>> round(float(run["voltage"].max()), 2)
-    2.5
+    >>> ratio = drive.gear.kinematics.ratio
+    >>> def proportional(seen):
+    ...     return 0.5 * (ratio * seen.command - seen.input_angle)
+    >>> command = sw.scenario.step(amplitude=0.2, duration=0.5)
+    >>> run = sw.simulate_controlled(drive, proportional, command, period=1e-3)
+    >>> round(float(run["output_angle"][-1]), 2)
+    0.2
     """
     model, drive = drive, drive_of(drive)
     if not isinstance(drive.control, control.OpenLoop):
