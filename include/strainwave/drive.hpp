@@ -1,7 +1,11 @@
 #pragma once
 #include <strainwave/condition.hpp>
 #include <strainwave/control/law.hpp>
-#include <strainwave/friction/contact.hpp>
+#include <strainwave/drive/input.hpp>
+#include <strainwave/drive/output.hpp>
+#include <strainwave/drive/power.hpp>
+#include <strainwave/drive/state.hpp>
+#include <strainwave/friction/resistance.hpp>
 #include <strainwave/gear.hpp>
 #include <strainwave/load/load.hpp>
 #include <strainwave/meter/no_meter.hpp>
@@ -12,150 +16,6 @@
 #include <strainwave/thermal/isothermal.hpp>
 
 namespace strainwave {
-
-/// What acts on a drive from outside, at one instant: one signal for each part that takes one, and its rate.
-template <class S>
-struct Input {
-    S command{0.0};
-    S command_rate{0.0};
-    S load{0.0};
-    S load_rate{0.0};
-    S temperature{friction::room_temperature};  ///< K
-    S temperature_rate{0.0};
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, command, "1", "Command of the controller, in the unit that it takes"));
-        visit(SW_FIELD(m, command_rate, "1/s", "Its rate"));
-        visit(SW_FIELD(m, load, "1", "Input of the load: a torque that holds the output back, or what else it takes"));
-        visit(SW_FIELD(m, load_rate, "1/s", "Its rate"));
-        visit(SW_FIELD(m, temperature, "K", "Temperature around the drive"));
-        visit(SW_FIELD(m, temperature_rate, "K/s", "Its rate"));
-    }
-
-    /// At a fraction of a step. Between the three instants the command is Hermite's cubic, all else the parabola through them.
-    static constexpr Input between(const Input& start, const Input& middle, const Input& end, const S& fraction, const S& dt) {
-        const auto late = fraction > S(0.5);
-        const S x = S(2.0) * fraction - select(late, S(1.0), S(0.0)), half = S(0.5) * dt;
-        const S a = select(late, middle.command, start.command), b = select(late, end.command, middle.command);
-        const S da = half * select(late, middle.command_rate, start.command_rate);
-        const S db = half * select(late, end.command_rate, middle.command_rate);
-        const S bend = S(3.0) * (b - a) - S(2.0) * da - db, turn = S(2.0) * (a - b) + da + db;
-        const auto parabola = [&](S Input::* signal) {
-            const S from = start.*signal, bow = S(2.0) * (from - S(2.0) * (middle.*signal) + end.*signal);
-            return from + fraction * ((end.*signal - from - bow) + fraction * bow);
-        };
-        return {a + x * (da + x * (bend + x * turn)),
-                (da + x * (S(2.0) * bend + S(3.0) * x * turn)) / max(half, S(smallest)),
-                parabola(&Input::load),
-                parabola(&Input::load_rate),
-                parabola(&Input::temperature),
-                parabola(&Input::temperature_rate)};
-    }
-};
-
-/// What changes continuously. The transmission error theta_in / i - theta_out replaces the output angle.
-template <class S, class MotorState, class ControlState, class SensorsState, class FrictionInputState, class FrictionMeshState,
-          class FrictionOutputState, class ThermalState, class MeterState>
-struct Continuous {
-    MotorState motor{};
-    ControlState control{};
-    SensorsState sensors{};
-    S input_angle{0.0};
-    S input_speed{0.0};
-    S transmission_error{0.0};
-    S output_speed{0.0};
-    FrictionInputState friction_input{};
-    FrictionMeshState friction_mesh{};
-    FrictionOutputState friction_output{};
-    ThermalState thermal{};
-    MeterState meter{};
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, motor, "State of the motor"));
-        visit(SW_PART(m, control, "State of the controller"));
-        visit(SW_PART(m, sensors, "State of the sensors"));
-        visit(SW_FIELD(m, input_angle, "rad", "Input angle within the turn, in [-pi, pi]"));
-        visit(SW_FIELD(m, input_speed, "rad/s", "Input speed"));
-        visit(SW_FIELD(m, transmission_error, "rad", "theta_in / i - theta_out"));
-        visit(SW_FIELD(m, output_speed, "rad/s", "Output speed"));
-        visit(SW_PART(m, friction_input, "State of the friction at the input"));
-        visit(SW_PART(m, friction_mesh, "State of the friction of the mesh"));
-        visit(SW_PART(m, friction_output, "State of the friction at the output"));
-        visit(SW_PART(m, thermal, "Temperatures"));
-        visit(SW_PART(m, meter, "Energies measured"));
-    }
-};
-
-/// What changes at instants only.
-template <class S, class ControlDiscrete>
-struct Discrete {
-    ControlDiscrete control{};
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, control, "What a sampled controller holds"));
-    }
-};
-
-/// A drive at one instant: the motion, what changes at instants only, and what the drive remembers of the past.
-template <class S, class Continuous, class Discrete, class HysteresisState>
-struct State {
-    Continuous continuous{};
-    Discrete discrete{};
-    HysteresisState hysteresis{};
-    S held_twist{0.0};
-    S held_rate{0.0};
-    S elapsed{0.0};
-    S turns{0.0};
-    S input_slip_direction{1.0};
-    S output_slip_direction{1.0};
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_PART(m, continuous, "What changes continuously"));
-        visit(SW_PART(m, discrete, "What changes at instants only"));
-        visit(SW_PART(m, hysteresis, "Memory of the hysteresis"));
-        visit(SW_FIELD(m, held_twist, "rad", "Twist at which the hysteresis was last brought up to date"));
-        visit(SW_FIELD(m, held_rate, "rad/s", "Rate of the twist there"));
-        visit(SW_FIELD(m, elapsed, "s", "Time since"));
-        visit(SW_FIELD(m, turns, "1", "Whole revolutions of the input"));
-        visit(SW_FIELD(m, input_slip_direction, "1", "Slip direction of the input shaft, 0 while it sticks"));
-        visit(SW_FIELD(m, output_slip_direction, "1", "Slip direction of the output shaft, 0 while it sticks"));
-    }
-};
-
-/// Everything worth recording, at one instant.
-template <class S, class MotorOutput, class ThermalOutput, class MeterOutput>
-struct Output {
-    S command, input_angle, input_speed, output_angle, output_speed, twist, kinematic_error, transmission_error, torque;
-    S friction_input, friction_mesh, friction_output, load_torque, temperature;
-    MotorOutput motor;
-    ThermalOutput thermal;
-    MeterOutput meter;
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, command, "1", "Command"));
-        visit(SW_FIELD(m, input_angle, "rad", "Input angle"));
-        visit(SW_FIELD(m, input_speed, "rad/s", "Input speed"));
-        visit(SW_FIELD(m, output_angle, "rad", "Output angle"));
-        visit(SW_FIELD(m, output_speed, "rad/s", "Output speed"));
-        visit(SW_FIELD(m, twist, "rad", "Elastic twist of the gear, at the output"));
-        visit(SW_FIELD(m, kinematic_error, "rad", "Pure kinematic error, at the output"));
-        visit(SW_FIELD(m, transmission_error, "rad", "Total error theta_in / i - theta_out"));
-        visit(SW_FIELD(m, torque, "N.m", "Torque transmitted, at the output"));
-        visit(SW_FIELD(m, friction_input, "N.m", "Friction torque at the input, opposing its motion"));
-        visit(SW_FIELD(m, friction_mesh, "N.m", "Friction torque of the mesh, opposing its motion, at the output's scale"));
-        visit(SW_FIELD(m, friction_output, "N.m", "Friction torque at the output, opposing its motion"));
-        visit(SW_FIELD(m, load_torque, "N.m", "Torque of the load, holding the output back"));
-        visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
-        visit(SW_PART(m, motor, "What the motor shows of itself"));
-        visit(SW_PART(m, thermal, "What the thermal model shows of itself"));
-        visit(SW_PART(m, meter, "What the meter shows"));
-    }
-};
 
 template <class S, class Control, class Motor, class Gear, class Load, class Sensors, class ThermalModel = thermal::Isothermal<S>,
           class Meter = meter::NoMeter<S>>
@@ -234,10 +94,10 @@ struct Drive {
     using Input = strainwave::Input<S>;
     using Output = strainwave::Output<S, typename Motor::Output, typename ThermalModel::Output, typename Meter::Output>;
     using Rotor = motor::Rotor<S>;
-    using Powers = meter::Powers<S>;
     using Measurement = control::Measurement<S>;
     using Shaft = strainwave::Shaft<S>;
     using Contact = friction::Contact<S>;
+    using Resistance = friction::Resistance<S>;
 
     /// The places where friction acts.
     struct Contacts {
@@ -343,9 +203,9 @@ struct Drive {
 
         Continuous rate{};
         const Contacts at = contacts(x, y, mesh, u);
-        const Resistance input = resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
-        const Resistance meshing = resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
-        const Resistance output = resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
+        const Resistance input = friction::resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
+        const Resistance meshing = friction::resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
+        const Resistance output = friction::resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
         const S load_torque = prescribes(load) ? mesh.torque - output.torque()
                                                : strainwave::load_torque<S>(load, output_angle(x, y), y.output_speed, u.load);
         const Braking<S> braking = this->braking(u);
@@ -373,30 +233,6 @@ struct Drive {
                         output_driving_torque};
         measure(x, y, u, now);
         return now;
-    }
-
-    /// Where the power goes.
-    constexpr Powers powers(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
-        const auto electric = motor.power(y.motor, now.actuation, rotor(x, y, u));
-        const S temperature = temperatures(y, u).gear, twist_rate = now.mesh.twist_rate, damped = gear.damping * twist_rate;
-        const S remembered = now.mesh.torque - damped - gear.spring_torque(now.mesh.twist, temperature);
-        const S warming = thermal.gear_rate(now.rate.thermal, u.temperature_rate);
-        return {electric.supplied,
-                electric.lost,
-                now.friction_input * y.input_speed,
-                now.friction_mesh * (now.mesh.per_input * y.input_speed),
-                now.friction_output * y.output_speed,
-                damped * twist_rate,
-                remembered * twist_rate,
-                gear.softening.dissipation_rate(warming) * gear.spring_energy(now.mesh.twist, temperature),
-                now.load_torque * y.output_speed};
-    }
-    constexpr meter::Stored<S> stored(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
-        // A shaft that is moved from outside has no inertia of its own.
-        const S output = prescribes(load) ? S(0.0) : S(0.5) * output_inertia() * y.output_speed * y.output_speed;
-        return {S(0.5) * input_inertia() * y.input_speed * y.input_speed, output,
-                gear.spring_energy(now.mesh.twist, temperatures(y, u).gear),
-                motor.power(y.motor, now.actuation, rotor(x, y, u)).stored};
     }
 
     constexpr Continuous relaxation_rate(const Continuous& y, const Derivatives& now) const {
@@ -445,7 +281,7 @@ struct Drive {
         const auto turned = x.held_rate * now.twist_rate < S(0.0);
         if (any(turned)) {
             State there = x;
-            advance_hysteresis(there, turning_point(x, now));
+            advance_hysteresis(there, x.turning_point(now.twist, now.twist_rate));
             x = chosen<S>(turned, there, x);
         }
         advance_hysteresis(x, now.twist);
@@ -513,8 +349,9 @@ struct Drive {
     /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
     constexpr S bristle_frequency() const {
         const S inverse = gear.kinematics.inverse_ratio();
-        const S input = presliding_stiffness(gear.friction_input) + presliding_stiffness(gear.friction_mesh) * inverse * inverse;
-        return sqrt(max(input / input_inertia(), presliding_stiffness(gear.friction_output) / output_inertia()));
+        const S input = friction::presliding_stiffness<S>(gear.friction_input) +
+                        friction::presliding_stiffness<S>(gear.friction_mesh) * inverse * inverse;
+        return sqrt(max(input / input_inertia(), friction::presliding_stiffness<S>(gear.friction_output) / output_inertia()));
     }
 
     // Events: a shaft stops, or breaks away.
@@ -583,6 +420,8 @@ struct Drive {
     constexpr thermal::Temperatures<S> temperatures(const Continuous& y, const Input& u) const {
         return thermal.at(y.thermal, u.temperature);
     }
+    constexpr S input_inertia() const { return inertia_of<S>(motor) + gear.input_inertia; }
+    constexpr S output_inertia() const { return inertia_of<S>(load); }
     constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u) const {
         return {{y.input_angle, x.turns}, y.input_speed, temperatures(y, u).winding};
     }
@@ -622,9 +461,9 @@ struct Drive {
                 now.mesh.error,
                 y.transmission_error,
                 now.mesh.torque,
-                reported(gear.friction_input, now.contacts.input, now.friction_input, of_input),
-                reported(gear.friction_mesh, now.contacts.mesh, now.friction_mesh, along(now.mesh.per_input, of_input)),
-                reported(gear.friction_output, now.contacts.output, now.friction_output, of_output),
+                friction::reported(gear.friction_input, now.contacts.input, now.friction_input, of_input),
+                friction::reported(gear.friction_mesh, now.contacts.mesh, now.friction_mesh, along(now.mesh.per_input, of_input)),
+                friction::reported(gear.friction_output, now.contacts.output, now.friction_output, of_output),
                 now.load_torque + braked,
                 temperatures(y, u).gear,
                 motor.output(y.motor, now.actuation, rotor(x, y, u)),
@@ -633,44 +472,31 @@ struct Drive {
     }
 
 private:
-    /// What a friction opposes: the part that acts at rest too, and the part that can stick.
-    struct Resistance {
-        S always, sliding;
-        constexpr S torque() const { return always + sliding; }  // one of them is none
-    };
-    template <class Law>
-    static constexpr Resistance resistance(const Law& law, const typename Law::State& x, const Contact& contact,
-                                           typename Law::State& rate) {
-        const auto found = friction::response(law, x, contact);
-        rate = found.rate;
-        if (friction::set_valued(law)) return {S(0.0), found.torque};
-        return {found.torque, S(0.0)};
-    }
+    /// A shaft that sticks does not accelerate.
+    static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
 
     /// What warms up and what is measured, of an instant at which all else is known.
     constexpr void measure(const State& x, const Continuous& y, const Input& u, Derivatives& now) const {
         if constexpr (size_of<S, typename ThermalModel::State> > 0 || size_of<S, typename Meter::State> > 0) {
             if (!thermal.active() && !meter.active()) return;
-            Powers power = powers(x, y, u, now);
+            meter::Powers<S> power = powers<S>(*this, x, y, u, now);
             if (thermal.active()) {
                 const S of_gear =
                     power.friction_input + power.friction_mesh + power.friction_output + power.damping + power.hysteresis;
                 now.rate.thermal = thermal.rate(y.thermal, thermal::Heat<S>{power.motor, of_gear}, u.temperature);
-                power = powers(x, y, u, now);  // how fast the gear warms up is known by now
+                power = powers<S>(*this, x, y, u, now);  // how fast the gear warms up is known by now
             }
             if (meter.active()) now.rate.meter = meter.rate(power);
         }
     }
     constexpr typename Meter::Output measured(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
         if constexpr (size_of<S, typename Meter::Output> > 0)
-            if (meter.active()) return meter.output(y.meter, powers(x, y, u, now), stored(x, y, u, now));
+            if (meter.active()) return meter.output(y.meter, powers<S>(*this, x, y, u, now), stored<S>(*this, x, y, u, now));
         return {};
     }
-    constexpr S input_inertia() const { return inertia_of<S>(motor) + gear.input_inertia; }
     constexpr bool input_sticks() const {
         return friction::set_valued(gear.friction_input) || friction::set_valued(gear.friction_mesh);
     }
-    constexpr S output_inertia() const { return inertia_of<S>(load); }
     constexpr bool output_sticks() const {
         return !prescribes(load) && (friction::set_valued(gear.friction_output) || brakes(load));
     }
@@ -725,46 +551,12 @@ private:
     /// The torque of set-valued friction against a shaft that slips one way.
     constexpr S input_friction(const State& x, const Derivatives& now, const S& sense) const {
         const Contact mesh = now.contacts.mesh.pushed(along(now.mesh.per_input, sense));
-        return sliding(gear.friction_input, x.continuous.friction_input, now.contacts.input.pushed(sense)) +
-               sliding(gear.friction_mesh, x.continuous.friction_mesh, mesh) * now.mesh.per_input;
+        return friction::sliding_torque(gear.friction_input, x.continuous.friction_input, now.contacts.input.pushed(sense)) +
+               friction::sliding_torque(gear.friction_mesh, x.continuous.friction_mesh, mesh) * now.mesh.per_input;
     }
     constexpr S output_friction(const State& x, const Derivatives& now, const S& sense) const {
-        return sliding(gear.friction_output, x.continuous.friction_output, now.contacts.output.pushed(sense));
+        return friction::sliding_torque(gear.friction_output, x.continuous.friction_output, now.contacts.output.pushed(sense));
     }
-    template <class Law>
-    static constexpr S sliding(const Law& law, const typename Law::State& x, const Contact& contact) {
-        return friction::set_valued(law) ? friction::torque(law, x, contact) : S(0.0);
-    }
-
-    /// Torque per angle [N.m/rad] of a friction that is about to slip.
-    template <class Law>
-    static constexpr S presliding_stiffness(const Law& law) {
-        const S little(1e-9), soon(1e-3);  // rad/s, s: less than any bristle's reach, and more than rounding
-        const Contact still = Contact{}.pushed(S(0.0));
-        const auto bent = friction::advance(law, typename Law::State{}, still.moving(little), soon);
-        return (friction::torque(law, bent, still) - friction::torque(law, typename Law::State{}, still)) / (little * soon);
-    }
-
-    /// The twist at which it turned round since it was held: where Hermite's cubic through both ends is steepest to neither side.
-    static constexpr S turning_point(const State& x, const typename Gear::Mesh& now) {
-        const S begin = x.held_rate * x.elapsed, end = now.twist_rate * x.elapsed, moved = now.twist - x.held_twist;
-        const S sense = sign(begin), bend = S(3.0) * (begin + end - S(2.0) * moved);
-        const S slope = S(2.0) * (S(3.0) * moved - S(2.0) * begin - end);
-        const S root = sqrt(max(slope * slope - S(4.0) * bend * begin, S(0.0)));
-        const S at = S(2.0) * abs(begin) / max(root - sense * slope, S(smallest));
-        return x.held_twist + at * (begin + at * (S(0.5) * slope + at * bend * S(1.0 / 3.0)));
-    }
-
-    /// A shaft that sticks does not accelerate.
-    static constexpr S moving(const Contact& contact, const S& torque) { return select(contact.sliding == S(0.0), S(0.0), torque); }
-
-    /// A place that sticks balances its share of what drives its side.
-    template <class Law>
-    static constexpr S reported(const Law& law, const Contact& contact, const S& sliding, const S& share) {
-        if (!friction::set_valued(law)) return sliding;
-        return select(contact.sliding == S(0.0), share * friction::hold(law, contact.pushed(sign(share))), sliding);
-    }
-
     constexpr S input_angle(const State& x, const Continuous& y) const { return y.input_angle + S(2.0 * pi) * x.turns; }
     constexpr S output_angle(const State& x, const Continuous& y) const {
         return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;

@@ -1,0 +1,37 @@
+#pragma once
+#include <strainwave/field.hpp>
+
+namespace strainwave {
+
+/// Everything worth recording, at one instant.
+template <class S, class MotorOutput, class ThermalOutput, class MeterOutput>
+struct Output {
+    S command, input_angle, input_speed, output_angle, output_speed, twist, kinematic_error, transmission_error, torque;
+    S friction_input, friction_mesh, friction_output, load_torque, temperature;
+    MotorOutput motor;
+    ThermalOutput thermal;
+    MeterOutput meter;
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, command, "1", "Command"));
+        visit(SW_FIELD(m, input_angle, "rad", "Input angle"));
+        visit(SW_FIELD(m, input_speed, "rad/s", "Input speed"));
+        visit(SW_FIELD(m, output_angle, "rad", "Output angle"));
+        visit(SW_FIELD(m, output_speed, "rad/s", "Output speed"));
+        visit(SW_FIELD(m, twist, "rad", "Elastic twist of the gear, at the output"));
+        visit(SW_FIELD(m, kinematic_error, "rad", "Pure kinematic error, at the output"));
+        visit(SW_FIELD(m, transmission_error, "rad", "Total error theta_in / i - theta_out"));
+        visit(SW_FIELD(m, torque, "N.m", "Torque transmitted, at the output"));
+        visit(SW_FIELD(m, friction_input, "N.m", "Friction torque at the input, opposing its motion"));
+        visit(SW_FIELD(m, friction_mesh, "N.m", "Friction torque of the mesh, opposing its motion, at the output's scale"));
+        visit(SW_FIELD(m, friction_output, "N.m", "Friction torque at the output, opposing its motion"));
+        visit(SW_FIELD(m, load_torque, "N.m", "Torque of the load, holding the output back"));
+        visit(SW_FIELD(m, temperature, "K", "Temperature of the gear"));
+        visit(SW_PART(m, motor, "What the motor shows of itself"));
+        visit(SW_PART(m, thermal, "What the thermal model shows of itself"));
+        visit(SW_PART(m, meter, "What the meter shows"));
+    }
+};
+
+}  // namespace strainwave
