@@ -37,13 +37,15 @@ def equilibrium(
     each shaft one way. A side whose set-valued friction holds it where it is sticks there; one that breaks away comes to rest
     where kinetic friction balances what drives it. Friction and hysteresis with memory remember the way.
 
-    A drive in open loop may run instead. Its state is that at the angles of `start`, at the lowest speed, counted from rest,
-    at which nothing accelerates, and without the kinematic error, which comes and goes with every turn.
+    A drive in open loop or under speed control may run instead. Its state is that at the angles of `start`, and without the
+    kinematic error, which comes and goes with every turn; in open loop at the lowest speed, counted from rest, at which nothing
+    accelerates.
 
     Whether the state is stable, the poles of `linearise` tell.
 
     Args:
-        command: output angle [rad] of a drive under position control, voltage [V] of one in open loop
+        command: output angle [rad] of a drive under position control, output speed [rad/s] under speed control, voltage [V] of
+            one in open loop
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K]
         start: where the way begins, taken at rest; at rest, untwisted, if not given
@@ -53,8 +55,9 @@ def equilibrium(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an input is not finite, `temperature` is not positive, there is no equilibrium, or torques grow beyond all
-            numbers; says why
+        ValueError: an input is not finite, `temperature` is not positive, there is no equilibrium, torques grow beyond all
+            numbers, or a part has none: a sampled controller, a load that prescribes or brakes, heating, a meter, noise, an
+            encoder; says why
 
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
@@ -63,12 +66,25 @@ def equilibrium(
     (0.0, 0.0)
     """
     check_continuous(arguments.drive(drive), "equilibrium")
+    _check_uncounted(drive)
     inputs = constant_inputs(command, load_torque, temperature)
     begin = _at_rest(drive, (drive.rest() if start is None else start_of(drive, start)).numbers)
     resting = _resting(drive, begin, inputs)
     found = State.of(drive, _running(averaged(drive), begin, inputs) if resting is None else resting)
     turns = round(found.input_angle / tau)
     return found.replace(input_angle=found.input_angle - tau * turns, turns=found.turns + turns)
+
+
+def _check_uncounted(drive: Drive) -> None:
+    """Refuses encoders: what is between two counts they do not show, so torques do not balance to rounding."""
+    for field in drive.sensors.fields:
+        sensor = getattr(drive.sensors, field["name"])
+        while hasattr(sensor, "law"):
+            sensor = sensor.law
+        if hasattr(sensor, "counts"):
+            raise ValueError(
+                f"equilibrium needs sensors that do not count; sensors.{field['name']} does. Put sw.sensor.Ideal() in its place"
+            )
 
 
 def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:
@@ -105,6 +121,11 @@ class Rates(ComparedByFields):
         count = len(values) - _core.output_count
         by_numbers, by_inputs = np.split(slopes.T, [count], axis=1)
         size = np.abs(by_numbers[:count]) @ np.abs(state[:count]) + np.abs(by_inputs[:count]) @ np.abs(inputs)
+        places = Layout(drive).places
+        # Current and torque may be small because what they balance cancels: then they are as exact as that is large.
+        for rows, columns in ((places["motor"], places["motor"]), (places["input_speed"], places["transmission_error"])):
+            each = size[rows] / _positive(np.abs(np.diag(by_numbers[rows, columns])))
+            size += np.abs(by_numbers[:count, columns]) @ each
         return cls(values[:count], by_numbers, by_inputs, size + _NOTHING)
 
     @property
@@ -178,11 +199,9 @@ class _Slow(ComparedByFields):
         return bool(self.start[places["input_slip_direction"]]), bool(self.start[places["output_slip_direction"]])
 
     def rows(self, rates: Rates) -> list[int]:
-        """The rates that must vanish: of the controller only those of numbers that something else depends on."""
+        """The rates that must vanish."""
         places = self.layout.places
-        others = np.delete(rates.by_numbers, places["control"], axis=0)
-        wanted = [i for i in range(self.layout.count)[places["control"]] if others[:, i].any()]
-        wanted += range(self.layout.count)[places["motor"]]
+        wanted = [*range(self.layout.count)[places["motor"]], *_needed(self.layout, rates)]
         return wanted + [places[f"{end}_speed"].start for end, free in zip(("input", "output"), self.free, strict=True) if free]
 
     def guess(self) -> Array:
@@ -197,17 +216,17 @@ class _Slow(ComparedByFields):
         return numbers
 
     def moved(self, numbers: Array) -> Array:
-        """Friction has followed the angles; what is left of their speeds tells which way."""
+        """Friction and sensors have followed the angles; what is left of their speeds tells which way."""
         places, count, friction = self.layout.places, self.layout.count, self.layout.friction()[:, 0]
         turned, wound = ((numbers - self.start[:count])[places[name]].item() for name in ("input_angle", "transmission_error"))
         moving = self.start.copy()
         moving[:count] = np.where(friction > 0.0, self.start[:count], numbers)
         moving[places["input_speed"]] = turned / SLOWLY
         moving[places["output_speed"]] = (turned / self.drive.gear.kinematics.ratio - wound) / SLOWLY if self.free[1] else 0.0
-        return _core.aged(self.drive, moving, self.inputs, SLOWLY)
+        return _settled(self.drive, _core.aged(self.drive, moving, self.inputs, SLOWLY), self.inputs, _sensing(self.layout))
 
     def directions(self, rates: Rates) -> Array:
-        """What may move, in columns; the states of friction go with the angles of their shafts."""
+        """What may move, in columns; the states of friction and of sensors go with the angles of their shafts."""
         places, count, friction = self.layout.places, self.layout.count, self.layout.friction()
         everything, inverse = np.eye(count), 1.0 / self.drive.gear.kinematics.ratio
         of_friction = friction * rates.by_numbers[:count]
@@ -220,7 +239,8 @@ class _Slow(ComparedByFields):
             (False, True): [wind],
             (False, False): [],
         }[self.free]
-        return np.hstack([everything[:, places["motor"]], everything[:, places["control"]], *angles])
+        moves = np.hstack([everything[:, places["motor"]], everything[:, places["control"]], *angles])
+        return _followed(moves, rates, _sensing(self.layout))
 
 
 # Running
@@ -264,9 +284,10 @@ class _Steady(ComparedByFields):
         return Layout(self.drive)
 
     def rows(self, rates: Rates) -> list[int]:
-        """The rates that must vanish; that of friction has."""
+        """The rates that must vanish; those of friction and of sensors have."""
         places = self.layout.places
-        return [*range(self.layout.count)[places["motor"]], places["input_speed"].start, places["output_speed"].start]
+        inner = [*range(self.layout.count)[places["motor"]], *_needed(self.layout, rates)]
+        return [*inner, places["input_speed"].start, places["output_speed"].start]
 
     def at(self, speed: float) -> Array:
         """Running at an input speed [rad/s]."""
@@ -277,23 +298,22 @@ class _Steady(ComparedByFields):
 
     def surplus(self, speed: float) -> float:
         """What is left to accelerate the whole drive at a speed, referred to the input [N.m]: spring and motor settled."""
-        drive, places, state = self.drive, self.layout.places, self.at(speed)
-        motor = places["motor"]
-        rates = Rates.of(drive, state, self.inputs)
-        if rates.finite and rates.rate[motor].any():  # a motor's rates are linear in its numbers
-            state[motor] += _least(rates.by_numbers[motor, motor], -rates.rate[motor])
-            rates = Rates.of(drive, state, self.inputs)
+        drive, places, inputs = self.drive, self.layout.places, self.inputs
+        state = _settled(drive, self.at(speed), inputs, [*range(self.layout.count)[places["motor"]], *_sensing(self.layout)])
+        rates = Rates.of(drive, state, inputs)
         if not rates.finite:
-            raise ValueError(_unsteady(self.drive, self.inputs, OVERFLOW))
+            raise ValueError(_unsteady(drive, inputs, OVERFLOW))
         load: Any = drive.load  # one that has an inertia: `check_continuous`
         inertia = drive.motor.inertia + drive.gear.input_inertia, load.inertia / drive.gear.kinematics.ratio
         of_input, of_output = (rates.rate[places[name]].item() for name in ("input_speed", "output_speed"))
         return float(inertia[0] * of_input + inertia[1] * of_output)
 
     def guess(self) -> float:
-        """The lowest speed at which the whole drive does not accelerate."""
+        """The speed that is commanded, if one is; else the lowest at which the whole drive does not accelerate."""
         from scipy.optimize import brentq
 
+        if command_unit(self.drive) == "rad/s":
+            return self.inputs[0].item() * self.drive.gear.kinematics.ratio
         way = next((sense for sense in (1.0, -1.0) if sense * self.surplus(sense / SLOWLY) > 0.0), 0.0)
         if way == 0.0:
             raise ValueError(_unsteady(self.drive, self.inputs, "friction holds it, but no balance was found"))
@@ -305,25 +325,54 @@ class _Steady(ComparedByFields):
         return float(brentq(self.surplus, low, high))
 
     def moved(self, numbers: Array) -> Array:
-        """All transients of friction gone."""
+        """All transients of friction and of sensors gone."""
         state = self.start.copy()
         state[: self.layout.count] = numbers
-        return _core.aged(self.drive, _core.consistent(self.drive, state), self.inputs, SLOWLY)
+        aged = _core.aged(self.drive, _core.consistent(self.drive, state), self.inputs, SLOWLY)
+        return _settled(self.drive, aged, self.inputs, _sensing(self.layout))
 
     def directions(self, rates: Rates) -> Array:
-        """What may move, in columns; friction so that its rate stays as it is."""
+        """What may move, in columns; friction and sensors so that their rates stay as they are."""
         places, count = self.layout.places, self.layout.count
-        everything, friction = np.eye(count), np.flatnonzero(self.layout.friction())
+        everything, friction = np.eye(count), np.flatnonzero(self.layout.friction()).tolist()
         run = everything[:, places["input_speed"]] + everything[:, places["output_speed"]] / self.drive.gear.kinematics.ratio
-        moves = np.hstack([everything[:, places["motor"]], everything[:, places["transmission_error"]], run])
-        by_numbers = rates.by_numbers[:count]
-        by_friction, by_moves = by_numbers[friction][:, friction], (by_numbers @ moves)[friction]
-        for column, right in enumerate(by_moves.T):
-            moves[friction, column] = _least(by_friction, -right)
-        return moves
+        inner = np.hstack([everything[:, places["motor"]], everything[:, places["control"]]])
+        moves = np.hstack([inner, everything[:, places["transmission_error"]], run])
+        return _followed(_followed(moves, rates, friction), rates, _sensing(self.layout))
 
 
 # Both
+
+
+def _sensing(layout: Layout) -> list[int]:
+    """Where the numbers of sensors stand."""
+    return [place for place, name in enumerate(layout.names[: layout.count]) if name.startswith("sensors.")]
+
+
+def _needed(layout: Layout, rates: Rates) -> list[int]:
+    """Where those numbers of the controller stand that something else depends on."""
+    control = layout.places["control"]
+    others = np.delete(rates.by_numbers, control, axis=0)
+    return [place for place in range(layout.count)[control] if others[:, place].any()]
+
+
+def _settled(drive: Drive, state: Array, inputs: Array, places: list[int]) -> Array:
+    """The same state with the numbers at `places` where their rates vanish, in which those of motors and sensors are linear."""
+    settled = state.copy()
+    if places and (rates := Rates.of(drive, state, inputs)).finite:
+        settled[places] += _least(rates.by_numbers[places][:, places], -rates.rate[places])
+    return settled
+
+
+def _followed(moves: Array, rates: Rates, places: list[int]) -> Array:
+    """The same moves, in columns, with the numbers at `places` moved so that their rates stay as they are."""
+    if not places:
+        return moves
+    found, count = moves.copy(), len(rates.rate)
+    by_themselves, by_moves = rates.by_numbers[places][:, places], (rates.by_numbers[:count] @ moves)[places]
+    for column, right in enumerate(by_moves.T):
+        found[places, column] = _least(by_themselves, -right)
+    return found
 
 
 @np.errstate(over="ignore", invalid="ignore")

@@ -52,6 +52,43 @@ def test_an_integral_brings_the_input_to_its_command_and_bears_the_load() -> Non
     stays(drive, state, 0.4, 3.0)
 
 
+LAGS = [
+    sw.sensor.FirstOrder(time_constant=2e-3),
+    sw.sensor.SecondOrder(natural_frequency=900.0),
+    sw.sensor.Delayed(law=sw.sensor.SecondOrder(natural_frequency=900.0), delay=2e-3),
+]
+
+
+@pytest.mark.parametrize("feedback", ["input", "output"])
+@pytest.mark.parametrize("sensor", LAGS)
+def test_a_sensor_that_lags_has_settled(sensor: object, feedback: str) -> None:
+    """So the drive rests where it would without it, and nothing moves from there."""
+    drive = geared(control=sw.control.PID(proportional=2.0, derivative=0.02, feedback=feedback))
+    lagging = drive.replace(
+        sensors=sw.Sensors(input_angle=sensor, output_angle=sensor, input_speed=sensor, output_speed=sensor, torque=sensor)
+    )
+    found, ideal = sw.equilibrium(lagging, command=0.4), sw.equilibrium(drive, command=0.4)
+    assert outputs(lagging, found, 0.4) == pytest.approx(outputs(drive, ideal, 0.4), rel=1e-9)
+    stays(lagging, found, 0.4)
+
+
+def test_a_sensor_that_shows_too_much_moves_the_rest() -> None:
+    """Without load k_p (i r - g theta_in - o) = 0."""
+    sensor = sw.sensor.Gain(gain=1.02, offset=0.1)
+    drive = geared(sw.loads.Inertia(inertia=0.5), sw.control.PID(proportional=2.0)).replace(
+        sensors=sw.Sensors(input_angle=sensor)
+    )
+    found = outputs(drive, sw.equilibrium(drive, command=0.4), 0.4)
+    assert found["input_angle"] == pytest.approx((RATIO * 0.4 - 0.1) / 1.02, rel=1e-12)
+
+
+def test_an_encoder_has_no_equilibrium() -> None:
+    encoder = sw.sensor.Delayed(law=sw.sensor.Encoder(counts=4096), delay=2e-3)
+    drive = geared(control=sw.control.PID(proportional=2.0)).replace(sensors=sw.Sensors(output_angle=encoder))
+    with pytest.raises(ValueError, match=r"sensors that do not count; sensors\.output_angle does"):
+        sw.equilibrium(drive, command=0.4)
+
+
 def test_many_turns_are_counted_as_a_run_counts_them() -> None:
     drive = geared(sw.loads.Inertia(inertia=0.5), sw.control.PID(proportional=2.0, derivative=0.05))
     state = sw.equilibrium(drive, command=3.0)
@@ -161,6 +198,32 @@ def test_a_motor_runs_at_the_speed_that_load_and_viscous_friction_leave_it() -> 
     assert state["motor.current"] == pytest.approx((12.0 - 0.12 * speed) / 0.5, rel=1e-12)
     assert state.transmission_error == pytest.approx((3.0 + 1.0 + 0.4 * speed / RATIO) / K, rel=1e-12)
     assert state.output_slip_direction == 1.0
+
+
+@pytest.mark.parametrize("sensor", [sw.sensor.Ideal(), *LAGS])
+@pytest.mark.parametrize("motor", [MOTOR, sw.motor.BrushlessDC(), sw.motor.PMSM()])
+def test_an_integral_brings_the_speed_to_its_command(motor: sw.motor.DC, sensor: object) -> None:
+    """And bears the load: K i_m = T / i, of the DC motor u = R i_m + K_b omega as well."""
+    control = sw.control.PI(proportional=0.05, integral=1.0)
+    drive = geared(sw.loads.Inertia(inertia=0.5), control, motor).replace(sensors=sw.Sensors(input_speed=sensor))
+    state = sw.equilibrium(drive, command=1.5, load_torque=3.0)
+    found = outputs(drive, state, 1.5, 3.0)
+    assert found["input_speed"] == pytest.approx(RATIO * 1.5, rel=1e-12)
+    assert found["torque"] == pytest.approx(3.0, rel=1e-9)
+    if motor == MOTOR:
+        current = 3.0 / RATIO / MOTOR.torque_constant
+        assert found["voltage"] == pytest.approx(MOTOR.resistance * current + MOTOR.back_emf * 30.0, rel=1e-9)
+        assert state["control.error_integral"] == pytest.approx(found["voltage"], rel=1e-9)
+    run = sw.simulate(drive, sw.scenario.constant(1.5, 0.1), load_torque=3.0, start=state)
+    assert np.ptp(run["input_speed"]) < 1e-8
+
+
+def test_a_proportional_law_leaves_a_speed_behind() -> None:
+    """k_p (i r - omega) = u = R T / (i K_m) + K_b omega."""
+    drive = geared(sw.loads.Inertia(inertia=0.5), sw.control.PI(proportional=0.2))
+    volts = MOTOR.resistance * 3.0 / RATIO / MOTOR.torque_constant
+    expected = (0.2 * RATIO * 1.5 - volts) / (0.2 + MOTOR.back_emf)
+    assert sw.equilibrium(drive, command=1.5, load_torque=3.0).input_speed == pytest.approx(expected, rel=1e-10)
 
 
 def test_a_drive_with_bristles_and_losses_under_load_runs_on_as_it_is() -> None:
