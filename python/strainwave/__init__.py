@@ -33,6 +33,7 @@ from strainwave._core import (
 
 if TYPE_CHECKING:
     from strainwave.analysis.linear import Linearisation, linearise
+    from strainwave.analysis.orders import BearingOrders, Orders, bearing_orders, order_spectrum, orders
     from strainwave.analysis.response import FrequencyResponse, frequency_response
     from strainwave.analysis.sensitivity import Derivatives, derivatives
     from strainwave.analysis.steady import equilibrium
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
+    "BearingOrders": "analysis.orders",
     "Derivatives": "analysis.sensitivity",
     "Ensemble": "simulation.ensemble",
     "Entry": "files.entries",
@@ -57,6 +59,7 @@ _LAZY = {
     "FrequencyResponse": "analysis.response",
     "GearSet": "files.gear_set",
     "Linearisation": "analysis.linear",
+    "Orders": "analysis.orders",
     "RatingCheck": "files.ratings",
     "RatingWarning": "files.ratings",
     "Quantity": "files.entries",
@@ -64,6 +67,7 @@ _LAZY = {
     "Run": "simulation.run",
     "Seen": "simulation.controller",
     "Twin": "identify.twin",
+    "bearing_orders": "analysis.orders",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
     "derivatives": "analysis.sensitivity",
@@ -72,6 +76,8 @@ _LAZY = {
     "frequency_response": "analysis.response",
     "linearise": "analysis.linear",
     "load": "files.gear_set",
+    "order_spectrum": "analysis.orders",
+    "orders": "analysis.orders",
     "save": "files.gear_set",
     "scenario": "simulation.scenario",
     "simulate": "simulation.run",
@@ -83,6 +89,7 @@ _LAZY = {
 }
 
 __all__ = [
+    "BearingOrders",
     "Derivatives",
     "Drive",
     "Ensemble",
@@ -93,6 +100,7 @@ __all__ = [
     "Gear",
     "GearSet",
     "Linearisation",
+    "Orders",
     "PassivityWarning",
     "Quantity",
     "RatingCheck",
@@ -102,6 +110,7 @@ __all__ = [
     "Seen",
     "Sensors",
     "Twin",
+    "bearing_orders",
     "catalogue",
     "check_ratings",
     "control",
@@ -119,6 +128,8 @@ __all__ = [
     "loads",
     "meter",
     "motor",
+    "order_spectrum",
+    "orders",
     "save",
     "scenario",
     "sensor",
