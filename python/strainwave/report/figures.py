@@ -100,11 +100,11 @@ def friction_table(evidence: Evidence) -> str:
         _friction_points(torque, evidence)
         _friction_law(torque, evidence, evidence.fit.gear.friction_input, "model", color=LIGHT["model"])
         _residual(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["held-out"])
-        _label(torque, "friction torque", "N.m")
-        _label(residual, "measured − predicted from the others", "N.m", "input speed", "rad/s")
-        _legend(figure, torque)
+        label_axes(torque, "friction torque", "N.m")
+        label_axes(residual, "measured − predicted from the others", "N.m", "input speed", "rad/s")
+        legend(figure, torque)
 
-    return _inline(draw, (WIDTH, 3.7), "friction", f"Friction torque over input speed, {evidence.source}")
+    return inline(draw, (WIDTH, 3.7), "friction", f"Friction torque over input speed, {evidence.source}")
 
 
 def torsion_loop(evidence: Evidence) -> str:
@@ -119,10 +119,10 @@ def torsion_loop(evidence: Evidence) -> str:
         for gap in gaps(_torsion(evidence)):
             residual.axvline(float(gap) + 0.5, color=LIGHT["muted"], linestyle=":", linewidth=0.8)
         _label_loop(loop, evidence)
-        _label(residual, "measured − modelled", "N.m", "point compared, in the order measured", "1")
-        _legend(figure, loop)
+        label_axes(residual, "measured − modelled", "N.m", "point compared, in the order measured", "1")
+        legend(figure, loop)
 
-    return _inline(draw, (WIDTH, 4.8), "torsion", f"Torque over twist, {evidence.source}")
+    return inline(draw, (WIDTH, 4.8), "torsion", f"Torque over twist, {evidence.source}")
 
 
 def drive_log(evidence: Evidence, channel: int) -> str:
@@ -134,16 +134,16 @@ def drive_log(evidence: Evidence, channel: int) -> str:
     def draw(figure: Figure) -> None:
         values, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
         measured, predicted = log.measured[channel], fit.predicted[channel]
-        _curve(values, log.time, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
-        _curve(values, log.time, predicted, color=LIGHT["model"], linewidth=1.0, label="model")
+        curve(values, log.time, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
+        curve(values, log.time, predicted, color=LIGHT["model"], linewidth=1.0, label="model")
         _residual(residual, log.time, fit.residuals[channel], color=LIGHT["ink"])
         for axes in (values, residual):
             _shade(axes, log.time, ~fit.training)
-        _label(values, name, unit)
-        _label(residual, "measured − modelled", unit, "time", "s")
-        _legend(figure, values)
+        label_axes(values, name, unit)
+        label_axes(residual, "measured − modelled", unit, "time", "s")
+        legend(figure, values)
 
-    return _inline(draw, (WIDTH, 3.6), f"log-{channel}", f"{name} over time, {evidence.source}")
+    return inline(draw, (WIDTH, 3.6), f"log-{channel}", f"{name} over time, {evidence.source}")
 
 
 def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
@@ -156,11 +156,11 @@ def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
         _friction_law(axes, evidence, fitted, "fitted to the table", color=LIGHT["model"])
         _friction_points(axes, evidence)
         axes.set_ylim(*_with_zero(axes.get_ylim()))
-        _label(axes, "friction torque", "N.m", "input speed", "rad/s")
-        _legend(figure, axes)
+        label_axes(axes, "friction torque", "N.m", "input speed", "rad/s")
+        legend(figure, axes)
 
     title = f"Two data sets: the friction law of the initial model, and {evidence.source}"
-    return _inline(draw, (WIDTH, 3.0), "two-laws", title)
+    return inline(draw, (WIDTH, 3.0), "two-laws", title)
 
 
 def experiment(simulated: SimulatedExperiment, name: str) -> str:
@@ -171,20 +171,20 @@ def experiment(simulated: SimulatedExperiment, name: str) -> str:
     def draw(figure: Figure) -> None:
         response, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
         command = response if comparable else below
-        _curve(command, first.time, first[simulated.command], color=LIGHT["ink"], linewidth=0.9, label="command")
+        curve(command, first.time, first[simulated.command], color=LIGHT["ink"], linewidth=0.9, label="command")
         for number, (label, run) in enumerate(simulated.runs):
             colour, line, width = RUNS[number % len(RUNS)]
             style: dict[str, Any] = {"color": LIGHT[colour], "linestyle": line, "linewidth": width}
             style["label"] = f" {label}"  # matplotlib leaves out labels that begin with an underscore
             answer = run.values(simulated.response, response_unit)
-            _curve(response, run.time, answer, **style)
+            curve(response, run.time, answer, **style)
             if comparable:
-                _curve(below, run.time, answer - run.values(simulated.command, command_unit), **style)
-        _label(response, output_name(simulated.response), response_unit)
-        _label(below, "response − command" if comparable else "command", command_unit, "time", "s")
-        _legend(figure, response)
+                curve(below, run.time, answer - run.values(simulated.command, command_unit), **style)
+        label_axes(response, output_name(simulated.response), response_unit)
+        label_axes(below, "response − command" if comparable else "command", command_unit, "time", "s")
+        legend(figure, response)
 
-    return _inline(draw, (WIDTH, 3.9), name, f"{simulated.name}: command and response over time")
+    return inline(draw, (WIDTH, 3.9), name, f"{simulated.name}: command and response over time")
 
 
 def overview(torsion: Evidence, friction: Evidence) -> str:
@@ -196,8 +196,8 @@ def overview(torsion: Evidence, friction: Evidence) -> str:
         _label_loop(left, torsion)
         _friction_points(right, friction)
         _friction_law(right, friction, friction.fit.gear.friction_input, "model", color=LIGHT["model"])
-        _label(right, "friction torque", "N.m", "input speed", "rad/s")
-        _legend(figure, left)
+        label_axes(right, "friction torque", "N.m", "input speed", "rad/s")
+        legend(figure, left)
 
     title = "Torsion loop and friction of two strain wave gears, measured and modelled"
     return _standalone(draw, (8.4, 3.2), "overview", title)
@@ -270,13 +270,13 @@ def _loop(axes: Axes, evidence: Evidence) -> None:
     )
     for torque, chosen, look in drawn:
         for stretch in _unbroken(loop, chosen):
-            _curve(axes, loop.twist[stretch], torque[stretch], **look)
+            curve(axes, loop.twist[stretch], torque[stretch], **look)
             look["label"] = ""
 
 
 def _label_loop(axes: Axes, evidence: Evidence) -> None:
     place = "at the output" if _torsion(evidence).input_ratio is None else "referred to the output"
-    _label(axes, f"torque {place}", "N.m", f"twist {place}", "rad")
+    label_axes(axes, f"torque {place}", "N.m", f"twist {place}", "rad")
 
 
 def _unbroken(loop: TorsionLoop, chosen: Mask) -> Iterator[slice]:
@@ -287,7 +287,8 @@ def _unbroken(loop: TorsionLoop, chosen: Mask) -> Iterator[slice]:
         yield from _blocks(chosen & (branch == number))
 
 
-def _curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
+def curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
+    """A line, of a long record drawn by the extremes of short stretches."""
     axes.plot(*envelope(x, y, STRETCHES), **style)
 
 
@@ -298,7 +299,7 @@ def _residual(axes: Axes, x: Array, residual: Array, color: str) -> None:
         axes.vlines(x, 0.0, residual, color=color, linewidth=0.8)
         axes.plot(x, residual, "o", color=color, markersize=2.8)
     else:
-        _curve(axes, x, residual, color=color, linewidth=0.8)
+        curve(axes, x, residual, color=color, linewidth=0.8)
 
 
 def _shade(axes: Axes, x: Array, held_out: Mask) -> None:
@@ -321,14 +322,14 @@ def _with_zero(ends: tuple[float, float]) -> tuple[float, float]:
     return min(ends[0], 0.0), max(ends[1], 0.0)
 
 
-def _label(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> None:
+def label_axes(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> None:
     """Names the quantities, in the prefix that suits their size; the upright one stands above its axis."""
-    axes.set_title(textwrap.fill(f"{y}{_scaled(axes.yaxis, y_unit)}", LINE))
+    axes.set_title(textwrap.fill(f"{y}{scaled(axes.yaxis, y_unit)}", LINE))
     if x:
-        axes.set_xlabel(f"{x}{_scaled(axes.xaxis, x_unit)}")
+        axes.set_xlabel(f"{x}{scaled(axes.xaxis, x_unit)}")
 
 
-def _scaled(axis: Axis, unit: str) -> str:
+def scaled(axis: Axis, unit: str) -> str:
     """Numbers an axis, all to the same digit if it is linear; gives the unit with its prefix."""
     power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
 
@@ -342,7 +343,7 @@ def _scaled(axis: Axis, unit: str) -> str:
     return f" [{text}]" if text else ""
 
 
-def _legend(figure: Figure, axes: Axes) -> None:
+def legend(figure: Figure, axes: Axes) -> None:
     """In rows above the drawing, as many labels beside each other as fit."""
     handles, labels = axes.get_legend_handles_labels()
     lines = [textwrap.fill(label, LINE) for label in labels]
@@ -354,7 +355,7 @@ def _legend(figure: Figure, axes: Axes) -> None:
 # ---- From a drawing to SVG -------------------------------------------------------------------------------------------
 
 
-def _inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
+def inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
     """SVG to stand in a page, whose colours and letters it takes."""
     svg: str = ElementTree.tostring(_svg(draw, size, name, title), encoding="unicode")
     return svg
