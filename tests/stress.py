@@ -33,7 +33,7 @@ from strainwave.simulation.run import METHODS
 from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import has_memory, passive, speeds
-from tests.strategies import AROUND_ONE, TYPICAL, Field, kinds_of
+from tests.strategies import AROUND_ONE, TYPICAL, Field, kinds_of, suited
 from tests.workers import answers
 
 STEPS = 100
@@ -45,6 +45,9 @@ FARTHEST = 1e6  # rad
 WRONG = "WRONG: "
 SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
+# Numbers that differ from member to member only at a cost that is documented: a last digit where some are whole and others are
+# not; and instants of sampling, which all members share and which nothing is derived by.
+SHARED = re.compile(r"\.order\[|\.density\.exponent$|^control\.(period|delay)$")
 
 
 def magnitude(unit: str, low: float | None, high: float | None, zero: bool, random: np.random.Generator) -> float:
@@ -81,6 +84,8 @@ def model(kind: Any, random: np.random.Generator) -> Any:
     while True:
         length = int(random.integers(0, 9))
         members = {field["name"]: value(field, length, random) for field in kind.fields}
+        if "kinematics" in members:
+            members["stiffness"] = suited(members["stiffness"], members["kinematics"])
         try:
             return kind(**members)
         except ValueError:
@@ -95,11 +100,8 @@ def acting_on(drive: sw.Drive, random: np.random.Generator) -> dict[str, float]:
 
 
 def neighbours(drive: sw.Drive, random: np.random.Generator) -> dict[str, list[float]]:
-    """Values of three of its numbers for as many members as a pack holds, the first its own.
-
-    None of those that are whole in some members only, which may differ in the last digit then: documented.
-    """
-    known = [one for one in _core.parameters(drive) if not re.search(r"\.order\[|\.density\.exponent$", one[0])]
+    """Values of three of its numbers for as many members as a pack holds, the first its own."""
+    known = [one for one in _core.parameters(drive) if not SHARED.search(one[0])]
     drawn: dict[str, list[float]] = {}
     for place in random.choice(len(known), min(3, len(known)), replace=False):
         path, own, unit, _, low, high = known[place]
@@ -169,6 +171,8 @@ def check(drive: sw.Drive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
     check_end(drive, run, inputs)
     check_angles(drive, run)
     check_friction(drive.gear, run)
+    if isinstance(drive.meter, sw.meter.EnergyMeter):
+        check_powers(drive, run)
 
 
 def check_end(drive: sw.Drive, run: sw.Run, inputs: NDArray[np.float64]) -> None:
@@ -198,6 +202,21 @@ def check_friction(gear: sw.Gear, run: sw.Recording) -> None:
         if not has_memory(law) and passive(law):
             least = -ROUNDING * np.abs(run[place]).max() * np.abs(speed).max()
             assert np.min(run[place] * speed) >= least, f"{WRONG}{place} drives"
+
+
+def check_powers(drive: sw.Drive, run: sw.Recording) -> None:
+    """Powers are those of the torques and speeds beside them, nothing is taken before the start, and damping never gives.
+
+    What sticks takes no power, so a torque that several share while they stick does not matter.
+    """
+    turned = {"friction_input": "input_speed", "friction_output": "output_speed", "load_torque": "output_speed"}
+    for torque, speed in turned.items():
+        told, power = run[f"power_{torque.removesuffix('_torque')}"], run[torque] * run[speed]
+        assert np.all(np.abs(told - power) <= ROUNDING * np.abs(power)), f"{WRONG}{torque} has another power"
+    for name in run.names:
+        assert not name.startswith("energy_") or run[name][0] == 0.0, f"{WRONG}{name} at the start"
+    for name in ("power_damping", "stored_input", "stored_output"):
+        assert np.all(run[name] >= 0.0), f"{WRONG}{name} is negative"
 
 
 def known_speeds(gear: sw.Gear, run: sw.Recording) -> Mapping[str, NDArray[np.float64]]:
@@ -248,7 +267,12 @@ def with_derivatives(drive: sw.Drive, paths: list[str], volts: Any, dt: float, c
         whole, *parts = (found[name, path] for name in ("transmission_error", "twist", "kinematic_error"))
         size = sum(np.abs(part) for part in (whole, *parts))
         assert np.all(np.abs(whole - sum(parts)) <= ROUNDING * size), f"{WRONG}derivatives do not add up"
-        assert not any(found[name, path].any() for name in ("command", "temperature")), f"{WRONG}an input depends on the drive"
+        assert not any(found[name, path].any() for name in given(drive)), f"{WRONG}an input depends on the drive"
+
+
+def given(drive: sw.Drive) -> list[str]:
+    """Columns that are inputs of the run. A gear that warms up has a temperature of its own."""
+    return ["command"] if isinstance(drive.thermal, sw.thermal.Heating) else ["command", "temperature"]
 
 
 def outcomes(numbers: Iterable[int], processes: int, limit: float = LIMIT) -> Iterator[Outcome]:

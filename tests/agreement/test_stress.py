@@ -53,6 +53,28 @@ def test_a_recording_that_contradicts_itself_is_told(column: str, said: str) -> 
         check(SLIDING, sw.Run(turned, run.units, run.end, run.method), inputs)
 
 
+@pytest.mark.parametrize(
+    ("column", "said"),
+    [
+        ("power_friction_input", "friction_input has another power"),
+        ("energy_motor", "energy_motor at the start"),
+        ("power_damping", "power_damping is negative"),
+        ("stored_output", "stored_output is negative"),
+    ],
+)
+def test_powers_and_energies_that_cannot_be_are_told(column: str, said: str) -> None:
+    """A run that is right, and the same with a column less than it was; its end left as it is."""
+    metered = SLIDING.replace(gear=SLIDING.gear.replace(damping=1.0), meter=sw.meter.EnergyMeter())
+    volts = Excitation(sw.scenario.constant(1.0, 0.01))
+    run = sw.simulate(metered, volts.command, 1e-4)
+    inputs = volts.over(volts.time_grid(1e-4, None))[-1, -1]
+    check(metered, run, inputs)
+    changed = {name: run[name].copy() for name in run.names}
+    changed[column][:-1] -= 1e-3
+    with pytest.raises(AssertionError, match=f"^WRONG: {said}$"):
+        check(metered, sw.Run(changed, run.units, run.end, run.method), inputs)
+
+
 def test_what_sticks_and_moves_is_told() -> None:
     volts = Excitation(sw.scenario.constant(1.0, 0.01))
     run = sw.simulate(SLIDING, volts.command, 1e-4)
