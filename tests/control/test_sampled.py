@@ -36,7 +36,7 @@ def test_it_is_the_recursion_of_a_computer(delay: float, gain: float) -> None:
     integral = 0.0
     for k, (error, rate) in enumerate(zip(angle, speed, strict=True)):
         unlimited = law.proportional * error + law.integral * integral + law.derivative * rate
-        integral += PERIOD * error * (abs(unlimited) < law.limit)
+        integral += PERIOD * error * (abs(unlimited) <= law.limit or error * unlimited < 0.0)
         held = np.clip(unlimited, -law.limit, law.limit)
         first = rows[k] + round(delay / sample)
         seen = run["voltage"][first + 1 : first + 11]  # what is recorded at an instant is what was there just before

@@ -83,6 +83,7 @@ struct Cascade {
         return {voltages.integral_rate(voltage, currents.integral_rate(asked, speed_error)),
                 voltages.integral_rate(voltage, current_error)};
     }
+    constexpr State relaxation_rate() const { return {}; }
 
 private:
     constexpr PositionSpeed<S> outer() const {

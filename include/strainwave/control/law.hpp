@@ -7,6 +7,7 @@
 ///     State                                 what changes continuously; Stateless if nothing does
 ///     act(state, command, measurement)      -> actuation
 ///     rate(state, command, measurement)     -> State
+///     relaxation_rate()                     -> State, 1/s: how fast each number goes to what is given to it; 0 of an integral
 ///
 /// and, where it does not act on every motor,
 ///

@@ -31,6 +31,7 @@ struct OpenLoop {
 
     constexpr S act(const State&, const Command<S>& command, const Measurement<S>&) const { return gain * command.value; }
     constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
+    constexpr State relaxation_rate() const { return {}; }
 };
 
 }  // namespace strainwave::control

@@ -54,6 +54,7 @@ struct PI {
         const S now = error(command, measured);
         return {measured.limits.within(limit).integral_rate(asked(x, now), now)};
     }
+    constexpr State relaxation_rate() const { return {}; }
 
 private:
     constexpr S error(const Command<S>& command, const Measurement<S>& measured) const {

@@ -25,8 +25,8 @@ struct PID {
         with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
         u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
         kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
-        error is referred to the input, so that the gains mean the same. The integral rests while the voltage is limited, here
-        or by the motor.
+        error is referred to the input, so that the gains mean the same. The integral rests where it would lead further beyond
+        what limit or motor allow.
 
         u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
         read A or N.m in place of V.
@@ -58,10 +58,9 @@ struct PID {
     }
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const Error now = error(command, measured);
-        const Limits<S> reach = measured.limits.within(limit);
-        const S asked = unlimited(x, now);
-        return {select((asked > reach.low) & (asked < reach.high), now.angle, S(0.0))};
+        return {measured.limits.within(limit).integral_rate(unlimited(x, now), now.angle)};
     }
+    constexpr State relaxation_rate() const { return {}; }
 
 private:
     /// Commanded minus measured, at the input.

@@ -67,6 +67,7 @@ struct PositionSpeed {
     constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         return {measured.limits.within(limit).integral_rate(asked(x, command, measured), speed_error(command, measured))};
     }
+    constexpr State relaxation_rate() const { return {}; }
 
     /// What is asked of the motor before any limit.
     constexpr S asked(const State& x, const Command<S>& command, const Measurement<S>& measured) const {

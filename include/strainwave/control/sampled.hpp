@@ -12,16 +12,19 @@ struct Sampled {
     S delay{0.0};
 
     static constexpr auto name = "sampled";
-    static constexpr auto source = "AstromWittenmark1997, chapter 8: zero-order hold, integrals by forward differences";
+    static constexpr auto source =
+        "AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly";
     static constexpr auto doc = R"(
         A controller that runs in a computer: it acts at instants and holds its output between them.
 
         .. math:: u(t) = u_k, \quad t_k + d \le t < t_{k+1} + d, \qquad u_k = \text{law}(x_k, r_k, y_k), \qquad
-                  x_{k+1} = x_k + T \dot x_k
+                  x_{k+1} = x_k + \frac{1 - e^{-\lambda T}}{\lambda}\, \dot x_k
 
         with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
-        t_k, x_k the numbers of the law, such as an integral. Before the first output the actuation is 0. Steps end at each t_k
-        and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not sampled itself.
+        t_k, x_k the numbers of the law. An integral has lambda = 0, thus x_{k+1} = x_k + T dx_k/dt. A section of a LeadLag has
+        lambda = 1 / b: over a period it moves as it does under a constant input. Before the first output the actuation is 0.
+        Steps end at each t_k and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not
+        sampled itself.
 
         In an ensemble, period and delay are the same for all members. They have no derivatives: time is not among the numbers.
 
@@ -60,6 +63,7 @@ struct Sampled {
 
     constexpr S held(const Discrete& x) const { return x.actuation; }
     constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
+    constexpr State relaxation_rate() const { return {}; }
     constexpr Discrete elapsed(const Discrete& x, const S& dt) const {
         Discrete later = x;
         later.until_sample = x.until_sample - dt;
@@ -72,9 +76,9 @@ struct Sampled {
                                const Measurement<S>& measured) const {
         const Discrete x = with_output(before, within);  // a delay of a whole period ends where the next sample begins
         const auto now = sample_is_due(x, within);
-        const auto rate = flattened<S>(law.rate(x.law, command, measured));
+        const auto rate = flattened<S>(law.rate(x.law, command, measured)), relaxation = flattened<S>(law.relaxation_rate());
         auto numbers = flattened<S>(x.law);
-        for (int i = 0; i < numbers.size(); ++i) numbers[i] = select(now, numbers[i] + period * rate[i], numbers[i]);
+        for (int i = 0; i < numbers.size(); ++i) numbers[i] = select(now, numbers[i] + reach(relaxation[i]) * rate[i], numbers[i]);
         const S pending = select(now, law.act(x.law, command, measured), x.pending);
         const S until_sample = select(now, x.until_sample + period, x.until_sample);
         return with_output({refilled(x.law, numbers), x.actuation, pending, until_sample}, within);
@@ -82,6 +86,13 @@ struct Sampled {
     constexpr Schedule<S> schedule(const Discrete& x) const { return {x.until_sample, period, delay}; }
 
 private:
+    /// How far a number goes in a period, per rate at its begin [s].
+    constexpr S reach(const S& relaxation) const {
+        const auto relaxes = relaxation > S(0.0);
+        if (!any(relaxes)) return period;
+        const S rate = select(relaxes, relaxation, S(1.0));
+        return select(relaxes, (S(1.0) - exp(-min(rate * period, S(beyond_digits)))) / rate, period);
+    }
     constexpr auto sample_is_due(const Discrete& x, const S& within) const { return within >= x.until_sample; }
     constexpr auto output_is_due(const Discrete& x, const S& within) const { return within >= x.until_sample - (period - delay); }
     constexpr Discrete with_output(const Discrete& x, const S& within) const {

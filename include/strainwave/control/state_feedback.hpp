@@ -55,6 +55,7 @@ struct StateFeedback {
         return measured.limits.within(limit).limited(of_input + of_output - current * measured.current - torque * measured.torque);
     }
     constexpr State rate(const State&, const Command<S>&, const Measurement<S>&) const { return {}; }
+    constexpr State relaxation_rate() const { return {}; }
 };
 
 }  // namespace strainwave::control

@@ -28,7 +28,7 @@ struct Encoder {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, counts, "1", "Counts N per revolution", 1));
-        visit(SW_FIELD(m, offset, "rad", "What it shows at the angle 0"));
+        visit(SW_FIELD(m, offset, "rad", "What it shows too much"));
         visit(SW_FIELD(m, eccentricity, "rad", "Amplitude a of the error once per revolution"));
         visit(SW_FIELD(m, eccentricity_phase, "rad", "Phase phi of that error"));
     }

@@ -24,9 +24,9 @@ struct Noisy {
 
         with x what the law shows, t the time since the start of the run, A = amplitude. The band from 0 to bandwidth has N = 32
         equal cells; each holds one frequency f_k, its place in the cell and its phase phi_k drawn by ``seed``. A smooth function of
-        time: no step length and no method changes it. Its values are close to Gaussian, and of a controller that samples
-        slower than twice the bandwidth close to independent. Steps must resolve the bandwidth. Sensors that are to differ
-        need different seeds.
+        time: no step length and no method changes it. Its values are close to Gaussian. Samples that are 1 / (2 bandwidth)
+        apart, or a multiple of that, are close to independent. Steps must resolve the bandwidth. Sensors that are to differ need
+        different seeds.
 
         >>> from strainwave.sensor import FirstOrder, Noisy
         >>> Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.02, bandwidth=500.0, seed=7).amplitude
