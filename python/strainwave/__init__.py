@@ -32,7 +32,8 @@ from strainwave._core import (
 )
 
 if TYPE_CHECKING:
-    from strainwave.analysis.linear import Linearisation, linearise
+    from strainwave.analysis.compare import Agreement, Difference, compare
+    from strainwave.analysis.linear import Linearisation, linearise, modes
     from strainwave.analysis.orders import BearingOrders, Orders, bearing_orders, order_spectrum, orders
     from strainwave.analysis.response import FrequencyResponse, frequency_response
     from strainwave.analysis.sensitivity import Derivatives, derivatives
@@ -47,10 +48,13 @@ if TYPE_CHECKING:
     from strainwave.simulation.controller import Seen, simulate_controlled
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
     from strainwave.simulation.run import Run, simulate, simulate_adaptively
+    from strainwave.simulation.scenario_file import ScenarioFile
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
+    "Agreement": "analysis.compare",
     "BearingOrders": "analysis.orders",
+    "Difference": "analysis.compare",
     "Derivatives": "analysis.sensitivity",
     "Ensemble": "simulation.ensemble",
     "Entry": "files.entries",
@@ -65,17 +69,20 @@ _LAZY = {
     "Quantity": "files.entries",
     "Recording": "files.recording",
     "Run": "simulation.run",
+    "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
     "Twin": "identify.twin",
     "bearing_orders": "analysis.orders",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
+    "compare": "analysis.compare",
     "derivatives": "analysis.sensitivity",
     "equilibrium": "analysis.steady",
     "fit": "identify.fit",
     "frequency_response": "analysis.response",
     "linearise": "analysis.linear",
     "load": "files.gear_set",
+    "modes": "analysis.linear",
     "order_spectrum": "analysis.orders",
     "orders": "analysis.orders",
     "save": "files.gear_set",
@@ -89,8 +96,10 @@ _LAZY = {
 }
 
 __all__ = [
+    "Agreement",
     "BearingOrders",
     "Derivatives",
+    "Difference",
     "Drive",
     "Ensemble",
     "EnsembleWarning",
@@ -107,12 +116,14 @@ __all__ = [
     "RatingWarning",
     "Recording",
     "Run",
+    "ScenarioFile",
     "Seen",
     "Sensors",
     "Twin",
     "bearing_orders",
     "catalogue",
     "check_ratings",
+    "compare",
     "control",
     "derivatives",
     "drives",
@@ -127,6 +138,7 @@ __all__ = [
     "load",
     "loads",
     "meter",
+    "modes",
     "motor",
     "order_spectrum",
     "orders",

@@ -43,12 +43,12 @@ _TEXTS = ("name", "maker", "note")
 
 def read(path: Path) -> dict[str, Any]:
     """The members of the set in a file; `ValueError` says what is wrong in it, with table and key."""
-    document = _document(path)
-    _checked(_head_form(), document)
-    models, sources = _read_models(document)
+    content = document(path)
+    _checked(_head_form(), content)
+    models, sources = _read_models(content)
     with at("[ratings]"):
-        ratings = _read_ratings(document.get("ratings", {}))
-    texts = {key: document[key] for key in _TEXTS if key in document}
+        ratings = _read_ratings(content.get("ratings", {}))
+    texts = {key: content[key] for key in _TEXTS if key in content}
     return {"sources": sources, "ratings": ratings, **texts, **models}
 
 
@@ -135,16 +135,17 @@ def _filled(gear_set: Contents) -> Iterator[tuple[_Table, Any]]:
 # Reading
 
 
-def _document(path: Path) -> dict[str, Any]:
+def document(path: Path) -> dict[str, Any]:
+    """What stands in a TOML file; `ValueError` where it cannot be read, is no TOML or holds nothing."""
     try:
-        document = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        content = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
         raise ValueError(one_line(f"cannot be read: {error.strerror}")) from None
     except (ValueError, RecursionError) as error:
         raise ValueError(one_line(f"is not valid TOML: {error}")) from None
-    if not document:
+    if not content:
         raise ValueError("is empty")
-    return document
+    return content
 
 
 def _read_models(document: Mapping[str, Any]) -> tuple[dict[str, Any], Sources]:
