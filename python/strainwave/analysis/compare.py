@@ -131,14 +131,20 @@ def compare(first: Any, second: Any, names: Sequence[str] | None = None) -> Any:
     >>> print(*sw.compare(sw.load("csg-25-100"), sw.load("csg-32-100"))[:1])
     gear.damping: 4.526 N.m.s/rad against 13.46 N.m.s/rad (+197 %)
     """
-    if isinstance(first, Recording) and isinstance(second, Recording):
+    kinds = [_kind(name, each) for name, each in (("first", first), ("second", second))]
+    if kinds[0] != kinds[1]:
+        raise TypeError(f"first is {kinds[0]}, second {kinds[1]}; give two recordings, or two of gear, drive and set")
+    if isinstance(first, Recording):
         return _of_recordings(first, second, names)
-    for name, each in (("first", first), ("second", second)):
-        if not isinstance(each, Model):
-            raise TypeError(f"{name} = {shortened(each)} must be a recording, as the other, or a gear, a drive or a set")
     if names is not None:
         raise TypeError(f"names = {shortened(names)}: of models all numbers are compared; leave it out")
     return _of_models(first, second)
+
+
+def _kind(name: str, each: object) -> str:
+    if not isinstance(each, Recording | Model):
+        raise TypeError(f"{name} = {shortened(each)} must be a recording, a gear, a drive or a set")
+    return "a recording" if isinstance(each, Recording) else "a model"
 
 
 def _of_recordings(first: Recording, second: Recording, names: Sequence[str] | None) -> list[Agreement]:
