@@ -91,6 +91,20 @@ SUITED: dict[str, list[dict[str, Any]]] = {
             "lost_motion": 0.0088,
         }
     ],
+    "mixed_lubrication": [{"coulomb": 0.02, "breakaway": 0.045, "stribeck_speed": 2.0, "viscous": 5e-5, "viscosity_fall": 0.03}],
+    "brushless_dc": [{"resistance": 0.5, "inductance": 5e-4, "torque_constant": 0.1, "inertia": 1e-4}],
+    "pmsm": [{"flux_linkage": 0.0167, "inertia": 1e-4}],
+    "torque_source": [{"inertia": 1e-4}],
+    "current_source": [{"torque_constant": 0.1, "inertia": 1e-4}],
+    "lead_lag": [{"gain": 2.0, "lead_numerator": 0.02, "lead_denominator": 0.002}],
+    "state_feedback": [{"input_angle": 2.0, "input_speed": 0.05}],
+    "torsion_spring": [{"inertia": 0.5, "stiffness": 10.0}],
+    "aerodynamic": [{"inertia": 0.5, "airspeed": 20.0}],
+    "torque_table": [{"inertia": 0.5, "angle": [-1.0, 0.0, 1.0], "held_torque": [-1.0, 0.0, 2.0]}],
+    "brake": [{"inertia": 0.5}],
+    "delayed": [{"delay": 2e-3}],
+    "noisy": [{"amplitude": 1e-5, "bandwidth": 500.0}],
+    "thermal_softening": [{"stiffness_fall": 3e-4}],
 }
 
 SIMPLEST = sw.Drive(
