@@ -313,7 +313,7 @@ class _Steady(ComparedByFields):
         from scipy.optimize import brentq
 
         if command_unit(self.drive) == "rad/s":
-            return self.inputs[0].item() * self.drive.gear.kinematics.ratio
+            return float(self.inputs[0] * self.drive.gear.kinematics.ratio)
         way = next((sense for sense in (1.0, -1.0) if sense * self.surplus(sense / SLOWLY) > 0.0), 0.0)
         if way == 0.0:
             raise ValueError(_unsteady(self.drive, self.inputs, "friction holds it, but no balance was found"))
