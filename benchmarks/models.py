@@ -91,7 +91,7 @@ SUITED: dict[str, list[dict[str, Any]]] = {
             "lost_motion": 0.0088,
         }
     ],
-    "mixed_lubrication": [{"coulomb": 0.02, "breakaway": 0.045, "stribeck_speed": 2.0, "viscous": 5e-5, "viscosity_fall": 0.03}],
+    "mixed_lubrication": [{"coulomb": 0.02, "breakaway": 0.045, "stribeck_speed": 2.0, "viscosity_fall": 0.03}],
     "brushless_dc": [{"resistance": 0.5, "inductance": 5e-4, "torque_constant": 0.1, "inertia": 1e-4}],
     "pmsm": [{"flux_linkage": 0.0167, "inertia": 1e-4}],
     "torque_source": [{"inertia": 1e-4}],
