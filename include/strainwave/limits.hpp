@@ -15,7 +15,7 @@ struct Limits {
     }
 
     constexpr S limited(const S& asked) const { return clip(asked, low, high); }
-    constexpr Limits within(const S& most) const { return {max(low, -most), min(high, most)}; }
+    constexpr Limits within(const S& most) const { return {clip(low, -most, most), clip(high, -most, most)}; }
 
     /// The rate of an integral of `error` that feeds `asked`: the error, but none that would lead further beyond a limit.
     constexpr S integral_rate(const S& asked, const S& error) const {

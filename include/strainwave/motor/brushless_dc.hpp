@@ -28,8 +28,10 @@ struct BrushlessDC {
         phases in series, K = torque_constant, of torque and back-EMF both, U = supply_voltage, I = current_limit. The amplifier
         limits the voltage so that the current never exceeds I; what it can give at each instant it hands back to the controller,
         whose integrals rest meanwhile. R rises with the temperature of the winding by resistance_rise per kelvin above 20 degC.
-        Leaves out commutation, cogging, and ripple: those of PMSM. Beyond the speed (U + R I) / K the supply cannot hold the
-        current back any more, and it exceeds I.
+        Where a load turns the motor faster than (U + R I) / K the supply cannot hold the current back any more, and it exceeds I.
+
+        Leaves out commutation, cogging, and ripple: those of PMSM. Leaves out, too, that an amplifier may first use all of its
+        voltage: here a current that is asked to be I approaches it with the time constant L / R.
 
         >>> from strainwave.motor import BrushlessDC
         >>> BrushlessDC(supply_voltage=24.0, current_limit=5.0).supply_voltage
@@ -69,7 +71,7 @@ struct BrushlessDC {
     constexpr S current(const State& x, const S&, const Rotor<S>&) const { return x.current; }
     constexpr Limits<S> limits(const State&, const Rotor<S>& rotor) const {
         const S induced = torque_constant * rotor.speed, most = winding().resistance_at(rotor.temperature) * current_limit;
-        return {max(induced - most, -supply_voltage), min(induced + most, supply_voltage)};
+        return Limits<S>{induced - most, induced + most}.within(supply_voltage);
     }
     constexpr Output output(const State& x, const S& asked, const Rotor<S>& rotor) const {
         return {x.current, limits(x, rotor).limited(asked)};

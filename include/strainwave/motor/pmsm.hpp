@@ -38,12 +38,14 @@ struct PMSM {
 
         The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d comes first, and u_q has what is left; u_q
         is limited besides so that the length of the current does not exceed current_limit. What is left is handed back to the
-        controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls.
+        controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls. Where a load
+        turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit.
 
         The sensors of the phase currents may be off: the controller then sees i_q + I_o sin(p theta), I_o = current_offset, and
         makes a ripple of the torque out of it. The energy of cogging is held, not lost. R rises with the temperature of the
         winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
-        and the switching of the inverter.
+        and the switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
+        the current with the time constant L_q / R.
 
         >>> from strainwave.motor import PMSM
         >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)
@@ -103,9 +105,10 @@ struct PMSM {
     }
     constexpr Limits<S> limits(const State& x, const Rotor<S>& rotor) const {
         const S direct = direct_voltage(x, rotor), reach = sqrt(max(length() * length() - direct * direct, S(smallest)));
-        const S others = current_limit * current_limit - x.direct_current * x.direct_current;
-        const S most = winding().resistance_at(rotor.temperature) * sqrt(max(others, S(smallest))), induced = back_emf(x, rotor);
-        return {max(induced - most, -reach), min(induced + most, reach)};
+        const S along = max(abs(x.direct_current), abs(direct_current));  // i_d is on its way from one to the other
+        const S others = sqrt(max(current_limit * current_limit - along * along, S(smallest)));
+        const S most = winding().resistance_at(rotor.temperature) * others, induced = back_emf(x, rotor);
+        return Limits<S>{induced - most, induced + most}.within(reach);
     }
     constexpr Output output(const State& x, const S& asked, const Rotor<S>& rotor) const {
         return {x.quadrature_current, limits(x, rotor).limited(asked), x.direct_current, direct_voltage(x, rotor)};
