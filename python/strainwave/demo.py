@@ -46,7 +46,7 @@ def commands() -> dict[str, Scenario]:
 def position_drive() -> Twin:
     """The twin of document P's drive from its Table 2, with which its other friction data are in contradiction (E-P6)."""
     return twin(
-        PUBLISHED / "position-control.toml",
+        "position-drive",
         friction=PUBLISHED / "position-control-friction.csv",
         sources={"friction": "document P, Table 2 (measured)"},
     )

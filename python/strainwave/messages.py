@@ -84,7 +84,8 @@ def with_options(message: str) -> str:
     """
     told = re.sub(r" \(in Python \w+=\{.*?\}\)", "", message)
     told = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", told)
-    return told.replace("strainwave.catalogue() lists all", "`strainwave gears` lists all")
+    listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
+    return told.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
 
 
 def _escaped(character: str) -> str:

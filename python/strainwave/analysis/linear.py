@@ -15,7 +15,7 @@ from math import tau
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, Gear, _core, arguments, friction, motor
 from strainwave.analysis.steady import OVERFLOW, SLOWLY, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
@@ -26,6 +26,7 @@ from strainwave.simulation.state import Layout, State, start_of
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+HELD = 1e30  # N.m: more than any torque that turns an input
 INPUTS = ("command", "command_rate", "load_torque", "temperature")
 _COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
 
@@ -198,6 +199,44 @@ def linearise(
     states = tuple(layout.names[place] for place in kept)
     chosen = {name: known[name] for name in (*states, *INPUTS, *shown)}
     return Linearisation(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen)
+
+
+def modes(drive: Drive) -> dict[str, Array]:
+    """Eigenfrequencies of the shafts on the spring of the gear, without what damps, drives or holds them.
+
+    Spring and hysteresis have their stiffness at rest. The kinematic error is left out, for its slope changes the ratio with
+    the input angle. What the load does is kept, its damping too. Two inertias on a spring of stiffness k at the output
+    vibrate at sqrt(k (1 / J_out + 1 / (i^2 J_in))), with the input held at sqrt(k / J_out).
+
+    Args:
+        drive: the drive; of motor and controller, only the inertia of the motor matters
+
+    Returns:
+        "free" and "input held": eigenfrequencies [rad/s], increasing, each of shape (n,)
+
+    Raises:
+        TypeError: it is no drive
+        ValueError: the load prescribes or brakes the motion of the output shaft
+
+    >>> import strainwave as sw
+    >>> gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), stiffness=sw.stiffness.Linear(k=150.0))
+    >>> drive = sw.Drive(gear=gear, motor=sw.motor.DC(inertia=0.0012), load=sw.loads.Inertia(inertia=0.005))
+    >>> {name: found.round(6).tolist() for name, found in modes(drive).items()}
+    {'free': [173.241161], 'input held': [173.205081]}
+    """
+    arguments.drive(drive)
+    same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening")
+    gear = Gear(**{name: getattr(drive.gear, name) for name in same})
+    bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
+    held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HELD, breakaway=HELD)))
+    return {"free": _frequencies(bare), "input held": _frequencies(held)}
+
+
+def _frequencies(drive: Drive) -> Array:
+    """Those of the pairs of poles that vibrate [rad/s]."""
+    linear = linearise(drive, drive.rest())
+    found: Array = np.sort(linear.poles.imag[linear.poles.imag > 0.0])
+    return found
 
 
 def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array:

@@ -28,6 +28,7 @@ Kind = TypeVar("Kind", bound=Entry)
 _PARTS = [field["name"] for field in Drive.fields]
 
 CATALOGUE = Path(__file__).parents[1] / "catalogue"
+FOLDERS = {"gears": CATALOGUE, "drives": CATALOGUE / "drives"}
 
 
 class Estimated(Protocol):
@@ -177,7 +178,7 @@ class GearSet:
         """Read a set of the catalogue by name, or a gear file by path.
 
         Args:
-            name_or_path: a name in `catalogue()`, or a path: what ends in .toml or has a folder
+            name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder
 
         Returns:
             The set, in SI units. A table left out is the part that does nothing, its sources say "not given".
@@ -254,13 +255,21 @@ class GearSet:
         gear_file.write(self, Path(path))
 
 
-def catalogue() -> list[str]:
-    """Names of the gear sets that come with the package, in order.
+def catalogue(of: str = "gears") -> list[str]:
+    """Names of the sets that come with the package, in order.
+
+    Args:
+        of: "gears", those of makers' catalogues, or "drives", whole ones with motor and load
+
+    Raises:
+        ValueError: `of` is neither
 
     >>> len(catalogue()), catalogue()[0]
     (127, 'csg-14-100')
+    >>> catalogue("drives")
+    ['position-drive', 'position-drive-full-friction', 'position-drive-printed']
     """
-    return sorted(file.stem for file in CATALOGUE.glob("*.toml"))
+    return sorted(file.stem for file in FOLDERS[arguments.one_of("of", of, FOLDERS)].glob("*.toml"))
 
 
 def load(name_or_path: str | Path) -> Any:
@@ -270,16 +279,16 @@ def load(name_or_path: str | Path) -> Any:
     is the gear of any file, and `GearSet.read(path).drive` the drive.
 
     Args:
-        name_or_path: a name in `catalogue()`, or a path: what ends in .toml or has a folder
+        name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder
 
     Returns:
-        A `Gear` or a `Drive`; of a set of the catalogue a `Gear`.
+        A `Gear` or a `Drive`; of a catalogue's gear a `Gear`.
 
     Raises:
         ValueError: as `GearSet.read`, which also gives sources and ratings.
 
-    >>> load("hfuc-25-100").stiffness.k2
-    50000.0
+    >>> load("hfuc-25-100").stiffness.k2, load("position-drive").motor.resistance
+    (50000.0, 2.0)
     """
     gear_set = GearSet.read(name_or_path)
     return gear_set.gear if gear_set.motor is None or gear_set.load is None else gear_set.drive
@@ -376,11 +385,8 @@ def _estimated(gear_set: GearSet, fit: Fitted, source: str) -> dict[str, Entry]:
 def _drive(models: Mapping[str, Any]) -> Drive:
     """The drive of these models, with the default for each that is None."""
     rest = {name: models[name] for name in _PARTS if name == "gear" or models.get(name) is not None}
-    if "motor" not in rest:
-        rest["motor"] = (
-            motors.BrushlessDC()
-        )  # every controller can act on it: what it does not fit is told once the motor is known
-    return Drive(**rest)
+    # Every controller can act on a brushless motor: whether it fits another is told once that is known.
+    return Drive(**{"motor": motors.BrushlessDC()} | rest)
 
 
 def _check_texts(name: str, maker: str, note: str) -> None:
@@ -403,11 +409,11 @@ def _file(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path
-    names = catalogue()
-    if name_or_path not in names:
-        near = difflib.get_close_matches(name_or_path.lower(), names)
+    files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
+    if name_or_path not in files:
+        near = difflib.get_close_matches(name_or_path.lower(), files)
         raise ValueError(
-            f"no gear set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
-            "strainwave.catalogue() lists all, and the path of a file ends in .toml"
+            f"no set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
+            'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
         )
-    return CATALOGUE / f"{name_or_path}.toml"
+    return files[name_or_path]

@@ -390,11 +390,12 @@ def test_a_catalogue_gear_turns_its_output_by_its_ratio(name: str) -> None:
     [
         ("HFUC-25-100", "; near it are hfuc-25-100"),
         ("hfuc-25-101", "; near it are hfuc-25-.*, hfuc-25-100"),
+        ("position-drvie", "; near it are position-drive, "),
         ("xyz", "; strainwave"),
     ],
 )
 def test_a_name_not_in_the_catalogue_is_answered_with_those_near_it(name: str, near: str) -> None:
-    with pytest.raises(ValueError, match=f'^no gear set "{name}" in the catalogue{near}.*catalogue\\(\\) lists all'):
+    with pytest.raises(ValueError, match=f'^no set "{name}" in the catalogue{near}.*catalogue\\(\\) lists all'):
         load(name)
 
 
