@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import strainwave as sw
@@ -24,20 +23,7 @@ COMMAND = sw.scenario.sine(0.3, 4.0, DURATION) + sw.scenario.ramp(0.8, DURATION)
 TIMES = [(1e-3, 0.0, 5e-6), (1e-3, 3e-4, 5e-6), (7.3e-4, 2.1e-4, 5.3e-6), (1e-3, 1e-3, 5e-6)]
 
 
-class Seen(NamedTuple):
-    """What a law is given at an instant."""
-
-    command: float
-    rate: float
-    input_angle: float
-    input_speed: float
-    output_angle: float
-    output_speed: float
-    current: float
-    torque: float
-
-
-Law = Callable[[Seen], float]
+Law = Callable[[sw.Seen], float]
 
 
 def drive(control: object, motor: object = DC, **parts: object) -> sw.Drive:
@@ -100,19 +86,14 @@ class Plant:
             case _:
                 return 0.0
 
-    def seen(self, x: Array, actuation: float, command: float, rate: float) -> Seen:
+    def seen(self, x: Array, actuation: float, time: float, command: sw.scenario.Scenario) -> sw.Seen:
         """All that is measured, under the actuation that is held."""
         torque = SPRING * (x[1] / RATIO - x[3]) + DAMPING * (x[2] / RATIO - x[4])
-        return Seen(command, rate, x[1], x[2], x[3], x[4], self.current(x, actuation), float(torque))
+        asked = float(command.value(time)), float(command.rate(time))
+        return sw.Seen(time, *asked, *x[1:], self.current(x, actuation), float(torque), -np.inf, np.inf)
 
 
-def advanced(error: float, asked: float, limit: float) -> float:
-    """The error as an integral takes it that feeds what is asked: nothing that leads further beyond the limit."""
-    beyond = (asked > limit and error > 0.0) or (asked < -limit and error < 0.0)
-    return 0.0 if beyond else error
-
-
-def by_hand(motor: object, law: Law, period: float, delay: float, command: sw.scenario.Scenario) -> dict[str, Array]:
+def simulated(motor: object, law: Law, period: float, delay: float, command: sw.scenario.Scenario) -> dict[str, Array]:
     """The motion at the instants 0, period, … and the actuation that comes of each."""
     plant = Plant(motor)
     (late, late_input), (rest, rest_input) = plant.over(delay), plant.over(period - delay)
@@ -120,7 +101,7 @@ def by_hand(motor: object, law: Law, period: float, delay: float, command: sw.sc
     x, acting, held = np.zeros(5), 0.0, 0.0
     states, currents, given = [], [], []
     for time in instants:
-        now = plant.seen(x, acting, float(command.value(time)), float(command.rate(time)))
+        now = plant.seen(x, acting, time, command)
         states.append(x)
         currents.append(now.current)
         asked = law(now)
@@ -134,8 +115,8 @@ def by_hand(motor: object, law: Law, period: float, delay: float, command: sw.sc
 
 
 def check(control: object, law: Law, motor: object, period: float, delay: float, dt: float = 5e-6) -> dict[str, Array]:
-    """The run of the package is the one by hand to 1e-12 of the largest; returns the latter."""
-    wanted = by_hand(motor, law, period, delay, COMMAND)
+    """The run of the package is that simulation to 1e-12 of the largest; returns the latter."""
+    wanted = simulated(motor, law, period, delay, COMMAND)
     one = drive(sw.control.Sampled(law=control, period=period, delay=delay), motor)  # type: ignore[arg-type]
     run = sw.simulate(one, COMMAND, dt, sample=period)
     actuation = next(name for name in ("voltage", "motor_torque", "current") if name in run.names)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 
-from tests.control.discrete import DC, PROMPT, RATIO, TIMES, Plant, Seen, advanced, check, drive
+from tests.control import by_hand
+from tests.control.discrete import DC, PROMPT, RATIO, TIMES, Plant, check, drive
 
 LAW = sw.control.Cascade(
     position_gain=25.0,
@@ -33,27 +34,6 @@ OUTER = (
 )
 
 
-class ByHand:
-    """The recursion that a computer runs."""
-
-    def __init__(self, law: sw.control.Cascade, period: float) -> None:
-        self.law, self.period, self.speed, self.current = law, period, 0.0, 0.0
-
-    def __call__(self, seen: Seen) -> float:
-        law, commanded = self.law, RATIO * seen.rate
-        angle = RATIO * seen.output_angle if law.feedback == "output" else seen.input_angle
-        wanted = law.position_gain * (RATIO * seen.command - angle) + law.speed_feedforward * commanded
-        speed_error = np.clip(wanted, -law.speed_limit, law.speed_limit) - seen.input_speed
-        asked = law.speed_proportional * speed_error + law.speed_integral * self.speed
-        asked += law.viscous_feedforward * commanded + law.coulomb_feedforward * np.sign(commanded)
-        error = np.clip(asked, -law.current_limit, law.current_limit) - seen.current
-        voltage = law.current_proportional * error + law.current_integral * self.current
-        voltage += law.back_emf_feedforward * seen.input_speed
-        self.speed += self.period * advanced(advanced(speed_error, asked, law.current_limit), voltage, law.voltage_limit)
-        self.current += self.period * advanced(error, voltage, law.voltage_limit)
-        return float(np.clip(voltage, -law.voltage_limit, law.voltage_limit))
-
-
 LIMITS = {"free": {}, "speed": {"speed_limit": 9.0}, "current": {"current_limit": 0.8}, "voltage": {"voltage_limit": 1.5}}
 
 
@@ -62,7 +42,7 @@ LIMITS = {"free": {}, "speed": {"speed_limit": 9.0}, "current": {"current_limit"
 @pytest.mark.parametrize("limited", list(LIMITS))
 def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, feedback: str, limited: str) -> None:
     law = LAW.replace(feedback=feedback, **LIMITS[limited])
-    wanted = check(law, ByHand(law, period), DC, period, delay, dt)
+    wanted = check(law, by_hand.Cascade(law, period), DC, period, delay, dt)
     assert (np.abs(wanted["actuation"]).max() == law.voltage_limit) == (limited == "voltage")
 
 
@@ -70,7 +50,7 @@ def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, fee
 def test_so_it_is_where_the_current_follows_the_voltage_at_once(delay: float) -> None:
     """The current it sees is that under the voltage that is still held."""
     law = LAW.replace(current_proportional=0.1, current_integral=60.0)
-    check(law, ByHand(law, 1e-3), PROMPT, 1e-3, delay)
+    check(law, by_hand.Cascade(law, 1e-3), PROMPT, 1e-3, delay)
 
 
 def test_a_current_that_would_determine_its_own_voltage_is_refused() -> None:

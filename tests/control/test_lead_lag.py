@@ -9,7 +9,8 @@ import pytest
 import strainwave as sw
 from scipy.signal import cont2discrete, dlsim
 
-from tests.control.discrete import DC, RATIO, TIMES, TORQUE, Array, Plant, Seen, check, drive
+from tests.control import by_hand
+from tests.control.discrete import DC, RATIO, TIMES, TORQUE, Array, Plant, check, drive
 
 LAW = sw.control.LeadLag(
     gain=0.8, lead_numerator=0.03, lead_denominator=0.004, lag_numerator=0.1, lag_denominator=0.5, limit=48.0
@@ -17,29 +18,12 @@ LAW = sw.control.LeadLag(
 STILL = sw.motor.TorqueSource(inertia=1e12)  # nothing moves it
 
 
-class ByHand:
-    """The recursion that a computer runs: each section exactly for what is held over a period."""
-
-    def __init__(self, law: sw.control.LeadLag, period: float) -> None:
-        self.law, self.first, self.second = law, 0.0, 0.0
-        self.kept = np.exp(-period / law.lead_denominator), np.exp(-period / law.lag_denominator)
-
-    def __call__(self, seen: Seen) -> float:
-        law = self.law
-        error = RATIO * seen.command - (RATIO * seen.output_angle if law.feedback == "output" else seen.input_angle)
-        lead = self.first + law.lead_numerator / law.lead_denominator * (error - self.first)
-        lag = self.second + law.lag_numerator / law.lag_denominator * (lead - self.second)
-        self.first = error + self.kept[0] * (self.first - error)
-        self.second = lead + self.kept[1] * (self.second - lead)
-        return float(np.clip(law.gain * lag, -law.limit, law.limit))
-
-
 @pytest.mark.parametrize(("period", "delay", "dt"), TIMES)
 @pytest.mark.parametrize("feedback", ["input", "output"])
 @pytest.mark.parametrize("limit", [48.0, 0.5], ids=["free", "limited"])
 def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, feedback: str, limit: float) -> None:
     law = LAW.replace(feedback=feedback, limit=limit)
-    wanted = check(law, ByHand(law, period), DC, period, delay, dt)
+    wanted = check(law, by_hand.LeadLag(law, period), DC, period, delay, dt)
     assert (np.abs(wanted["actuation"]).max() == limit) == (limit < 1.0)
 
 

@@ -6,24 +6,10 @@ import numpy as np
 import pytest
 import strainwave as sw
 
-from tests.control.discrete import DC, RATIO, TIMES, TORQUE, Seen, advanced, check, drive
+from tests.control import by_hand
+from tests.control.discrete import DC, RATIO, TIMES, TORQUE, check, drive
 
 LAW = sw.control.PI(proportional=0.02, integral=1.5, limit=24.0)
-
-
-class ByHand:
-    """The recursion that a computer runs."""
-
-    def __init__(self, law: sw.control.PI, period: float) -> None:
-        self.law, self.period, self.integral = law, period, 0.0
-
-    def __call__(self, seen: Seen) -> float:
-        law = self.law
-        speed = RATIO * seen.output_speed if law.feedback == "output" else seen.input_speed
-        error = RATIO * seen.command - speed
-        asked = law.proportional * error + law.integral * self.integral
-        self.integral += self.period * advanced(error, asked, law.limit)
-        return float(np.clip(asked, -law.limit, law.limit))
 
 
 @pytest.mark.parametrize(("period", "delay", "dt"), TIMES)
@@ -31,7 +17,7 @@ class ByHand:
 @pytest.mark.parametrize("limit", [24.0, 0.15], ids=["free", "limited"])
 def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, feedback: str, limit: float) -> None:
     law = LAW.replace(feedback=feedback, limit=limit)
-    wanted = check(law, ByHand(law, period), DC, period, delay, dt)
+    wanted = check(law, by_hand.PI(law, period), DC, period, delay, dt)
     assert (np.abs(wanted["actuation"]).max() == limit) == (limit < 1.0)
 
 

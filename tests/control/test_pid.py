@@ -6,25 +6,10 @@ import numpy as np
 import pytest
 import strainwave as sw
 
-from tests.control.discrete import DC, PROMPT, RATIO, TIMES, TORQUE, Seen, advanced, check, drive
+from tests.control import by_hand
+from tests.control.discrete import DC, PROMPT, RATIO, TIMES, TORQUE, check, drive
 
 LAW = sw.control.PID(proportional=0.5, integral=3.0, derivative=0.01, limit=24.0)
-
-
-class ByHand:
-    """The recursion that a computer runs."""
-
-    def __init__(self, law: sw.control.PID, period: float) -> None:
-        self.law, self.period, self.integral = law, period, 0.0
-
-    def __call__(self, seen: Seen) -> float:
-        law = self.law
-        on_output = law.feedback == "output"
-        error = RATIO * seen.command - (RATIO * seen.output_angle if on_output else seen.input_angle)
-        rate = RATIO * seen.rate - (RATIO * seen.output_speed if on_output else seen.input_speed)
-        asked = law.proportional * error + law.integral * self.integral + law.derivative * rate
-        self.integral += self.period * advanced(error, asked, law.limit)
-        return float(np.clip(asked, -law.limit, law.limit))
 
 
 @pytest.mark.parametrize(("period", "delay", "dt"), TIMES)
@@ -32,7 +17,7 @@ class ByHand:
 @pytest.mark.parametrize("limit", [24.0, 0.6], ids=["free", "limited"])
 def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, feedback: str, limit: float) -> None:
     law = LAW.replace(feedback=feedback, limit=limit)
-    wanted = check(law, ByHand(law, period), DC, period, delay, dt)
+    wanted = check(law, by_hand.PID(law, period), DC, period, delay, dt)
     assert (np.abs(wanted["actuation"]).max() == limit) == (limit < 1.0)
 
 
@@ -40,7 +25,7 @@ def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, fee
 def test_so_it_is_on_any_motor(motor: object) -> None:
     gain = 1.0 if motor == PROMPT else 0.1
     law = LAW.replace(proportional=0.5 * gain, integral=3.0 * gain, derivative=0.01 * gain)
-    check(law, ByHand(law, 1e-3), motor, 1e-3, 3e-4)
+    check(law, by_hand.PID(law, 1e-3), motor, 1e-3, 3e-4)
 
 
 def test_it_tracks_a_ramp_without_error_and_holds_a_load() -> None:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 
-from tests.control.discrete import CURRENT, DC, RATIO, TIMES, TORQUE, Plant, Seen, advanced, check, drive
+from tests.control import by_hand
+from tests.control.discrete import CURRENT, DC, RATIO, TIMES, TORQUE, Plant, check, drive
 
 LAW = sw.control.PositionSpeed(
     position_gain=25.0,
@@ -21,29 +22,12 @@ LAW = sw.control.PositionSpeed(
 )
 
 
-class ByHand:
-    """The recursion that a computer runs."""
-
-    def __init__(self, law: sw.control.PositionSpeed, period: float) -> None:
-        self.law, self.period, self.integral = law, period, 0.0
-
-    def __call__(self, seen: Seen) -> float:
-        law, commanded = self.law, RATIO * seen.rate
-        angle = RATIO * seen.output_angle if law.feedback == "output" else seen.input_angle
-        wanted = law.position_gain * (RATIO * seen.command - angle) + law.speed_feedforward * commanded
-        error = np.clip(wanted, -law.speed_limit, law.speed_limit) - seen.input_speed
-        asked = law.speed_proportional * error + law.speed_integral * self.integral
-        asked += law.viscous_feedforward * commanded + law.coulomb_feedforward * np.sign(commanded)
-        self.integral += self.period * advanced(error, asked, law.limit)
-        return float(np.clip(asked, -law.limit, law.limit))
-
-
 @pytest.mark.parametrize(("period", "delay", "dt"), TIMES)
 @pytest.mark.parametrize("feedback", ["input", "output"])
 @pytest.mark.parametrize("changed", [{}, {"limit": 0.4}, {"speed_limit": 9.0}], ids=["free", "current", "speed"])
 def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, feedback: str, changed: dict[str, float]) -> None:
     law = LAW.replace(feedback=feedback, **changed)
-    wanted = check(law, ByHand(law, period), CURRENT, period, delay, dt)
+    wanted = check(law, by_hand.PositionSpeed(law, period), CURRENT, period, delay, dt)
     assert (np.abs(wanted["actuation"]).max() == law.limit) == ("limit" in changed)
 
 
@@ -51,7 +35,7 @@ def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, fee
 def test_so_it_is_on_any_motor(motor: object) -> None:
     gain = 10.0 if motor == DC else 0.1
     law = LAW.replace(speed_proportional=0.04 * gain, speed_integral=0.6 * gain)
-    check(law, ByHand(law, 1e-3), motor, 1e-3, 3e-4)
+    check(law, by_hand.PositionSpeed(law, 1e-3), motor, 1e-3, 3e-4)
 
 
 @pytest.mark.parametrize("integral", [0.0, 0.05])

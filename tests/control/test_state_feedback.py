@@ -8,26 +8,12 @@ import strainwave as sw
 from scipy.linalg import solve_continuous_are
 from scipy.signal import place_poles
 
-from tests.control.discrete import DAMPING, DC, PROMPT, RATIO, SPRING, TIMES, TORQUE, Plant, Seen, check, drive
+from tests.control import by_hand
+from tests.control.discrete import DAMPING, DC, PROMPT, RATIO, SPRING, TIMES, TORQUE, Plant, check, drive
 
 LAW = sw.control.StateFeedback(
     input_angle=0.5, input_speed=0.01, output_angle=2.0, output_speed=0.1, current=0.2, torque=0.03, limit=48.0
 )
-
-
-class ByHand:
-    """What a computer works out; it remembers nothing."""
-
-    def __init__(self, law: sw.control.StateFeedback) -> None:
-        self.law = law
-
-    def __call__(self, seen: Seen) -> float:
-        law = self.law
-        asked = law.input_angle * (RATIO * seen.command - seen.input_angle)
-        asked += law.input_speed * (RATIO * seen.rate - seen.input_speed)
-        asked += law.output_angle * (seen.command - seen.output_angle) + law.output_speed * (seen.rate - seen.output_speed)
-        asked -= law.current * seen.current + law.torque * seen.torque
-        return float(np.clip(asked, -law.limit, law.limit))
 
 
 @pytest.mark.parametrize(("period", "delay", "dt"), TIMES)
@@ -35,7 +21,7 @@ class ByHand:
 @pytest.mark.parametrize("motor", [DC, PROMPT], ids=["inductance", "none"])
 def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, limit: float, motor: object) -> None:
     law = LAW.replace(limit=limit)
-    wanted = check(law, ByHand(law), motor, period, delay, dt)
+    wanted = check(law, by_hand.StateFeedback(law), motor, period, delay, dt)
     assert (np.abs(wanted["actuation"]).max() == limit) == (limit < 1.0)
 
 

@@ -127,7 +127,7 @@ def simulate_controlled(
     time, steps = time_grid.times, len(time_grid.instants) - 1
     check_resolution(drive, time_grid.longest, 0.0)
     course = excitation.over(time_grid)
-    held = asked = 0.0
+    held = asked = acted = 0.0
     outputs, first = np.empty((0, 0)), 0
     with progressing(progress, steps) as shown:
         for number, (begin, end) in enumerate(pairwise([*_places(time_grid.instants, actions), steps])):
@@ -135,11 +135,12 @@ def simulate_controlled(
                 held = asked
             else:
                 now = course[begin, 0]
-                measured = _core.measured(drive, state, _under(held, now))
+                measured = _core.measured(drive, state, _under(acted, now))  # what there is just before the instant
                 seen = Seen(float(time_grid.instants[begin]), float(now[0]), float(now[1]), *measured.tolist())
                 asked = arguments.number(f"what the controller returns at t = {seen.time:g} s", controller(seen))
             if begin == end:
                 continue
+            acted = held
             if first == 0:
                 outputs, first = beginning(drive, state, _under(held, course[0, 0]), channels, len(time)), 1
             keep = time_grid.samples[begin + 1 : end + 1]

@@ -1,4 +1,4 @@
-"""A controller that is a function of Python: what the package's own sampled one does, and what a loop by hand does."""
+"""A controller that is a function of Python does what the package's own sampled law does."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 
+from tests.control import by_hand
+from tests.control.discrete import CURRENT, DC, PROMPT, TORQUE
+from tests.control.discrete import drive as linear
 from tests.reference_drive import DRIVE, STICKING
 
 OPEN = DRIVE.replace(control=sw.control.OpenLoop())
@@ -16,29 +19,50 @@ COMMAND = sw.scenario.sine(0.1, 3.0, 0.2)
 GAINS = sw.control.PID(proportional=2.0, integral=5.0, derivative=0.05, limit=24.0)
 
 
-class HandWritten:
-    """The same law in Python: it holds what it reaches, and its integral rests at the limit."""
-
-    def __init__(self, ratio: float, period: float) -> None:
-        self.ratio, self.period, self.integral = ratio, period, 0.0
-
-    def __call__(self, seen: sw.Seen) -> float:
-        error = self.ratio * seen.command - seen.input_angle
-        rate = self.ratio * seen.command_rate - seen.input_speed
-        asked = GAINS.proportional * error + GAINS.integral * self.integral + GAINS.derivative * rate
-        leads_on = error * asked > 0.0
-        self.integral += 0.0 if abs(asked) > GAINS.limit and leads_on else self.period * error
-        return min(max(asked, -GAINS.limit), GAINS.limit)
-
-
 @pytest.mark.parametrize(("period", "delay"), [(1e-3, 0.0), (1e-3, 1e-3), (1e-3, 3e-4), (7e-4, 2e-4), (1.3e-4, 1e-5)])
 @pytest.mark.parametrize("drive", [OPEN, STICKY], ids=["bristles", "sticking"])
 def test_it_does_what_a_sampled_law_of_the_package_does(drive: sw.Drive, period: float, delay: float) -> None:
     sampled = drive.replace(control=sw.control.Sampled(law=GAINS, period=period, delay=delay))
     run = sw.simulate(sampled, COMMAND, sample=1e-3)
-    law = HandWritten(drive.gear.kinematics.ratio, period)
+    law = by_hand.PID(GAINS, period, drive.gear.kinematics.ratio)
     own = sw.simulate_controlled(drive, law, COMMAND, sample=1e-3, period=period, delay=delay)
     assert own.units == run.units
+    for name in run.names:
+        assert np.abs(own[name] - run[name]).max() <= 1e-12 * np.abs(run[name]).max(), name
+
+
+WEAK = sw.motor.BrushlessDC(
+    resistance=0.5, inductance=5e-4, torque_constant=0.1, inertia=1e-4, supply_voltage=1.5, current_limit=2.0
+)
+LOOPS = {"position_gain": 25.0, "speed_proportional": 0.1, "speed_integral": 2.0, "speed_feedforward": 0.9}
+CASCADE = sw.control.Cascade(current_proportional=0.3, current_integral=200.0, back_emf_feedforward=0.1, **LOOPS)
+
+
+@pytest.mark.parametrize(
+    ("law", "motor"),
+    [
+        (sw.control.PI(proportional=0.02, integral=1.5), DC),
+        (sw.control.PI(proportional=0.02, integral=1.5), WEAK),
+        (sw.control.PositionSpeed(viscous_feedforward=2e-3, coulomb_feedforward=0.05, **LOOPS), CURRENT),
+        (sw.control.PositionSpeed(limit=0.05, **(LOOPS | {"speed_proportional": 0.01})), TORQUE),
+        (CASCADE, DC),
+        (CASCADE, WEAK),
+        (CASCADE.replace(current_proportional=0.1, current_integral=60.0, feedback="output"), PROMPT),
+        (
+            sw.control.LeadLag(gain=0.8, lead_numerator=0.03, lead_denominator=0.004, lag_numerator=0.1, lag_denominator=0.5),
+            WEAK,
+        ),
+        (sw.control.StateFeedback(input_angle=0.5, input_speed=0.01, output_angle=2.0, current=0.2, torque=0.03), PROMPT),
+    ],
+    ids=lambda part: part.name,
+)
+@pytest.mark.parametrize("delay", [0.0, 3e-4, 1e-3])
+def test_so_does_any_law_on_any_motor(law: object, motor: object, delay: float) -> None:
+    """With the limits that a motor hands back, and a current that follows the voltage at once."""
+    command = sw.scenario.sine(0.3, 4.0, 0.1) + sw.scenario.ramp(0.8, 0.1)
+    run = sw.simulate(linear(sw.control.Sampled(law=law, period=1e-3, delay=delay), motor), command, sample=1e-3)
+    written = getattr(by_hand, type(law).__name__)(law, 1e-3)
+    own = sw.simulate_controlled(linear(sw.control.OpenLoop(), motor), written, command, sample=1e-3, period=1e-3, delay=delay)
     for name in run.names:
         assert np.abs(own[name] - run[name]).max() <= 1e-12 * np.abs(run[name]).max(), name
 

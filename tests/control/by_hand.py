@@ -1,0 +1,120 @@
+"""Laws of control as a computer would run them, written by hand from their equations: callables of what they see."""
+
+from __future__ import annotations
+
+import numpy as np
+import strainwave as sw
+
+from tests.control.discrete import RATIO
+
+
+def within(seen: sw.Seen, limit: float) -> tuple[float, float]:
+    """The least and the largest actuation that law and motor allow."""
+    return max(seen.low, -limit), min(seen.high, limit)
+
+
+def advanced(error: float, asked: float, low: float, high: float) -> float:
+    """The error as an integral takes it that feeds what is asked: nothing that leads further beyond what is allowed."""
+    beyond = (asked > high and error > 0.0) or (asked < low and error < 0.0)
+    return 0.0 if beyond else error
+
+
+class PID:
+    def __init__(self, law: sw.control.PID, period: float, ratio: float = RATIO) -> None:
+        self.law, self.period, self.ratio, self.integral = law, period, ratio, 0.0
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law = self.law
+        on_output = law.feedback == "output"
+        error = self.ratio * seen.command - (self.ratio * seen.output_angle if on_output else seen.input_angle)
+        rate = self.ratio * seen.command_rate - (self.ratio * seen.output_speed if on_output else seen.input_speed)
+        asked = law.proportional * error + law.integral * self.integral + law.derivative * rate
+        low, high = within(seen, law.limit)
+        self.integral += self.period * advanced(error, asked, low, high)
+        return float(np.clip(asked, low, high))
+
+
+class PI:
+    def __init__(self, law: sw.control.PI, period: float, ratio: float = RATIO) -> None:
+        self.law, self.period, self.ratio, self.integral = law, period, ratio, 0.0
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law = self.law
+        speed = self.ratio * seen.output_speed if law.feedback == "output" else seen.input_speed
+        error = self.ratio * seen.command - speed
+        asked = law.proportional * error + law.integral * self.integral
+        low, high = within(seen, law.limit)
+        self.integral += self.period * advanced(error, asked, low, high)
+        return float(np.clip(asked, low, high))
+
+
+class PositionSpeed:
+    def __init__(self, law: sw.control.PositionSpeed, period: float, ratio: float = RATIO) -> None:
+        self.law, self.period, self.ratio, self.integral = law, period, ratio, 0.0
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law, commanded = self.law, self.ratio * seen.command_rate
+        angle = self.ratio * seen.output_angle if law.feedback == "output" else seen.input_angle
+        wanted = law.position_gain * (self.ratio * seen.command - angle) + law.speed_feedforward * commanded
+        error = np.clip(wanted, -law.speed_limit, law.speed_limit) - seen.input_speed
+        asked = law.speed_proportional * error + law.speed_integral * self.integral
+        asked += law.viscous_feedforward * commanded + law.coulomb_feedforward * np.sign(commanded)
+        low, high = within(seen, law.limit)
+        self.integral += self.period * advanced(error, asked, low, high)
+        return float(np.clip(asked, low, high))
+
+
+class Cascade:
+    def __init__(self, law: sw.control.Cascade, period: float, ratio: float = RATIO) -> None:
+        self.law, self.period, self.ratio, self.speed, self.current = law, period, ratio, 0.0, 0.0
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law, commanded = self.law, self.ratio * seen.command_rate
+        angle = self.ratio * seen.output_angle if law.feedback == "output" else seen.input_angle
+        wanted = law.position_gain * (self.ratio * seen.command - angle) + law.speed_feedforward * commanded
+        speed_error = np.clip(wanted, -law.speed_limit, law.speed_limit) - seen.input_speed
+        asked = law.speed_proportional * speed_error + law.speed_integral * self.speed
+        asked += law.viscous_feedforward * commanded + law.coulomb_feedforward * np.sign(commanded)
+        error = np.clip(asked, -law.current_limit, law.current_limit) - seen.current
+        voltage = law.current_proportional * error + law.current_integral * self.current
+        voltage += law.back_emf_feedforward * seen.input_speed
+        low, high = within(seen, law.voltage_limit)
+        self.speed += self.period * advanced(
+            advanced(speed_error, asked, -law.current_limit, law.current_limit), voltage, low, high
+        )
+        self.current += self.period * advanced(error, voltage, low, high)
+        return float(np.clip(voltage, low, high))
+
+
+class LeadLag:
+    """Each section is exact for what is held over a period."""
+
+    def __init__(self, law: sw.control.LeadLag, period: float, ratio: float = RATIO) -> None:
+        self.law, self.ratio, self.first, self.second = law, ratio, 0.0, 0.0
+        self.kept = np.exp(-period / law.lead_denominator), np.exp(-period / law.lag_denominator)
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law = self.law
+        error = self.ratio * seen.command - (self.ratio * seen.output_angle if law.feedback == "output" else seen.input_angle)
+        lead = self.first + law.lead_numerator / law.lead_denominator * (error - self.first)
+        lag = self.second + law.lag_numerator / law.lag_denominator * (lead - self.second)
+        self.first = error + self.kept[0] * (self.first - error)
+        self.second = lead + self.kept[1] * (self.second - lead)
+        return float(np.clip(law.gain * lag, *within(seen, law.limit)))
+
+
+class StateFeedback:
+    """It remembers nothing."""
+
+    def __init__(self, law: sw.control.StateFeedback, _period: float = 0.0, ratio: float = RATIO) -> None:
+        self.law, self.ratio = law, ratio
+
+    def __call__(self, seen: sw.Seen) -> float:
+        law = self.law
+        asked = law.input_angle * (self.ratio * seen.command - seen.input_angle)
+        asked += law.input_speed * (self.ratio * seen.command_rate - seen.input_speed)
+        asked += law.output_angle * (seen.command - seen.output_angle) + law.output_speed * (
+            seen.command_rate - seen.output_speed
+        )
+        asked -= law.current * seen.current + law.torque * seen.torque
+        return float(np.clip(asked, *within(seen, law.limit)))
