@@ -20,7 +20,7 @@ SOURCE = ROOT / "build" / "docs"
 def gather() -> None:
     """Everything Sphinx reads, in one folder: this one, the pages of the root with their links from here, the theory."""
     shutil.rmtree(SOURCE, ignore_errors=True)
-    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns("__pycache__", "build.py", "theory.py"))
+    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns("__pycache__", "build.py", "theory.py", "parts.py"))
     for page in ("CONTRIBUTING.md", "CHANGELOG.md"):
         text = (ROOT / page).read_text(encoding="utf-8")
         (SOURCE / page.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import parts
 import strainwave as sw
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -50,12 +51,12 @@ def page(folder: Path, name: str, about: str, models: list[Model]) -> None:
 
 def section(folder: Path, model: Model) -> str:
     words, _, _ = (model.__doc__ or "").partition("\n\nParameters\n---")
-    parts = [f"## {model.__name__}", markdown(words), parameters(model), f"*Source:* {linked(model.source)}"]
-    shown = SHOWN.get(model.name) or {"": constructed(model, words)}
+    written = [f"## {model.__name__}", markdown(words), parameters(model), f"*Source:* {linked(model.source)}"]
+    shown = SHOWN.get(model.name) or parts.SUITED.get(model.name) or {"": constructed(model, words)}
     if figure := drawn(shown):
         figure.savefig(folder / f"{model.name}.svg")
-        parts.append(f"![what {model.__name__} does]({model.name}.svg)\n\n*Shown:* {caption(shown)}")
-    return "\n\n".join(parts)
+        written.append(f"![what {model.__name__} does]({model.name}.svg)\n\n*Shown:* {caption(shown)}")
+    return "\n\n".join(written)
 
 
 def caption(shown: dict[str, Any]) -> str:
@@ -454,4 +455,13 @@ def slipped(model: Any) -> float:
     return min(float(reaches[np.argmax(secant < secant.max() / 3.0)]), float(known))
 
 
-PANELS: tuple[Callable[[Shown], list[Draw]], ...] = (error, spectrum, steady, over_contact, presliding, spring, loop)
+PANELS: tuple[Callable[[Shown], list[Draw]], ...] = (
+    error,
+    spectrum,
+    steady,
+    over_contact,
+    presliding,
+    spring,
+    loop,
+    *parts.PANELS,
+)
