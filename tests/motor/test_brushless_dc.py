@@ -1,4 +1,4 @@
-"""The brushless motor with the limits of its amplifier: stall, no load, the rise of its current, and what a controller is told."""
+"""The brushless motor with the limits of its amplifier: stall, no load, rise of the current, and what a controller is told."""
 
 from __future__ import annotations
 
@@ -129,13 +129,13 @@ STIFF = {"stiffness": sw.stiffness.Linear(k=1e6), "damping": 200.0}
 SPEED_LAW = sw.control.PI(proportional=0.3, integral=6.0, limit=1e6)
 
 
-def by_hand(duration: float, *, rests: bool, dt: float = 1e-5) -> tuple[Array, Array]:
-    """Speed of the input and integral, under a PI law, of a rigid drive without its electric time constant, by Euler's method.
+def by_hand(duration: float, *, rests: bool, dt: float = 1e-5) -> Array:
+    """Speed of the input under a PI law, of a rigid drive without its electric time constant, by Euler's method.
 
     `rests`: the integral rests while the voltage is limited to what the supply and the current allow.
     """
     speed = integral = 0.0
-    speeds, integrals = [speed], [integral]
+    speeds = [speed]
     for _ in range(round(duration / dt)):
         error = RATIO * SPEED_STEP - speed
         asked = 0.3 * error + 6.0 * integral
@@ -145,8 +145,7 @@ def by_hand(duration: float, *, rests: bool, dt: float = 1e-5) -> tuple[Array, A
         integral += 0.0 if rests and limited else dt * error
         speed += dt * 0.1 * current / TOTAL
         speeds.append(speed)
-        integrals.append(integral)
-    return np.array(speeds), np.array(integrals)
+    return np.array(speeds)
 
 
 def test_an_integral_that_rests_at_the_limit_of_the_motor_overshoots_little() -> None:
@@ -154,8 +153,7 @@ def test_an_integral_that_rests_at_the_limit_of_the_motor_overshoots_little() ->
     motor = MOTOR.replace(inductance=1e-6)
     drive = geared(motor=motor, load=LOAD, control=SPEED_LAW, **STIFF)
     run = sw.simulate(drive, sw.scenario.constant(SPEED_STEP, 1.0), 2e-5, sample=1e-3)
-    resting, _ = by_hand(1.0, rests=True)
-    winding, wound = by_hand(1.0, rests=False)
+    resting, winding = by_hand(1.0, rests=True), by_hand(1.0, rests=False)
     wanted = RATIO * SPEED_STEP
     assert run["input_speed"] == pytest.approx(resting[::100], abs=2e-3 * wanted)
     assert winding.max() > 1.3 * wanted

@@ -84,7 +84,7 @@ def inductances(motor: PMSM, angle: float) -> Array:
 
 @BOTH
 def test_its_three_phases_say_the_same(motor: PMSM) -> None:
-    """u = R i + d(L(theta) i + psi(theta))/dt of each phase, and the torque by the work of a small turn at constant currents."""
+    """u = R i + d(L(theta) i + psi(theta))/dt of each phase; the torque is the work of a small turn at constant currents."""
     voltage, speed, duration = 9.0, 120.0, 4e-3
     run = course(motor, voltage, speed, duration, 1e-5)
     turn = 1e-6
@@ -97,7 +97,7 @@ def test_its_three_phases_say_the_same(motor: PMSM) -> None:
 
     def rate(time: float, current: Array) -> Array:
         angle, w = motor.pole_pairs * speed * time, motor.pole_pairs * speed
-        along, across, _ = np.linalg.inv(park(angle)) @ current
+        across = (np.linalg.inv(park(angle)) @ current)[1]
         u_d = motor.resistance * motor.direct_current - w * motor.quadrature_inductance * across
         induced = w * (slope(lambda a: inductances(motor, a), angle) @ current + slope(magnets, angle))
         return np.linalg.solve(
@@ -211,7 +211,7 @@ def test_a_current_against_the_magnets_lets_it_turn_faster(along: float) -> None
 
 
 @st.composite
-def limited_runs(draw: st.DrawFn) -> tuple[PMSM, float, float, list[float]]:
+def limited_runs(draw: st.DrawFn) -> tuple[PMSM, float, list[float]]:
     """A motor, a speed, and voltages asked for one after the other."""
     l_d, l_q = draw(st.floats(3e-4, 3e-3)), draw(st.floats(3e-4, 3e-3))
     motor = PMSM(
@@ -225,7 +225,7 @@ def limited_runs(draw: st.DrawFn) -> tuple[PMSM, float, float, list[float]]:
         current_limit=10.0,
     )
     w = draw(st.floats(-1.0, 1.0)) * most_speed(motor)
-    return motor, w, draw(st.floats(0.0, 1.0)), draw(st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=5))
+    return motor, w, draw(st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=5))
 
 
 def most_speed(motor: PMSM) -> float:
@@ -236,8 +236,8 @@ def most_speed(motor: PMSM) -> float:
 
 
 @given(limited_runs())
-def test_neither_voltage_nor_current_is_ever_longer_than_its_limit(drawn: tuple[PMSM, float, float, list[float]]) -> None:
-    motor, speed, _, asked = drawn
+def test_neither_voltage_nor_current_is_ever_longer_than_its_limit(drawn: tuple[PMSM, float, list[float]]) -> None:
+    motor, speed, asked = drawn
     drive = flywheel(motor)
     state = turning(drive, speed)
     for voltage in asked:
@@ -249,7 +249,7 @@ def test_neither_voltage_nor_current_is_ever_longer_than_its_limit(drawn: tuple[
 
 @pytest.mark.parametrize("sense", [1.0, -1.0], ids=["forward", "reverse"])
 def test_where_the_load_turns_it_too_fast_the_inverter_gives_what_it_can(sense: float) -> None:
-    """Far beyond the speed of no load: the motor brakes, with more current than it should, and no voltage beyond the supply's."""
+    """Far beyond the speed of no load the motor brakes, with more current than it should, but no voltage beyond the supply."""
     motor = SURFACE.replace(**LIMITED)
     shown = settled(motor, 0.0, sense * 500.0)
     assert np.hypot(shown["voltage"], shown["direct_voltage"]) <= REACH * (1.0 + 1e-12)
@@ -276,7 +276,7 @@ def test_cogging_is_a_sine_over_the_angle(angle: float) -> None:
 
 
 def test_cogging_holds_its_energy() -> None:
-    """A rotor on the spring of a locked gear, thrown over several cogs: 1/2 J w^2 + 1/2 k twist^2 + tau_c/n cos(n theta) stays."""
+    """A rotor on the spring of a locked gear, thrown over a cog: 1/2 J w^2 + 1/2 k twist^2 + tau_c/n cos(n theta) stays."""
     drive = geared(motor=COGGING, load=sw.loads.Prescribed(), damping=0.0).replace(meter=sw.meter.EnergyMeter())
     start = drive.rest().replace(input_speed=200.0)
     run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 1e-5, start=start, inputs={"output_angle": 0.0})
