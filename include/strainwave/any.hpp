@@ -199,6 +199,7 @@ struct Choice {
     SW_VERB(of_hysteresis)
     SW_VERB(dissipation_rate)
     SW_VERB(gear_rate)
+    SW_VERB(growth)
 #undef SW_VERB
 
     // Control, sampled or not.

@@ -107,6 +107,17 @@ struct Gear {
         const S per_input = kinematics.inverse_ratio() - error.slope;
         return {error.value, per_input, transmission_error - error.value, per_input * input_speed - output_speed, S(0.0)};
     }
+    /// How fast the random error changes [rad/s] because its amplitude does so; what the angle does is in the twist rate.
+    /// `transmission_rate` is that of the transmission error [rad/s].
+    constexpr S noise_rate(const Angle<S>& input_angle, const S& input_speed, const S& acceleration, const S& transmission_error,
+                           const S& transmission_rate) const {
+        if (!kinematic_noise.active()) return S(0.0);
+        const kinematic_error::Error<S> error = kinematic_error.at(input_angle);
+        const S twist = transmission_error - error.value, twist_rate = transmission_rate - error.slope * input_speed;
+        const S torque = stiffness.torque(twist), torque_rate = stiffness.tangent(twist) * twist_rate;
+        return kinematic_noise.at(input_angle, torque, input_speed).value *
+               kinematic_noise.growth(torque, torque_rate, input_speed, acceleration);
+    }
     /// The torque of a gear that stands so at a temperature [K], its hysteresis last brought up to date at `held_twist`.
     constexpr Mesh loaded(Mesh mesh, const typename Hysteresis::State& held, const S& held_twist, const S& temperature) const {
         mesh.torque = held_torque(mesh.twist, held, mesh.twist - held_twist, temperature) + damping * mesh.twist_rate;

@@ -12,7 +12,9 @@ constexpr meter::Powers<S> powers(const Drive& drive, const typename Drive::Stat
     const auto& gear = drive.gear;
     const auto electric = drive.motor.power(y.motor, now.actuation, drive.rotor(x, y, u));
     const S temperature = drive.temperatures(y, u).gear, twist_rate = now.mesh.twist_rate, damped = gear.damping * twist_rate;
-    const S remembered = now.mesh.torque - damped - gear.spring_torque(now.mesh.twist, temperature);
+    const S held = now.mesh.torque - damped, remembered = held - gear.spring_torque(now.mesh.twist, temperature);
+    const S noise_rate = gear.noise_rate({y.input_angle, x.turns}, y.input_speed, now.rate.input_speed, y.transmission_error,
+                                         now.rate.transmission_error);
     const S warming = drive.thermal.gear_rate(now.rate.thermal, u.temperature_rate);
     return {electric.supplied,
             electric.lost,
@@ -20,8 +22,9 @@ constexpr meter::Powers<S> powers(const Drive& drive, const typename Drive::Stat
             now.friction_mesh * (now.mesh.per_input * y.input_speed),
             now.friction_output * y.output_speed,
             damped * twist_rate,
-            remembered * twist_rate,
+            remembered * (twist_rate - noise_rate),
             gear.softening.dissipation_rate(warming) * gear.spring_energy(now.mesh.twist, temperature),
+            held * noise_rate,
             now.load_torque * y.output_speed};
 }
 

@@ -74,6 +74,13 @@ struct Stochastic {
             const S rise = min(speed_sensitivity * abs(speed), S(1e30)), fall = min(load_sensitivity * abs(torque), S(1e30));
             return amplitude * (S(1.0) + rise) / (S(1.0) + fall);
         }
+        /// How fast that grows, per itself [1/s], where the torque does so at `torque_rate` [N.m/s], the speed at `acceleration`
+        /// [rad/s2].
+        constexpr S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const {
+            const S rise = speed_sensitivity * abs(speed), fall = load_sensitivity * abs(torque);
+            return speed_sensitivity * sign(speed) * acceleration / (S(1.0) + rise) -
+                   load_sensitivity * sign(torque) * torque_rate / (S(1.0) + fall);
+        }
 
         constexpr Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const {
             Error<S> sum{};
@@ -93,6 +100,10 @@ struct Stochastic {
     constexpr bool active() const { return sought(amplitude) || any(amplitude > S(0.0)); }
 
     constexpr S rms(const S& torque, const S& speed) const { return scaled().rms(torque, speed); }
+
+    constexpr S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const {
+        return scaled().growth(torque, torque_rate, speed, acceleration);
+    }
 
     constexpr Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const {
         return compile().at(angle, torque, speed);

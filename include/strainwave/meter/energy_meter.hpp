@@ -14,9 +14,13 @@ struct EnergyMeter {
 
         Each energy is the integral of its power since the start of the run. Lost are those of the motor, of friction at the three
         places, of damping, and of hysteresis; stored are those of both shafts, of the spring and of the motor, which a run
-        may begin with. Hysteresis and bristles of friction give part of what they take back: over a cycle what they took
-        is lost. What a brake takes counts to the load. The balance is as exact as the steps are; a random kinematic error whose
-        amplitude changes with load or speed does work besides, which no place takes.
+        may begin with. Hysteresis and bristles of friction store a part of what they take, and give it back later: over a
+        cycle what they took is lost. A spring that softens as it warms up turns some of its energy to heat. A random
+        kinematic error whose amplitude follows load or speed does work on the shafts, of either sign, as that amplitude changes.
+        What a brake takes counts to the load.
+
+        The balance is as exact as the steps are: they integrate the powers with the motion. What an input does by a jump takes no
+        time, so no power tells it: of the angle at which an output shaft is held, and of the temperature of a spring that softens.
 
         >>> import strainwave as sw
         >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01), meter=sw.meter.EnergyMeter())
@@ -29,7 +33,7 @@ struct EnergyMeter {
 
     struct State {
         S supplied{0.0}, motor{0.0}, friction_input{0.0}, friction_mesh{0.0}, friction_output{0.0}, damping{0.0}, hysteresis{0.0},
-            softening{0.0}, load{0.0};
+            softening{0.0}, kinematic_noise{0.0}, load{0.0};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
@@ -41,6 +45,7 @@ struct EnergyMeter {
             visit(SW_FIELD(m, damping, "J", "Energy that the damping of the gear has taken"));
             visit(SW_FIELD(m, hysteresis, "J", "Energy that the hysteresis has taken, and not given back"));
             visit(SW_FIELD(m, softening, "J", "Elastic energy that has turned to heat as the gear warmed up"));
+            visit(SW_FIELD(m, kinematic_noise, "J", "Energy that a random kinematic error has taken as its amplitude changed"));
             visit(SW_FIELD(m, load, "J", "Energy that the load has taken"));
         }
     };

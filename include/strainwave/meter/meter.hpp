@@ -13,7 +13,7 @@ namespace strainwave::meter {
 template <class S>
 struct Powers {
     S supplied{0.0}, motor{0.0}, friction_input{0.0}, friction_mesh{0.0}, friction_output{0.0}, damping{0.0}, hysteresis{0.0},
-        softening{0.0}, load{0.0};
+        softening{0.0}, kinematic_noise{0.0}, load{0.0};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -25,10 +25,9 @@ struct Powers {
         visit(SW_FIELD(m, damping, "W", "Power that the damping of the gear takes"));
         visit(SW_FIELD(m, hysteresis, "W", "Power that the hysteresis takes; it gives part of it back"));
         visit(SW_FIELD(m, softening, "W", "Elastic power that turns to heat as the gear warms up"));
+        visit(SW_FIELD(m, kinematic_noise, "W", "Power that a random kinematic error takes as its amplitude changes"));
         visit(SW_FIELD(m, load, "W", "Power that the load takes"));
     }
-
-    constexpr S lost() const { return motor + friction_input + friction_mesh + friction_output + damping + hysteresis + softening; }
 };
 
 /// What a drive holds by its motion and its position, J.
