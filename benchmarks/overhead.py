@@ -1,4 +1,4 @@
-"""What comes on top of the steps: a call, storing, and derivatives; each against the run without it.
+"""What comes on top of the steps: a call, storing, derivatives, and a controller that samples; each against the run without it.
 
 And what comes before: a process that imports the package or shows its help, against one that does nothing.
 """
@@ -18,7 +18,7 @@ import numpy as np
 import strainwave as sw
 from measure import shortest
 from peers import strainwave_drive
-from reference_drive import DURATION, OUTPUT_INERTIA, SAMPLE
+from reference_drive import DURATION, OUTPUT_INERTIA, SAMPLE, VOLTAGE_LIMIT
 from report import Column, figure, save, save_figure, tell, three_digits
 from rich.console import Console
 from strainwave import _core
@@ -78,6 +78,24 @@ def with_derivatives(count: int) -> Extra:
         "with": lambda: differentiate(drive, Excitation(command), numbers, STEP, SAMPLE),
     }
     return Extra(f"{count} derivatives", *shortest(runs, ROUNDS).values())
+
+
+def sampling(delay: float) -> Extra:
+    """A cascade that a computer works out at 1 kHz, its result `delay` [s] later, against the same cascade all the time."""
+    law = sw.control.Cascade(
+        position_gain=20.0,
+        speed_proportional=0.1,
+        speed_integral=1.0,
+        current_proportional=1.0,
+        current_integral=300.0,
+        speed_feedforward=1.0,
+        voltage_limit=VOLTAGE_LIMIT,
+    )
+    laws = {"without": law, "with": sw.control.Sampled(law=law, period=SAMPLE, delay=delay)}
+    drive, command = strainwave_drive.drive(), strainwave_drive.command()
+    drives = {name: drive.replace(control=each) for name, each in laws.items()}
+    runs = {name: partial(sw.simulate, each, command, STEP, sample=SAMPLE) for name, each in drives.items()}
+    return Extra(f"cascade sampled at 1 kHz, delay of {1e3 * delay:g} ms", *shortest(runs, 3 * ROUNDS).values())
 
 
 def storing_one() -> Extra:
@@ -141,6 +159,7 @@ def run(console: Console) -> None:
         extras = [
             call(),
             *(with_derivatives(count) for count in (4, 8, len(FREE))),
+            *(sampling(delay) for delay in (0.0, 2e-4, 3e-4)),
             storing_one(),
             storing_many(OUTPUTS, f"all {len(OUTPUTS)} outputs"),
             storing_many(["input_angle", "output_angle", "torque", "current"], "4 outputs"),

@@ -10,7 +10,7 @@ ensemble     many reference drives at once: trajectories a second
 stick_slip   the same drive with friction that really sticks: error and time of what leads from event to event, and their cost
 scaling      time over steps, members and Maxwell elements
 files        ever more members run to files: time, memory and files
-overhead     what a call, storing and derivatives cost, and a process that imports the package or shows its help
+overhead     what a call, storing, derivatives and sampling cost, and a process that imports the package or shows its help
 peak         operations a second, beside the most that the processor does
 
 At the end stands what is to be reached and what of it was, by the tables there are (targets.json).

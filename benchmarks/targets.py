@@ -189,6 +189,7 @@ TARGETS = (
     Target("storing, many, all outputs", "overhead", 0.05, True, beside(more, "storing all", "simulate_many")),
     Target("storing, many, 4 outputs", "overhead", 0.05, True, beside(more, "storing 4")),
     Target("12 derivatives [runs]", "overhead", 6, True, beside(times, "12 derivatives")),
+    Target("a cascade at 1 kHz over a continuous one", "overhead", 1.5, True, beside(times, "cascade", "delay of 0.3 ms")),
     Target("import of the package [s]", "overhead", 0.3, True, beside(whole, "import strainwave")),
     Target("strainwave --help [s]", "overhead", 0.3, True, beside(whole, "strainwave --help")),
 )
