@@ -6,30 +6,33 @@ import os
 import shlex
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager, redirect_stdout, suppress
 from datetime import UTC, datetime
-from io import StringIO, TextIOWrapper
+from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TextIO
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
-from strainwave.messages import listed, one_line, unquoted, with_options
+from strainwave.messages import listed, one_line, quoted, unquoted, with_options
 
 if TYPE_CHECKING:
     from strainwave.files.gear_set import GearSet
+    from strainwave.files.recording import Recording
     from strainwave.identify.measurement import Kind
     from strainwave.identify.twin import Twin
     from strainwave.report.twin import Provenance
 
 REFUSED = 2  # exit code for input that cannot be used
 DOUBTED = 3  # exit code for measurements that speak against themselves: no gear is written
-written: list[Path] = []  # folders that hold results of this command by now
+written: list[Path] = []  # folders and files that hold results of this command by now
+
+MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 
 app = typer.Typer(
     help="Strain wave gears: measurements in, a validated model of that gear out.",
-    no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,  # plain help: rich alone takes longer to import than the help may take to appear
     pretty_exceptions_enable=False,
@@ -138,19 +141,123 @@ def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Pa
 
 
 @app.command()
+def simulate(
+    drive: Annotated[
+        str, typer.Argument(help="A drive: a set by name (strainwave drives), or a gear file with motor and load.")
+    ],
+    scenario: Annotated[Path, typer.Option(help="What it does: TOML, or CSV or Parquet with the columns time and command.")],
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Recording to write, .parquet or .csv.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Picture to write, .svg, .png or .pdf.")] = None,
+    dt: Annotated[float | None, typer.Option(help="Largest step in s, 0.0002 if not given.")] = None,
+    sample: Annotated[float, typer.Option(help="Distance of samples in s.")] = 1e-3,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Relative error, as 1e-8: steps as long as it allows, instead of --dt.")
+    ] = None,
+    record: Annotated[list[str] | None, typer.Option(help="A column to keep; repeat as needed. All, if not given.")] = None,
+    changed: Annotated[
+        list[str] | None, typer.Option("--set", help="Another number, in SI units, as load.inertia=0.6; repeat as needed.")
+    ] = None,
+) -> None:
+    """Run a drive through a scenario."""
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.ratings import check_ratings
+    from strainwave.files.recording import Recording
+    from strainwave.report.listing import range_table
+    from strainwave.simulation.scenario_file import ScenarioFile
+
+    if dt is not None and tolerance is not None:
+        raise ValueError(f"--dt {dt:g} and --tolerance {tolerance:g} exclude each other; give one of them")
+    for option, path, endings in (("--out", out, (".parquet", ".csv")), ("--plot", plot, (".svg", ".png", ".pdf"))):
+        _check_target(option, path, endings, scenario)
+    gear_set = GearSet.read(drive)
+    whole = gear_set.drive.replace(dict(_change(each) for each in changed or []))
+    course = ScenarioFile.read(scenario, whole)
+    options: dict[str, Any] = {"sample": sample, "record": record, "progress": sys.stderr.isatty()}
+    if tolerance is None:
+        run = course.simulate(whole, 2e-4 if dt is None else dt, **options)
+    else:
+        run = course.simulate_adaptively(whole, tolerance, **options)
+    recording = Recording(run.columns, run.units, title=f"{gear_set.name}: {course.name or scenario.stem}")
+    _write_run(recording, out, plot)
+    print(f"{one_line(recording.title)}\n{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}\n")
+    print(range_table(recording))
+    for check in check_ratings(gear_set, recording):
+        if check.exceeded:
+            print(f"rating: {check}")
+    for path in filter(None, (out, plot)):
+        print(f"wrote {path}")
+
+
+@app.command()
+def compare(
+    first: Annotated[str, typer.Argument(help="A recording (.csv, .parquet), a gear file, or a set by name.")],
+    second: Annotated[str, typer.Argument(help="Another one of the same kind.")],
+    column: Annotated[
+        list[str] | None, typer.Option(help="A column to compare; repeat as needed. All that both have, if not given.")
+    ] = None,
+) -> None:
+    """Compare two recordings, or two gears or drives."""
+    from strainwave.analysis.compare import compare as compared
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.recording import Recording
+    from strainwave.report.listing import agreement_table, difference_table
+
+    recordings = [Path(each).suffix.lower() in (".csv", ".parquet", ".txt", ".tsv") for each in (first, second)]
+    if recordings[0] != recordings[1]:
+        recorded, modelled = (first, second) if recordings[0] else (second, first)
+        raise ValueError(f"{recorded} is a recording, {modelled} a gear or drive; give two of one kind")
+    if recordings[0]:
+        agreements = compared(Recording.read(first), Recording.read(second), column)
+        print(f"{agreements[0].samples} samples compared\n\n{agreement_table(agreements)}")
+        return
+    if column:
+        raise ValueError(f"--column {column[0]}: of gears and drives all numbers are compared; leave it out")
+    differences = compared(GearSet.read(first), GearSet.read(second))
+    print(difference_table(differences) if differences else "equal, number by number")
+
+
+@app.command()
+def show(
+    gear: Annotated[str, typer.Argument(help="A set by name, or a gear file.")],
+    run: Annotated[list[Path] | None, typer.Option(help="A recording to hold against the ratings; repeat as needed.")] = None,
+) -> None:
+    """Show every number of a gear or drive with its unit and its source, its modes and its ratings."""
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.recording import Recording
+    from strainwave.report.listing import listing
+
+    print(listing(GearSet.read(gear), {str(path): Recording.read(path) for path in run or []}))
+
+
+@app.command()
 def gears(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> None:
-    """List the catalogue sets."""
+    """List the gears of the catalogue."""
+    print("\n".join(_found("gears", part)))
+
+
+@app.command()
+def drives(part: Annotated[str, typer.Argument(help="Part of a name.")] = "") -> None:
+    """List the drives that come with the package: a gear with motor, controller and load."""
+    from strainwave.files.gear_set import GearSet
+    from strainwave.report.listing import aligned
+
+    names = _found("drives", part)
+    print("\n".join(aligned([(name, GearSet.read(name).name) for name in names], "<<")))
+
+
+def _found(of: str, part: str) -> list[str]:
+    """The sets that come with the package and have this part in their name."""
     from difflib import get_close_matches
 
     from strainwave.files.gear_set import catalogue
 
-    names = catalogue()
+    names = catalogue(of)
     found = [name for name in names if part.lower() in name]
     if not found:
         near = ", ".join(get_close_matches(part.lower(), names))
-        told = f"near it are {near}" if near else "`strainwave gears` lists all"
-        raise ValueError(f'no gear set of the catalogue has "{part}" in its name; {told}')
-    print("\n".join(found))
+        told = f"near it are {near}" if near else f"`strainwave {of}` lists all"
+        raise ValueError(f"none of the {of} that come with the package has {quoted(part)} in its name; {told}")
+    return found
 
 
 @app.command()
@@ -173,6 +280,48 @@ def models(name: Annotated[str, typer.Argument(help="A model, to be described in
         print(family)
         for model, kind in members.items():
             print(f"  {model:{width}}  {cleandoc(str(kind.__doc__)).splitlines()[0]}")
+
+
+def _check_target(option: str, path: Path | None, endings: tuple[str, ...], source: Path) -> None:
+    """Refuses what cannot be written, before a long run is made for it."""
+    if path is None:
+        return
+    if path.suffix not in endings:
+        raise ValueError(f"{option} {path} must end in {' or '.join(endings)}")
+    if not path.parent.is_dir():
+        raise ValueError(f"{option} {path} cannot be written: there is no folder {path.parent}")
+    if path.is_dir():
+        raise ValueError(f"{option} {path} cannot be written: it is a folder")
+    if path.resolve() == source.resolve():
+        raise ValueError(f"{option} {path} is the file of the scenario; give another name")
+
+
+def _change(given: str) -> tuple[str, float | str]:
+    """The path and the value of --set."""
+    path, equals, value = given.partition("=")
+    if not (path and equals and value):
+        raise ValueError(f"--set {given}: write it as --set load.inertia=0.6")
+    for kind in (int, float):
+        with suppress(ValueError):
+            return path, kind(value)
+    return path, value
+
+
+def _write_run(run: Recording, out: Path | None, plot: Path | None) -> None:
+    """The recording, and a picture of what changes in it; nothing is written before all is made."""
+    from strainwave.files.writing import replacing
+
+    drawn = BytesIO()
+    if plot is not None:
+        changing = [name for name in run.names if name != "time" and run[name].min() < run[name].max()]
+        run.plot(changing or None).savefig(drawn, format=plot.suffix[1:], dpi=150)
+    if out is not None:
+        (run.to_csv if out.suffix == ".csv" else run.to_parquet)(out)
+        written.append(out)
+    if plot is not None:
+        with replacing(plot) as file:
+            file.write(drawn.getvalue())
+        written.append(plot)
 
 
 def _pairs(option: str, values: list[str] | None, known: set[str]) -> dict[str, str]:
@@ -251,13 +400,28 @@ def main() -> None:
     """Runs the command; input that cannot be used ends in one line and exit code 2, with nothing written."""
     said = StringIO()
     try:
-        with redirect_stdout(said):
-            app()
-    except (ValueError, TypeError, OSError, FloatingPointError) as error:
+        with redirect_stdout(said), warnings.catch_warnings():
+            warnings.showwarning = _warn
+            code = app(sys.argv[1:] or ["--help"], standalone_mode=False)
+    except MISUSED as error:
+        _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
+        code = REFUSED
+    except (ValueError, TypeError, OSError, FloatingPointError, MemoryError) as error:
         _print(f"strainwave: {one_line(with_options(str(error)))}\n", sys.stderr)
-        sys.exit(REFUSED)
+        code = REFUSED
     finally:
         _print(said.getvalue(), sys.stdout)
+    sys.exit(code)
+
+
+def _misuse(error: Any) -> str:
+    """What is wrong with the command line, in one sentence, and where help is."""
+    command = "strainwave" if error.ctx is None else error.ctx.command_path
+    return f"{error.format_message().rstrip('.')}; {command} --help tells more"
+
+
+def _warn(message: Warning | str, *_: object, **__: object) -> None:
+    _print(f"strainwave: warning: {one_line(str(message))}\n", sys.stderr)
 
 
 def _print(text: str, stream: TextIO) -> None:

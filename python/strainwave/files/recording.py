@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, KeysView, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
@@ -24,12 +25,14 @@ from strainwave.messages import listed, one_line, quoted, shortened
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from strainwave.files.tables import Table
 
 Array = NDArray[np.float64]
 
+_FLAT = 20.0  # a curve so many times smaller than another one is flat beside it
 _DRAWABLE = 1e300  # the range of an axis, with its margins, must be a number too
 
 
@@ -270,7 +273,9 @@ class Recording:
         return _checked(path, read_parquet(path, columns, units))
 
     def plot(self, names: Sequence[str] | None = None, against: str = "time") -> Figure:
-        """Draw columns over another one: one subplot per unit, below each other on one x axis.
+        """Draw columns over another one, in panels below each other on one x axis.
+
+        Columns of one unit share a panel, but for those that would be flat beside a curve more than twenty times as large.
 
         Args:
             names: the columns to draw; without it all but `against`
@@ -287,30 +292,58 @@ class Recording:
         from matplotlib.figure import Figure
 
         arguments.text("against", against)
-        groups: dict[str, list[str]] = {}
         drawn = [name for name in self.names if name != against] if names is None else arguments.names("names", names)
-        for name in drawn:
-            _check_drawable(name, self[name])
-            groups.setdefault(self.unit(name), []).append(name)
-        if not groups:
+        if not drawn:
             raise ValueError(f"nothing to draw against {quoted(against)}; there are {listed(self.names)}")
-        _check_drawable(against, self[against])
-        figure = Figure(figsize=(8.0, 1.0 + 2.0 * len(groups)), layout="constrained")
-        figure.suptitle(self.title)
-        axes = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
-        for axis, (unit, group) in zip(axes, groups.items(), strict=True):
-            for name in group:
-                axis.plot(*envelope(self[against], self[name]), linewidth=1.0, label=name)
-            axis.set_ylabel(f"{group[0]} [{unit}]" if len(group) == 1 else f"[{unit}]")
-            axis.legend(loc="upper right")
-        axes[-1].set_xlabel(f"{against} [{self.unit(against)}]")
+        for name in (*drawn, against):
+            _check_drawable(name, self[name])
+        panels = self._panels(drawn)
+        figure = Figure(figsize=(8.0, 0.9 + 1.5 * len(panels)), layout="constrained")
+        figure.suptitle(self.title.replace("$", r"\$"), fontsize="large", wrap=True)
+        axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+        for axis, panel in zip(axes, panels, strict=True):
+            self._draw(axis, panel, against)
+        axes[-1].set_xlabel(self._label(against))
+        figure.align_ylabels()
         return figure
+
+    def _panels(self, names: Sequence[str]) -> list[list[str]]:
+        """Columns that are drawn together, in the order in which the first of each is named."""
+        sizes = {name: float(np.abs(self[name]).max()) for name in names}
+        panels: dict[str, list[list[str]]] = {}
+        for name in sorted(sizes, key=lambda name: -sizes[name]):
+            of_unit = panels.setdefault(self.unit(name), [])
+            if not of_unit or 0.0 < sizes[name] < sizes[of_unit[-1][0]] / _FLAT:
+                of_unit.append([])
+            of_unit[-1].append(name)
+        ordered = [sorted(panel, key=list(names).index) for of_unit in panels.values() for panel in of_unit]
+        return sorted(ordered, key=lambda panel: list(names).index(panel[0]))
+
+    def _draw(self, axis: Axes, panel: Sequence[str], against: str) -> None:
+        for name, style in zip(panel, cycle(("-", "--", "-.", ":")), strict=False):  # so that equal curves are both seen
+            axis.plot(*envelope(self[against], self[name]), style, linewidth=1.2, label=_in_words(name))
+        axis.set_ylabel(self._label(panel[0]) if len(panel) == 1 else f"[{self.unit(panel[0])}]", fontsize="small")
+        axis.tick_params(labelsize="small")
+        if len(panel) > 1:
+            above = (1.0, 0.97)
+            axis.legend(ncols=4, frameon=False, fontsize="small", loc="lower right", bbox_to_anchor=above, borderaxespad=0.0)
+        axis.grid(linewidth=0.5, alpha=0.4)
+        axis.margins(x=0.01)
+        axis.spines[["top", "right"]].set_visible(False)
+
+    def _label(self, name: str) -> str:
+        return f"{_in_words(name)} [{self.unit(name)}]"
 
 
 def check_recording(name: str, value: object) -> None:
     """Refuses what is no recording."""
     if not isinstance(value, Recording):
         raise TypeError(f"{name} must be a Recording, as Recording.read(...) gives one, not {shortened(value)}")
+
+
+def _in_words(name: str) -> str:
+    """A name as a picture has it; a dollar sign would begin mathematics."""
+    return name.replace("_", " ").replace("$", r"\$")
 
 
 def _check_drawable(name: str, values: Array) -> None:

@@ -352,8 +352,9 @@ def progressing(wanted: bool, total: int) -> Iterator[Callable[[int], None] | No
     if not wanted:
         yield None
         return
+    from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(transient=True) as bar:
+    with Progress(transient=True, console=Console(stderr=True)) as bar:
         task = bar.add_task("simulating", total=total)
         yield lambda done: bar.update(task, completed=done)

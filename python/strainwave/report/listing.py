@@ -1,0 +1,189 @@
+"""Sets and comparisons in words, for a terminal: every number with its unit and its source, modes and ratings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import tau
+
+from strainwave import Drive
+from strainwave.analysis.compare import Agreement, Difference
+from strainwave.analysis.linear import linearise, modes
+from strainwave.files.described import parameters, parts
+from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import RatingCheck, check_ratings
+from strainwave.files.recording import Recording
+from strainwave.messages import one_line
+
+Row = Sequence[str]
+
+
+def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> str:
+    """A set as text: what it is, every number, its modes, its ratings, and where runs exceeded them.
+
+    Args:
+        gear_set: the set
+        runs: recordings to hold against the ratings, by what they are to be called
+
+    >>> print(listing(GearSet.read("csg-25-100")).splitlines()[0])
+    CSG-25-100, Harmonic Drive
+    """
+    lines = [", ".join(filter(None, (gear_set.name, gear_set.maker)))]
+    if gear_set.note:
+        lines.append(_printable(gear_set.note))
+    for part in parts(Drive()):
+        if (model := getattr(gear_set, part.name)) is not None:
+            lines += ["", *_numbers(gear_set, part.name, model)]
+    return "\n".join([*lines, *_vibration(gear_set), *_ratings(gear_set), *_checks(gear_set, runs or {})])
+
+
+def agreement_table(found: Sequence[Agreement]) -> str:
+    """How far columns of two recordings agree, one to a line.
+
+    >>> print(agreement_table([Agreement("torque", "N.m", rms=0.05, largest=0.1, time=2.0, correlation=0.99, samples=200)]))
+            unit   rms  largest  at t [s]  correlation
+    torque  N.m   0.05      0.1         2         0.99
+    """
+    rows = [("", "unit", "rms", "largest", "at t [s]", "correlation")]
+    for each in found:
+        related = "one is constant" if each.correlation is None else f"{each.correlation:.6f}".rstrip("0").rstrip(".")
+        rows.append((each.name, each.unit, f"{each.rms:.4g}", f"{each.largest:.4g}", f"{each.time:.6g}", related))
+    return "\n".join(aligned(rows, "<<>>>>"))
+
+
+def difference_table(found: Sequence[Difference]) -> str:
+    """Where two models differ, one place to a line.
+
+    >>> print(difference_table([Difference("gear.damping", 4.0, 5.0, "N.m.s/rad"), Difference("motor", None, "dc")]))
+                    first  second  unit       change
+    gear.damping        4       5  N.m.s/rad   +25 %
+    motor         nothing      dc
+    """
+    rows = [("", "first", "second", "unit", "change")]
+    for each in found:
+        change = "" if each.change is None else f"{100.0 * each.change:+.3g} %"
+        rows.append((each.path, *each.told, "" if each.unit == "1" else each.unit, change))
+    return "\n".join(aligned(rows, "<>><>"))
+
+
+def range_table(recording: Recording) -> str:
+    """Between which values each column of a recording lies, one to a line.
+
+    >>> print(range_table(Recording({"time": [0.0, 1.0], "torque": [2.0, 0.5]}, {"time": "s", "torque": "N.m"})))
+            unit  smallest  largest  at the end
+    torque  N.m        0.5        2         0.5
+    """
+    rows = [("", "unit", "smallest", "largest", "at the end")]
+    for name in recording.names:
+        if name != "time":
+            values = recording[name]
+            least, largest, last = (f"{each:.5g}" for each in (values.min(), values.max(), values[-1]))
+            rows.append((name, recording.unit(name), least, largest, last))
+    return "\n".join(aligned(rows, "<<>>>"))
+
+
+def aligned(rows: Sequence[Row], sides: str) -> Iterator[str]:
+    """Rows as lines, each column as wide as its longest cell, set to the left (<) or to the right (>).
+
+    >>> print(*aligned([("torque", "2"), ("mass", "10")], "<>"), sep="\\n")
+    torque   2
+    mass    10
+    """
+    rows = [[_printable(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        yield "  ".join(f"{cell:{side}{width}}" for cell, side, width in zip(row, sides, widths, strict=True)).rstrip()
+
+
+def _printable(text: str) -> str:
+    """A text of a file as a terminal may have it: it must obey nothing in it."""
+    return "".join(each if each.isprintable() else " " for each in text)
+
+
+def _indented(lines: Iterator[str]) -> Iterator[str]:
+    yield from (f"  {line}" for line in lines)
+
+
+def _numbers(gear_set: GearSet, path: str, model: object) -> Iterator[str]:
+    """The numbers of a part, then those of the parts in it; of parts that do nothing it is said that they are not given."""
+    if path in gear_set.left_out:
+        yield f"[{path}] not given"
+        return
+    name = model.name  # type: ignore[attr-defined]
+    yield f"[{path}]" if path == name else f"[{path}] {name}"
+    yield from _indented(aligned(list(_rows(gear_set, path, model)), "<><<"))
+    for part in parts(model):
+        yield from _numbers(gear_set, f"{path}.{part.name}", getattr(model, part.name))
+
+
+def _rows(gear_set: GearSet, path: str, model: object) -> Iterator[Row]:
+    for field in parameters(model):
+        value = getattr(model, field.name)
+        if field.kind == "choice":
+            yield field.name, str(value), "", ""
+            continue
+        several = field.kind == "sequence"
+        for i, number in enumerate(value if several else [value]):
+            name = f"{field.name}[{i}]" if several else field.name
+            entry = gear_set.sources[f"{path}.{name}"]
+            spread = "" if entry.spread is None else f", spread {100.0 * entry.spread:g} %"
+            sigma = "" if entry.uncertainty is None else f", ± {entry.uncertainty:.2g} {field.unit}"
+            yield name, f"{number:.10g}", "" if field.unit == "1" else field.unit, f"{entry.source}{spread}{sigma}"
+
+
+def _vibration(gear_set: GearSet) -> Iterator[str]:
+    """The modes of a whole drive."""
+    if gear_set.motor is None or gear_set.load is None:
+        return
+    yield from ("", "modes")
+    try:
+        rows = [(f"{name}, undamped", _frequencies(found.tolist()), "") for name, found in modes(gear_set.drive).items()]
+    except ValueError as error:
+        yield f"  not told: {error}"
+        return
+    yield from _indented(aligned([*rows, _closed_loop(gear_set.drive)], "<<<"))
+
+
+def _closed_loop(drive: Drive) -> Row:
+    """How the drive vibrates about its rest, as its controller, its friction and its damping have it."""
+    name = "at rest, under its controller"
+    try:
+        linear = linearise(drive)
+    except ValueError as error:
+        return name, f"not told: {error}", ""
+    stuck = " and ".join(side for side in ("input", "output") if f"{side}_speed" not in linear.states)
+    pairs = [pole for pole in linear.poles.tolist() if pole.imag > 0.0]
+    damping = ", ".join(f"{-pole.real / abs(pole):.3g}" for pole in pairs)
+    remarks = (f"damping ratio {damping}" * bool(pairs), f"friction holds {stuck}" * bool(stuck))
+    return name, _frequencies([abs(pole) for pole in pairs]), "; ".join(filter(None, remarks))
+
+
+def _frequencies(rates: Sequence[float]) -> str:
+    return ", ".join(f"{rate:.6g} rad/s ({rate / tau:.4g} Hz)" for rate in rates) or "none"
+
+
+def _ratings(gear_set: GearSet) -> Iterator[str]:
+    if gear_set.ratings:
+        yield from ("", "ratings")
+        rows = [(name, f"{each.value:g}", each.unit, each.source) for name, each in gear_set.ratings.items()]
+        yield from _indented(aligned(rows, "<><<"))
+
+
+def _checks(gear_set: GearSet, runs: Mapping[str, Recording]) -> Iterator[str]:
+    for name, recording in runs.items():
+        yield from ("", one_line(name))
+        rows = [_check(each) for each in check_ratings(gear_set, recording)]
+        yield from _indented(aligned(rows, "<><<"))
+        if not rows:
+            yield f"  cannot be compared: {gear_set.name} has no ratings of torque or speed, or the recording no such column"
+
+
+def _check(check: RatingCheck) -> Row:
+    share = check.reached / check.limit.value if check.limit.value > 0.0 else float("inf")
+    when = "" if check.time is None else f", first at t = {check.time:.6g} s"
+    beyond = f"exceeds the limit by {100.0 * (share - 1.0):.3g} %{when}"
+    return (
+        check.name,
+        f"{check.reached:.4g}",
+        check.limit.unit,
+        beyond if check.exceeded else f"{100.0 * share:.3g} % of the limit",
+    )
