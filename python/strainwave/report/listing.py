@@ -9,6 +9,7 @@ from strainwave import Drive
 from strainwave.analysis.compare import Agreement, Difference
 from strainwave.analysis.linear import linearise, modes
 from strainwave.files.described import parameters, parts
+from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import RatingCheck, check_ratings
 from strainwave.files.recording import Recording
@@ -104,15 +105,16 @@ def _indented(lines: Iterator[str]) -> Iterator[str]:
 
 
 def _numbers(gear_set: GearSet, path: str, model: object) -> Iterator[str]:
-    """The numbers of a part, then those of the parts in it; of parts that do nothing it is said that they are not given."""
+    """The numbers of a part, then those of the parts in it; of a part that does nothing it is said that it is not given."""
+    name = model.name  # type: ignore[attr-defined]
     if path in gear_set.left_out:
         yield f"[{path}] not given"
-        return
-    name = model.name  # type: ignore[attr-defined]
-    yield f"[{path}]" if path == name else f"[{path}] {name}"
-    yield from _indented(aligned(list(_rows(gear_set, path, model)), "<><<"))
-    for part in parts(model):
-        yield from _numbers(gear_set, f"{path}.{part.name}", getattr(model, part.name))
+    else:
+        yield f"[{path}]" if path == name else f"[{path}] {name}"
+        yield from _indented(aligned(list(_rows(gear_set, path, model)), "<><<"))
+    if any(entry.source != NOT_GIVEN for inner, entry in gear_set.sources.items() if inner.startswith(f"{path}.")):
+        for part in parts(model):
+            yield from _numbers(gear_set, f"{path}.{part.name}", getattr(model, part.name))
 
 
 def _rows(gear_set: GearSet, path: str, model: object) -> Iterator[Row]:
@@ -152,7 +154,7 @@ def _closed_loop(drive: Drive) -> Row:
         return name, f"not told: {error}", ""
     stuck = " and ".join(side for side in ("input", "output") if f"{side}_speed" not in linear.states)
     pairs = [pole for pole in linear.poles.tolist() if pole.imag > 0.0]
-    damping = ", ".join(f"{-pole.real / abs(pole):.3g}" for pole in pairs)
+    damping = ", ".join(f"{0.0 - pole.real / abs(pole):.3g}" for pole in pairs)
     remarks = (f"damping ratio {damping}" * bool(pairs), f"friction holds {stuck}" * bool(stuck))
     return name, _frequencies([abs(pole) for pole in pairs]), "; ".join(filter(None, remarks))
 
