@@ -100,10 +100,15 @@ def block(text: str) -> str:
 
 
 def lines(formula: str) -> list[str]:
-    """A formula, broken after commas where it is wider than the page; subscripts that are words stand upright."""
+    """A formula, broken where it says so, and after commas where it is wider than the page; subscripts that are words upright."""
     upright = re.sub(r"_\{([a-z]{2,})\}", r"_{\\mathrm{\1}}", formula)
+    return [line for part in re.split(r"\\\\\s+", upright) for line in filled(part)]
+
+
+def filled(formula: str) -> list[str]:
+    """As many of its parts on a line as fit."""
     found: list[str] = []
-    for part in re.split(r"(?<=,)\s*\\q?quad\s*", upright):
+    for part in re.split(r"(?<=,)\s*\\q?quad\s*", formula):
         if found and width(found[-1]) + SPACE + width(part) <= LINE:
             found[-1] += rf" \qquad {part}"
         else:
