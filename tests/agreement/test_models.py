@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, reject, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
@@ -22,7 +22,7 @@ from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import DRIVE, EVERY_PART, cannot_create_energy, laws, reduced_gears
 from tests.side_by_side import side_by_side
-from tests.strategies import built, suited
+from tests.strategies import built, models, suited
 
 Array = NDArray[np.float64]
 
@@ -135,3 +135,37 @@ def test_a_drive_with_any_other_part_runs_one_trajectory_in_every_scalar(
 @given(reduced_gears, seeds)
 def test_a_gear_with_laws_drawn_at_every_place_runs_one_trajectory_in_every_scalar(gear: sw.Gear, seed: int) -> None:
     agree(DRIVE.replace(gear=gear), seed)
+
+
+def whole(gear: sw.Gear, parts: dict[str, Any]) -> Drive:
+    """A drive of these parts, if they suit each other."""
+    assume(getattr(parts["load"], "inertia", 1.0) > 1e-3)
+    try:
+        return Drive(gear=gear.replace(input_inertia=2e-5 + gear.input_inertia), **parts)
+    except ValueError:  # a voltage for a motor that takes none
+        return reject()
+
+
+other_parts = st.fixed_dictionaries({part: models(family) for part, family in OTHER_FAMILIES.items() if part != "sensors"})
+
+
+@settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
+@given(reduced_gears, other_parts, built(sw.Sensors), seeds)
+def test_a_drive_with_parts_drawn_from_every_list_runs_one_trajectory_in_every_scalar(
+    gear: sw.Gear, parts: dict[str, Any], sensors: sw.Sensors, seed: int
+) -> None:
+    agree(whole(gear, {**parts, "sensors": sensors}), seed)
+
+
+@pytest.mark.parametrize("load", [sw.loads.Inertia(inertia=0.05), sw.loads.Prescribed()], ids=lambda load: load.name)
+def test_a_sampled_drive_that_begins_in_motion_is_in_a_pack_and_in_dual_numbers_what_it_is_alone(load: Any) -> None:
+    """The instants of sampling are the same, be it counted from the beginning or from the first sample after it."""
+    control = sw.control.Sampled(law=sw.control.PID(proportional=5.0, derivative=0.1, limit=24.0), period=1.7e-3, delay=3e-4)
+    drive = DRIVE.replace(control=control, load=load, meter=sw.meter.EnergyMeter())
+    course: dict[str, Any] = {"initial": {"input_speed": 3.0}}
+    command = sw.scenario.sine(0.02, 20.0, 0.2)
+    alone = sw.simulate(drive, command, **course)
+    many = sw.simulate_many(drive, command, {"gear.damping": [5.0, 6.0]}, record=list(outputs(drive)), **course)
+    dual = sw.derivatives(drive, command, ["gear.damping"], **course).run
+    for found in (many.member(0), dual):
+        assert [name for name in outputs(drive) if not np.array_equal(found[name], alone[name])] == []

@@ -121,7 +121,8 @@ def instants(drive: Drive, state: Array, duration: float) -> Array:
     if period == 0.0:
         return np.empty(0)
     check_instants(duration, period, "take a longer period")
-    samples = np.float64(first) + period * np.arange(int(max(duration - first, 0.0) / period) + 1)
+    # As multiples: a state that has been sampled at its begin acts at the very instants of one that has not.
+    samples = period * (np.float64(first) / period + np.arange(int(max(duration - first, 0.0) / period) + 1))
     given = np.concatenate([[first - period + delay], samples + delay])
     acting = np.sort(np.concatenate([samples, given[given > 1e-9 * period]]))
     found: Array = acting[acting < duration]
