@@ -31,6 +31,7 @@ FAMILIES = {
     "stiffness": "stiffness",
     "hysteresis": "hysteresis",
     **dict.fromkeys(PLACES, "friction"),
+    "softening": "softening",
 }
 EVERY_PART = [
     pytest.param(part, model, id=f"{part}={model.name}")
@@ -208,6 +209,12 @@ def cumulated(power: Array, dt: float, kinks: Array) -> tuple[Array, Array]:
     return np.append(0.0, np.cumsum(fine)), np.append(0.0, np.cumsum(slack))
 
 
+def softened(softening: Any, temperature: Array) -> tuple[float, float]:
+    """What spring and hysteresis are multiplied by, at one temperature [K]."""
+    warmth = float(temperature[0]) - softening.reference_temperature
+    return math.exp(-softening.stiffness_fall * warmth), math.exp(-softening.hysteresis_fall * warmth)
+
+
 def balance(drive: Drive, run: sw.Recording) -> tuple[Array, Array, float]:
     """Energy [J] put in less stored and lost; how exactly the samples tell; and how much was put in to and fro."""
     gear, step = drive.gear, run["time"][1]
@@ -217,7 +224,8 @@ def balance(drive: Drive, run: sw.Recording) -> tuple[Array, Array, float]:
     lost = gear.damping * twist_rate**2 + sum(run[place] * moving[place] for place in PLACES)
     inertia = drive.motor.inertia + gear.input_inertia
     kept = 0.5 * (inertia * run["input_speed"] ** 2 + drive.load.inertia * run["output_speed"] ** 2)
-    kept += gear.stiffness.energy(run["twist"]) + gear.hysteresis.work(run["twist"])
+    of_stiffness, of_hysteresis = softened(gear.softening, run["temperature"])
+    kept += of_stiffness * gear.stiffness.energy(run["twist"]) + of_hysteresis * gear.hysteresis.work(run["twist"])
     turns = np.any([np.diff(np.sign(speed)) != 0.0 for speed in moving.values()], axis=0)
     kinks = turns.reshape(-1, 2).any(axis=1)  # a place stops, sets off or turns round
     supplied, slack_supplied = cumulated(put_in, step, kinks)
