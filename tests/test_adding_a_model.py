@@ -58,6 +58,7 @@ ELSEWHERE = {
     "OpenLoop": {
         "specialised.hpp": USUAL,
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
+        "studies/position_control.py": "pulses without a controller",
     },
     "PID": {"specialised.hpp": USUAL, "control/sampled.hpp": "what it samples by default"},
     "Sampled": {"any.hpp": BOUND_TO_ANY},

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from strainwave.messages import listed, one_line, quoted, unquoted, with_options
+from strainwave.studies.command import study
 
 if TYPE_CHECKING:
     from strainwave.files.gear_set import GearSet
@@ -37,6 +38,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help: rich alone takes longer to import than the help may take to appear
     pretty_exceptions_enable=False,
 )
+app.add_typer(study, name="study")
 
 
 def _show_version(wanted: bool) -> None:

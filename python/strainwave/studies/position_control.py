@@ -1,0 +1,393 @@
+"""Document P's three experiments with its full and its simplified friction, and where the simplified one stops to suffice.
+
+Document P holds that average friction suffices "in precision pulse control where the control angle range is small". Both
+models run under the same command and the same controller; their difference is what the simplification costs. Document P
+describes neither its controller nor its amplitudes, and prints no measurement: those here are assumed, and Table 4 is not
+reproduced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from math import inf, pi, sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from strainwave import Drive, control
+from strainwave.analysis.compare import Agreement, compare
+from strainwave.analysis.settling import settling_time
+from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.simulation.run import Run, simulate
+from strainwave.simulation.scenario import Scenario, constant, pulse_train, sine, step, table
+
+Array = NDArray[np.float64]
+
+FULL, SIMPLIFIED = "full", "simplified"
+SETS = {FULL: "position-drive-full-friction", SIMPLIFIED: "position-drive"}
+COMPARED = ("output_angle", "input_angle", "current")
+BAND = 0.02  # of a change, within which a response has settled
+
+REST = 0.05  # rad at the output, 5 rad at the motor: no overshoot leaves the domain of the friction
+STEP, SINE = 0.04, 0.03  # rad at the output: as large as the spread of Table 4 allows (E-P13)
+SAMPLE = 1e-3  # s
+
+FIT_ERROR = 0.0052  # N.m: document P, Table 1, root mean square error of the average friction
+TABLE_4 = {  # root mean square error [rad], largest error [rad], correlation coefficient
+    "step": (0.0021, 0.0050, 0.995),
+    "sine": (0.0018, 0.0042, 0.997),
+    "pulse-train": (0.0015, 0.0038, 0.998),
+}
+
+STROKES = (0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 45.0, 65.0, 90.0, 120.0, 160.0, 230.0)  # rad at the motor
+VOLTAGES = (6.0, 12.0, 24.0)  # V, of pulses; above the 2.99 V at which the drive breaks away
+USUAL_VOLTAGE = 12.0  # V, of the pulses that are shown
+MOVE = 2.0  # s: how long a move under control takes
+COASTING = 3.0  # s: after a pulse, until the drive has come to rest
+COARSE = 5e-4  # s: a step, and the distance of samples, of the sweeps; shorter ones change no digit shown
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One command, run through both models.
+
+    Attributes:
+        name: as files are called
+        title: what is done, in words
+        command: the output angle asked for [rad]
+        runs: recording of each model
+        tracking: how far the output angle is from the command, for each model
+        between: how far the models are apart: output angle, input angle and current
+        settling: after each jump of the command, the time until the output angle stays within 2 % of its change around where it
+            stops [s], for each model; inf where that takes longer than to the next jump
+    """
+
+    name: str
+    title: str
+    command: Scenario
+    runs: Mapping[str, Run]
+    tracking: Mapping[str, Agreement]
+    between: Mapping[str, Agreement]
+    settling: Mapping[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A measured run beside the models under the same command.
+
+    Attributes:
+        recording: time, from 0 on, command and output_angle
+        runs: recording of each model
+        agreement: how far the simulated output angle is from the measured one, for each model
+        beyond: least and greatest motor angle [rad], where the average friction was needed outside of its domain; else None
+    """
+
+    recording: Recording
+    runs: Mapping[str, Run]
+    agreement: Mapping[str, Agreement]
+    beyond: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class PositionControl:
+    """What the study found.
+
+    Attributes:
+        sets: the set of each model
+        experiments: step, sine and pulse train
+        under_control: moves of the motor under the controller. Columns: `stroke` [rad]; `output_angle` [rad] and `current` [A],
+            root mean square of the difference of full and simplified; the same of the output angle [rad] between other models:
+            `without_periodic`, simplified and the full one without its periodic part; `averaged`, full and a constant averaged
+            over the stroke; `fit_error`, simplified and a constant that is wrong by the error of document P's fit; `used`,
+            the root mean square of the full model's current [A]
+        by_pulse: moves by a pulse of each voltage in open loop. Columns: `stroke` [rad] of the simplified model, `width` [s] of
+            the pulse, and the strokes [rad] of the others: `full`, `without_periodic`, `averaged`, and `stronger` and `weaker`,
+            with a constant that is wrong by the error of the fit
+        measured: a measured run, where one was given
+    """
+
+    sets: Mapping[str, GearSet]
+    experiments: tuple[Experiment, ...]
+    under_control: Recording
+    by_pulse: Mapping[float, Recording]
+    measured: Measured | None
+
+    @property
+    def law_suffices_to(self) -> float:
+        """The motor angle [rad] beyond which the average friction is further from the constant than the error of its fit."""
+        return law_limit(self.sets[FULL].drive)
+
+    def pulse_suffices_to(self, voltage: float) -> float:
+        """The stroke [rad] beyond which the full model leaves what the error of the fit leaves open; inf if it never does."""
+        pulses = self.by_pulse[voltage]
+        excess = np.maximum(pulses["full"] - pulses["weaker"], pulses["stronger"] - pulses["full"])
+        return first_above(pulses["stroke"], excess / pulses["stroke"])
+
+    @property
+    def control_suffices_to(self) -> float:
+        """The stroke [rad] beyond which the output differs by more than the least error of Table 4; inf if it never does."""
+        least = min(rms for rms, _, _ in TABLE_4.values())
+        return first_above(self.under_control["stroke"], self.under_control["output_angle"] - least)
+
+    @property
+    def control_within_fit_to(self) -> float:
+        """The stroke [rad] beyond which the output differs by more than the error of the fit does; inf if it never does."""
+        excess = self.under_control["output_angle"] - self.under_control["fit_error"]
+        return first_above(self.under_control["stroke"], excess)
+
+
+def position_control(
+    measured: str | Path | None = None, progress: Callable[[str], None] = lambda stage: None
+) -> PositionControl:
+    """Runs the study.
+
+    Args:
+        measured: a recording of your own with time, command [rad] and output_angle [rad], from rest; a path
+        progress: told of each stage
+
+    Raises:
+        ValueError: the recording cannot be read, or lacks a column
+
+    >>> found = position_control()
+    >>> round(found.law_suffices_to, 1)  # rad at the motor
+    14.6
+    >>> round(found.pulse_suffices_to(12.0)), found.control_suffices_to
+    (46, inf)
+    """
+    sets = {model: GearSet.read(name) for model, name in SETS.items()}
+    drives = {model: gear_set.drive for model, gear_set in sets.items()}
+    recording = None if measured is None else _recording(Path(measured))
+    experiments = []
+    for name, (title, command) in commands().items():
+        progress(title)
+        experiments.append(_experiment(name, title, command, drives))
+    progress("strokes under control")
+    under_control = moves_under_control(drives)
+    pulses = {}
+    for voltage in VOLTAGES:
+        progress(f"strokes by pulses of {voltage:g} V")
+        pulses[voltage] = moves_by_pulse(drives, voltage)
+    progress("measured run")
+    own = None if recording is None else _measured(recording, drives)
+    return PositionControl(sets, tuple(experiments), under_control, pulses, own)
+
+
+# ---- The three experiments -------------------------------------------------------------------------------------------
+
+
+def commands() -> dict[str, tuple[str, Scenario]]:
+    """Title and command of each experiment; all begin at rest at 0.05 rad of the output."""
+    at = f"{1e3 * REST:g} mrad"
+    return {
+        "step": (
+            f"Step of {1e3 * STEP:g} mrad",
+            constant(REST, 2.0) + step(STEP, 2.0, start=0.1),
+        ),
+        "sine": (
+            f"Sine of 1 Hz, {1e3 * SINE:g} mrad about {at}",
+            sine(SINE, frequency=1.0, duration=3.0, offset=REST),
+        ),
+        "pulse-train": (
+            f"Pulses of {1e3 * STEP:g} mrad, 0.5 s each second",
+            constant(REST, 3.0) + pulse_train(STEP, period=1.0, width=0.5, duration=3.0, start=0.1),
+        ),
+    }
+
+
+def _experiment(name: str, title: str, command: Scenario, drives: Mapping[str, Drive]) -> Experiment:
+    runs = {model: simulate(drive, command, sample=SAMPLE, initial={"output_angle": REST}) for model, drive in drives.items()}
+    return Experiment(
+        name,
+        title,
+        command,
+        runs,
+        tracking={model: _tracking(run) for model, run in runs.items()},
+        between=_agreement(runs[FULL], runs[SIMPLIFIED], COMPARED),
+        settling={model: _settling(run, command) for model, run in runs.items()},
+    )
+
+
+def _tracking(run: Recording) -> Agreement:
+    """How far the output angle is from its command."""
+    asked = Recording({"time": run.time, "output_angle": run["command"]}, {"time": "s", "output_angle": run.unit("command")})
+    return compare(asked, run.select(["time", "output_angle"]))[0]
+
+
+def _agreement(first: Recording, second: Recording, names: tuple[str, ...]) -> dict[str, Agreement]:
+    return {each.name: each for each in compare(first.select(["time", *names]), second)}
+
+
+def _settling(run: Recording, command: Scenario) -> tuple[float, ...]:
+    """After each jump of the command, until the next."""
+    jumps = [*command.breaks.tolist(), command.duration]
+    return tuple(settling_time(run.between(*ends), band=BAND) for ends in pairwise(jumps))
+
+
+# ---- Strokes ---------------------------------------------------------------------------------------------------------
+
+
+def moves_under_control(drives: Mapping[str, Drive], strokes: tuple[float, ...] = STROKES) -> Recording:
+    """Half a cosine from rest to rest for each stroke [rad at the motor]; columns as of `PositionControl.under_control`."""
+    rows = [_move_under_control(drives, stroke) for stroke in strokes]
+    return _columns(rows, {"current": "A", "used": "A"})
+
+
+def _move_under_control(drives: Mapping[str, Drive], stroke: float) -> dict[str, float]:
+    command = cosine_move(stroke / drives[SIMPLIFIED].gear.kinematics.ratio)
+    models = _models(drives, stroke)
+    runs = {
+        name: simulate(drive, command, COARSE, sample=SAMPLE, record=["output_angle", "current"])
+        for name, drive in models.items()
+    }
+
+    def apart(first: str, second: str, column: str = "output_angle") -> float:
+        return float(np.sqrt(np.mean((runs[first][column] - runs[second][column]) ** 2)))
+
+    return {
+        "stroke": stroke,
+        "output_angle": apart(FULL, SIMPLIFIED),
+        "without_periodic": apart("without_periodic", SIMPLIFIED),
+        "averaged": apart(FULL, "averaged"),
+        "fit_error": max(apart("stronger", SIMPLIFIED), apart("weaker", SIMPLIFIED)),
+        "current": apart(FULL, SIMPLIFIED, "current"),
+        "used": float(np.sqrt(np.mean(runs[FULL]["current"] ** 2))),
+    }
+
+
+def cosine_move(angle: float) -> Scenario:
+    """Half a cosine of 2 s from rest at 0 to rest at an output angle [rad]."""
+    return sine(0.5 * angle, frequency=0.5 / MOVE, duration=MOVE, phase=-0.5 * pi, offset=0.5 * angle)
+
+
+def moves_by_pulse(drives: Mapping[str, Drive], voltage: float, count: int = 16) -> Recording:
+    """One pulse of a voltage [V] in open loop for each of some strokes; columns as `PositionControl.by_pulse` has them."""
+    ends = pulse_width(drives[SIMPLIFIED], voltage, STROKES[0]), pulse_width(drives[FULL], voltage, STROKES[-1])
+    return _columns([_move_by_pulse(drives, voltage, width) for width in np.geomspace(*ends, count)], {"width": "s"})
+
+
+def _move_by_pulse(drives: Mapping[str, Drive], voltage: float, width: float) -> dict[str, float]:
+    stroke = travel(drives[SIMPLIFIED], voltage, width)
+    models = _models(drives, stroke)
+    return {"stroke": stroke, "width": width} | {
+        name: travel(drive, voltage, width) for name, drive in models.items() if name != SIMPLIFIED
+    }
+
+
+def travel(drive: Drive, voltage: float, width: float) -> float:
+    """How far a pulse in open loop turns the motor until it rests [rad]: `voltage` [V] for `width` [s], then 0 V."""
+    duration = width + COASTING
+    command = step(voltage, duration) - step(voltage, duration, start=width)
+    open_loop = drive.replace(control=control.OpenLoop())
+    run = simulate(open_loop, command, COARSE, sample=0.01, record=["input_angle"])
+    if run.end.input_slip_direction != 0.0:
+        raise ValueError(f"the drive still turns {COASTING:g} s after a pulse of {voltage:g} V for {width:g} s")
+    return float(run["input_angle"][-1])
+
+
+def pulse_width(drive: Drive, voltage: float, stroke: float) -> float:
+    """How long a pulse [s] of a voltage [V] must be for a stroke of the motor [rad]."""
+    shortest, longest = 1e-3, 1e-2
+    while travel(drive, voltage, longest) < stroke:
+        shortest, longest = longest, 2.0 * longest
+    return float(brentq(lambda width: travel(drive, voltage, width) - stroke, shortest, longest, rtol=1e-4))
+
+
+def _models(drives: Mapping[str, Drive], stroke: float) -> dict[str, Drive]:
+    """The models that a stroke [rad] from angle 0 is run with, all of the simplified drive but for the motor's friction."""
+    full, simplified = drives[FULL], drives[SIMPLIFIED]
+    law: Any = simplified.gear.friction_input
+    return {
+        SIMPLIFIED: simplified,
+        FULL: full,
+        "without_periodic": without_periodic(full),
+        "averaged": with_coulomb(simplified, average(full, stroke)),
+        "stronger": with_coulomb(simplified, law.coulomb + FIT_ERROR),
+        "weaker": with_coulomb(simplified, law.coulomb - FIT_ERROR),
+    }
+
+
+def without_periodic(drive: Drive) -> Drive:
+    """The full model with the average part of its friction alone, on both sides."""
+    none: dict[str, Any] = {f"gear.friction_{side}.{part}": () for side in ("input", "output") for part in ("cosine", "sine")}
+    return drive.replace(none)
+
+
+def with_coulomb(drive: Drive, coulomb: float) -> Drive:
+    """The simplified model with another Coulomb friction of the motor [N.m], and a static friction in proportion."""
+    law: Any = drive.gear.friction_input
+    breakaway = coulomb * law.breakaway / law.coulomb
+    return drive.replace({"gear.friction_input.coulomb": coulomb, "gear.friction_input.breakaway": breakaway})
+
+
+def average(drive: Drive, stroke: float) -> float:
+    """The mean of the full model's average friction over a stroke [rad] from angle 0 [N.m]."""
+    law: Any = drive.gear.friction_input
+    return float(law.constant + law.linear * stroke / 2.0 + law.quadratic * stroke**2 / 3.0)
+
+
+def law_limit(drive: Drive) -> float:
+    """The least motor angle [rad] at which the average friction is as far from that at angle 0 as the error of its fit."""
+    law: Any = drive.gear.friction_input
+    root = sqrt(law.linear**2 - 4.0 * law.quadratic * FIT_ERROR)
+    return float((-law.linear - root) / (2.0 * law.quadratic))
+
+
+def first_above(place: Array, excess: Array) -> float:
+    """Where an excess first becomes positive, on the straight line between two places; inf if it never does."""
+    above = np.flatnonzero(excess > 0.0)
+    if not above.size:
+        return inf
+    after = int(above[0])
+    if after == 0:
+        return float(place[0])
+    share = excess[after - 1] / (excess[after - 1] - excess[after])
+    return float(place[after - 1] + share * (place[after] - place[after - 1]))
+
+
+def _columns(rows: list[dict[str, float]], units: Mapping[str, str]) -> Recording:
+    """Rows as a recording, whose columns are angles [rad] unless `units` says otherwise."""
+    columns = {name: [row[name] for row in rows] for name in rows[0]}
+    return Recording(columns, {name: units.get(name, "rad") for name in columns})
+
+
+# ---- A measured run --------------------------------------------------------------------------------------------------
+
+
+def _recording(path: Path) -> Recording:
+    """Time, from 0 on, command and output angle of a file."""
+    names = ("time", "command", "output_angle")
+    found = Recording.read(path, columns={name: name for name in names})
+    columns = {"time": found.time - found.time[0]} | {name: found.values(name, "rad") for name in names[1:]}
+    return Recording(columns, {"time": "s", "command": "rad", "output_angle": "rad"}, title=path.name)
+
+
+def _measured(recording: Recording, drives: Mapping[str, Drive]) -> Measured:
+    command = table(recording.time, recording["command"])
+    initial = {"output_angle": float(recording["output_angle"][0])}
+    runs = {model: simulate(drive, command, sample=SAMPLE, initial=initial) for model, drive in drives.items()}
+    measured = recording.select(["time", "output_angle"])
+    agreement = {model: compare(measured, run)[0] for model, run in runs.items()}
+    return Measured(recording, runs, agreement, _beyond(drives[FULL], runs[FULL]["input_angle"]))
+
+
+def _beyond(drive: Drive, angle: Array) -> tuple[float, float] | None:
+    law: Any = drive.gear.friction_input
+    ends = float(angle.min()), float(angle.max())
+    return None if law.domain_start <= ends[0] and ends[1] <= law.domain_end else ends
+
+
+# ---- Files -----------------------------------------------------------------------------------------------------------
+
+
+def recordings(found: PositionControl) -> dict[str, Recording]:
+    """Everything recorded, by the name of its file."""
+    runs = {f"{each.name}-{model}": run for each in found.experiments for model, run in each.runs.items()}
+    pulses = {f"strokes-by-pulse-{voltage:g}V": each for voltage, each in found.by_pulse.items()}
+    measured = {} if found.measured is None else {f"measured-{model}": run for model, run in found.measured.runs.items()}
+    return {**runs, **measured, "strokes-under-control": found.under_control, **pulses}
