@@ -32,7 +32,18 @@ MODULES = (
 LAWS = ("friction", "hysteresis", "kinematic_error", "stiffness")
 METHODS = ("__getitem__", "__contains__", "__eq__", "__add__", "__sub__", "__mul__", "__rmul__")
 # Results, which only the package makes; what it says to itself; and what has a kind of its own.
-RESULTS = ("Derivatives", "Ensemble", "Fit", "FrequencyResponse", "Linearisation", "RatingCheck", "Run", "Twin")
+RESULTS = (
+    "Agreement",
+    "Derivatives",
+    "Difference",
+    "Ensemble",
+    "Fit",
+    "FrequencyResponse",
+    "Linearisation",
+    "RatingCheck",
+    "Run",
+    "Twin",
+)
 NOT_CALLED = {
     *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning", "twin")),
     "files.entries.check_line",
@@ -127,7 +138,9 @@ def valid() -> Mapping[str, Any]:
         "trace.angle": 0.0, "trace.load": 0.0, "trace.speed": [1.0, 2.0, 1.0], "trace.state": UNKNOWN,
         "advance.state": UNKNOWN, "work.state": UNKNOWN, "stored.state": UNKNOWN, "error.torque": 0.0, "slope.torque": 0.0,
         "step.command": 0.1, "step.load_torque": 0.0, "step.dt": 1e-4, "torque.twist": [0.0, 1e-3], "sine.frequency": 1.0,
-        "Recording.columns": {"time": [0.0, 1.0]}, "frequency_response.start": None,
+        "Recording.columns": {"time": [0.0, 1.0]}, "frequency_response.start": None, "compare.first": recording,
+        "compare.second": recording, "inputs": {"load_torque": 0.1}, "initial": {"output_angle": 0.1},
+        "read.drive": drive, "save.drive": drive, "ScenarioFile.save.path": "file.toml",
     }  # fmt: skip
 
 
@@ -145,7 +158,7 @@ def instances() -> tuple[Any, ...]:
     models = [usual_of(kind) for family in families().values() for kind in family.values()]
     return (
         *models, drive, drive.gear, drive.rest(), command, run,
-        valid()["recording"], sw.linearise(drive),
+        valid()["recording"], sw.linearise(drive), sw.ScenarioFile(command), *sw.compare(run, run)[:1],
         sw.simulate_many(drive, command, {"load.inertia": [0.1, 0.2]}, 1e-3),
         sw.derivatives(drive, command, ["load.inertia"], 1e-3), sw.frequency_response(drive, 50.0, 0.5),
         sw.fit(drive.gear, table, ["friction_input.viscous"]), sw.GearSet.read("hfuc-25-100"),

@@ -15,6 +15,7 @@ from tests.fuzz.drives import drives_case
 from tests.fuzz.gear_files import name_case, toml_case
 from tests.fuzz.laws import Case
 from tests.fuzz.measurements import measurements_case
+from tests.fuzz.scenario_files import scenarios_case
 from tests.fuzz.tables import csv_case, parquet_case
 from tests.fuzz.unit_texts import units_case
 from tests.fuzz.writers import files_case
@@ -38,6 +39,7 @@ class Kind:
 KINDS = {
     "csv": Kind(csv_case, 6, 2.0),
     "toml": Kind(toml_case, 5, 2.0),
+    "scenarios": Kind(scenarios_case, 3, 2.0),
     "names": Kind(name_case, 1, 2.0),
     "parquet": Kind(parquet_case, 4, 2.0),
     "units": Kind(units_case, 4, 0.5),

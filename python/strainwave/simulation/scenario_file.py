@@ -6,7 +6,7 @@ docs/command-line.md shows the format. What is wrong in a file is refused in one
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import reduce
@@ -42,10 +42,10 @@ def pieces(
     level: ArrayLike,
     slope: ArrayLike,
     duration: float,
-    wave_amplitude: Sequence[float] = (),
-    wave_frequency: Sequence[float] = (),
-    wave_sweep: Sequence[float] = (),
-    wave_phase: Sequence[float] = (),
+    wave_amplitude: ArrayLike = (),
+    wave_frequency: ArrayLike = (),
+    wave_sweep: ArrayLike = (),
+    wave_phase: ArrayLike = (),
 ) -> Scenario:
     """Any scenario, as its pieces and waves: what no other kind can say.
 
@@ -59,10 +59,11 @@ def pieces(
     >>> float(pieces([0.0, 1.0], [0.0, 2.0], [1.0, 0.0], duration=2.0).value(0.5))
     0.5
     """
-    try:
-        waves = tuple(Wave(*each) for each in zip(wave_amplitude, wave_frequency, wave_sweep, wave_phase, strict=True))
-    except ValueError:
-        raise ValueError("wave_amplitude, wave_frequency, wave_sweep and wave_phase must have equally many numbers") from None
+    given = {"amplitude": wave_amplitude, "frequency": wave_frequency, "sweep": wave_sweep, "phase": wave_phase}
+    columns = [arguments.numbers(f"wave_{name}", each) for name, each in given.items()]
+    if columns[0].ndim != 1 or any(each.shape != columns[0].shape for each in columns):
+        raise ValueError("wave_amplitude, wave_frequency, wave_sweep and wave_phase must be lists of equally many numbers")
+    waves = tuple(Wave(*each) for each in np.column_stack(columns).tolist())
     return Scenario(duration, np.asarray(start), np.asarray(level), np.asarray(slope), waves)
 
 

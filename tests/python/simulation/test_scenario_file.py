@@ -237,7 +237,7 @@ SUM = LASTING + 'command = 1.0\n[[temperature]]\nkind = "constant"\nvalue = { va
         (LASTING + "[command]\nkind = 'table'\ntime = [0, 2]\nvalue = [0, 1]", "command lasts 2 s, the scenario 1 s; both"),
         (LASTING + "[command]\nkind = 'table'\ntime = [0, 1]\nvalue = [0, 1, 2]", 'command: column "value" has 3 samples'),
         (LASTING + "[command]\nkind = 'pieces'\nstart = [0.0]\nlevel = [1.0]\nslope = [0.0]\nwave_phase = [1.0]",
-         "command: wave_amplitude, wave_frequency, wave_sweep and wave_phase must have equally many numbers"),
+         "command: wave_amplitude, wave_frequency, wave_sweep and wave_phase must be lists of equally many"),
         (LASTING + "command = 1.0\nload_torque = { value = 3.0, unit = 'N' }", 'load_torque: cannot convert "N" to "N.m"'),
         (LASTING + "command = 1.0\ninitial = 3", "initial = 3 must be a table; write [initial] with output_angle ="),
         (LASTING + "command = 1.0\n[initial]\ninput_angel = 1.0", 'initial: "input_angel" is not known; near it is'),
