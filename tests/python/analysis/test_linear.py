@@ -325,3 +325,137 @@ def test_what_is_not_there_is_refused() -> None:
             sw.linearise(geared(DISC, motor=NO_TORQUE)).response(frequency, input="load_torque")
     with pytest.raises(ValueError, match="load_torque = inf must be finite"):
         sw.linearise(DRIVE, load_torque=float("inf"))
+
+
+# The modes of the shafts alone
+
+inertias = st.floats(1e-6, 1e-2)
+stiffnesses = st.floats(10.0, 1e6)
+ratios = st.floats(0.01, 400.0)
+MOTORS = [sw.motor.DC, sw.motor.BrushlessDC, sw.motor.PMSM, sw.motor.TorqueSource, sw.motor.CurrentSource]
+
+
+def in_closed_form(k: float, ratio: float, j_in: float, j_out: float, at_load: float = 0.0) -> tuple[list[float], list[float]]:
+    """Free and with the input held, in closed form: the roots of J_in J_out w^4 - (...) w^2 + k k_load / i^2 = 0."""
+    a, b, c = j_in * j_out, j_in * (k + at_load) + j_out * k / ratio**2, k * at_load / ratio**2
+    fast = 0.5 * (b + sqrt(b * b - 4.0 * a * c)) / a
+    slow = c / (a * fast)
+    return [sqrt(w) for w in (slow, fast) if w > 0.0], [sqrt((k + at_load) / j_out)]
+
+
+@given(stiffnesses, ratios, inertias, inertias, st.floats(0.01, 10.0), st.sampled_from(MOTORS), st.booleans())
+def test_modes_of_random_two_inertia_drives(
+    k: float, reduction: float, wave_generator: float, rotor: float, j_out: float, motor: type, reversing: bool
+) -> None:
+    """sqrt(k (1 / J_out + 1 / (i^2 J_in))) and sqrt(k / J_out), with the inertia of any motor, turning either way."""
+    kinematics = sw.kinematics.StrainWave() if reversing else sw.kinematics.PlainRatio(reduction=reduction)
+    gear = sw.Gear(kinematics=kinematics, stiffness=sw.stiffness.Linear(k=k), input_inertia=wave_generator)
+    drive = sw.Drive(gear=gear, motor=motor(inertia=rotor), load=sw.loads.Inertia(inertia=j_out))
+    j_in, ratio = wave_generator + rotor, kinematics.ratio
+    found = sw.modes(drive)
+    assert found["free"] == pytest.approx([sqrt(k * (1.0 / j_out + 1.0 / (ratio**2 * j_in)))], rel=1e-9)
+    assert found["input held"] == pytest.approx([sqrt(k / j_out)], rel=1e-9)
+
+
+@given(stiffnesses, st.floats(1.0, 400.0), inertias, st.floats(0.01, 10.0), st.floats(0.1, 1e4))
+def test_modes_with_a_spring_at_the_load(k: float, reduction: float, j_in: float, j_out: float, at_load: float) -> None:
+    """A torsion spring, a table of its slope, and gravity at the lowest point are one and the same at rest."""
+    gear = sw.Gear(
+        kinematics=sw.kinematics.PlainRatio(reduction=reduction), stiffness=sw.stiffness.Linear(k=k), input_inertia=j_in
+    )
+    free, held = in_closed_form(k, reduction, j_in, j_out, at_load)
+    for load in (
+        sw.loads.TorsionSpring(inertia=j_out, stiffness=at_load),
+        sw.loads.Pendulum(inertia=j_out, gravity_torque=at_load),
+        sw.loads.TorqueTable(inertia=j_out, angle=[-1.0, 1.0], held_torque=[-at_load, at_load]),
+    ):
+        found = sw.modes(sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=0.0), load=load))
+        assert found["free"] == pytest.approx(free, rel=1e-6)
+        assert found["input held"] == pytest.approx(held, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "k"),
+    [
+        (sw.stiffness.Cubic(a1=8000.0, a3=4e7), 8000.0),
+        (sw.stiffness.Piecewise(k1=900.0, k2=400.0, knee=1e-3), 900.0),
+        (sw.stiffness.ThreeSegment(k1=67e3, k2=110e3, k3=120e3, t1=29.0, t2=108.0), 67e3),
+        (
+            sw.stiffness.MultiCompliance(
+                flexspline_stiffness=8000.0,
+                flexspline_hardening=0.02,
+                wave_generator_stiffness=2.0,
+                wave_generator_hardening=1.5,
+                reduction=100.0,
+            ),
+            5714.285714285714,  # 1 / (1 / 8000 + 1 / (100^2 2))
+        ),
+    ],
+)
+def test_modes_of_a_spring_that_bends_are_those_of_its_tangent_at_rest(stiffness: object, k: float) -> None:
+    memory = sw.hysteresis.MaxwellSlip(stiffness=[1000.0, 600.0], breakaway=[0.5, 0.9])
+    for hysteresis, added in ((sw.Gear().hysteresis, 0.0), (memory, 1600.0)):
+        gear = sw.Gear(stiffness=stiffness, hysteresis=hysteresis, input_inertia=2e-5)
+        drive = sw.Drive(gear=gear, motor=sw.motor.BrushlessDC(inertia=1e-4), load=sw.loads.Inertia(inertia=0.5))
+        free, held = in_closed_form(k + added, 100.0, 1.2e-4, 0.5)
+        assert sw.modes(drive)["free"] == pytest.approx(free, rel=1e-9)
+        assert sw.modes(drive)["input held"] == pytest.approx(held, rel=1e-9)
+
+
+def test_modes_are_those_of_the_shafts_whatever_damps_drives_or_disturbs_them() -> None:
+    plain = sw.Drive(
+        gear=sw.Gear(stiffness=sw.stiffness.Linear(k=1.2e4), input_inertia=2e-5),
+        motor=sw.motor.PMSM(inertia=1e-4, cogging_torque=0.05),
+        load=sw.loads.Inertia(inertia=0.5),
+    )
+    busy = plain.replace(
+        gear=plain.gear.replace(
+            damping=30.0,
+            kinematic_error=sw.kinematic_error.Fourier(order=[2.0], amplitude=[1e-3], phase=[0.0]),
+            kinematic_noise=sw.kinematic_error.Stochastic(amplitude=1e-5),
+            friction_input=made(sw.friction.LuGre, viscous=5e-5),
+            friction_mesh=made(sw.friction.LoadDependent),
+            friction_output=sw.friction.Coulomb(coulomb=1.0),
+        ),
+        control=sw.control.Sampled(law=sw.control.Cascade(), period=1e-3),
+        sensors=sw.Sensors(current=sw.sensor.Noisy(law=sw.sensor.Ideal(), amplitude=0.1, bandwidth=100.0)),
+        thermal=made(sw.thermal.Heating),
+        meter=sw.meter.EnergyMeter(),
+    )
+    free, held = in_closed_form(1.2e4, 100.0, 1.2e-4, 0.5)
+    for drive in (plain, busy):
+        assert sw.modes(drive)["free"] == pytest.approx(free, rel=1e-9)
+        assert sw.modes(drive)["input held"] == pytest.approx(held, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "free", "held"),
+    [
+        ("position-drive", 173.2411613907041, sqrt(150.0 / 0.005)),
+        ("position-drive-full-friction", 173.2411613907041, sqrt(150.0 / 0.005)),
+        ("position-drive-printed", sqrt(150.0 * (100.0**2 / 0.0012 + 1.0 / 0.005)), sqrt(150.0 / 0.005)),
+        ("two-inertia-gear", 406.61201818605, 400.0),
+        # 13/6 k1, spring and hysteresis; rotor and wave generator
+        ("space-pointing-joint", sqrt(8697.01 * (1.0 / 5.0 + 1.0 / (1e4 * 4.33e-5))), sqrt(8697.01 / 5.0)),
+    ],
+)
+def test_modes_of_the_drives_that_come_with_the_package(name: str, free: float, held: float) -> None:
+    found = sw.modes(sw.load(name))
+    assert found["free"] == pytest.approx([free], rel=1e-9)
+    assert found["input held"] == pytest.approx([held], rel=1e-9)
+
+
+def test_modes_of_the_robot_joint_whose_arm_swings() -> None:
+    k = 26700.5 + 17.8e3 + 8.9e3 + 4.45e3
+    free, held = in_closed_form(k, 100.0, 5.48e-5 + 0.413e-4, 4.0, 59.0)
+    found = sw.modes(sw.load("robot-joint"))
+    assert found["free"] == pytest.approx(free, rel=1e-9)
+    assert found["input held"] == pytest.approx(held, rel=1e-9)
+
+
+@pytest.mark.parametrize("load", [sw.loads.Prescribed(), sw.loads.Brake(inertia=0.1)])
+def test_modes_need_an_output_shaft_that_is_free(load: object) -> None:
+    with pytest.raises(ValueError, match=r"needs an output shaft that torques move|needs a load that does not brake"):
+        sw.modes(sw.Drive(load=load))
+    with pytest.raises(TypeError, match="drive"):
+        sw.modes(sw.Gear())
