@@ -1,0 +1,191 @@
+"""Every script of `examples/` runs without a warning, draws its picture, and finds what it says it shows."""
+
+from __future__ import annotations
+
+import ast
+import os
+import runpy
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+
+ROOT = Path(__file__).resolve().parents[2] / "examples"
+SCRIPTS = sorted(ROOT.glob("*.py"))
+DRIVES = sorted((ROOT / "drives").glob("*.toml"))
+
+
+@pytest.fixture(scope="module")
+def gallery(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str, Any]]:
+    """Runs the script of a number once, in a folder of its own, and gives what it has found by name."""
+    found: dict[str, dict[str, Any]] = {}
+
+    def of(number: str) -> dict[str, Any]:
+        if number not in found:
+            (script,) = ROOT.glob(f"{number}_*.py")
+            folder, before = tmp_path_factory.mktemp(script.stem), Path.cwd()
+            os.chdir(folder)
+            try:
+                found[number] = runpy.run_path(str(script), run_name="__main__") | {"folder": folder}
+            finally:
+                os.chdir(before)
+        return found[number]
+
+    return of
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_an_example_says_what_it_shows_and_draws_it(
+    script: Path, gallery: Callable[[str], dict[str, Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = script.read_text(encoding="utf-8")
+    assert len(ast.get_docstring(ast.parse(text)) or "") > 100
+    assert 20 <= len(text.splitlines()) <= 80
+    folder = gallery(script.stem[:2])["folder"]
+    assert capsys.readouterr().out  # its numbers
+    assert [path.stat().st_size > 10_000 for path in folder.glob("*.png")] == [True]
+
+
+def test_examples_are_numbered_and_listed() -> None:
+    assert [script.stem[:2] for script in SCRIPTS] == [f"{number:02}" for number in range(1, len(SCRIPTS) + 1)]
+    page = (ROOT.parent / "docs" / "examples.md").read_text(encoding="utf-8")
+    assert [script.name for script in SCRIPTS if f"`{script.name}`" not in page] == []
+
+
+def lines_of_code(text: str) -> int:
+    """Lines that hold code: neither docstring nor comment nor blank nor import."""
+    tree = ast.parse(text)
+    body = [node for node in tree.body[1:] if not isinstance(node, ast.Import | ast.ImportFrom)]
+    used = {line for node in body for line in range(node.lineno, (node.end_lineno or node.lineno) + 1)}
+    lines = text.splitlines()
+    return sum(1 for line in used if lines[line - 1].strip() and not lines[line - 1].strip().startswith("#"))
+
+
+def test_a_drive_of_no_document_takes_under_twenty_lines() -> None:
+    """Two frictions, a load, a controller, the run, its numbers and its picture."""
+    (script,) = ROOT.glob("03_*.py")
+    assert lines_of_code(script.read_text(encoding="utf-8")) <= 20
+
+
+def models_of(part: Any) -> set[str]:
+    """Names of the classes of a part and of all parts inside of it."""
+    inside = [getattr(part, field["name"]) for field in type(part).fields if field.get("kind", "part") == "part"]
+    return {type(part).__name__}.union(*map(models_of, inside))
+
+
+def family(module: Any) -> set[str]:
+    return {name for name, each in vars(module).items() if isinstance(each, type) and hasattr(each, "fields")}
+
+
+def test_the_ten_drives_have_every_model_between_them() -> None:
+    assert len(DRIVES) == 10
+    drives = [sw.GearSet.read(path).drive for path in DRIVES]
+    used = set().union(*map(models_of, drives))
+    families = [sw.motor, sw.control, sw.loads, sw.thermal, sw.softening, sw.meter, sw.friction, sw.kinematics]
+    wanted = set().union(*map(family, families)) | family(sw.stiffness) | family(sw.kinematic_error)
+    wanted |= family(sw.sensor) | family(sw.hysteresis) - {"GridDensity", "PrandtlIshlinskii"}  # densities and inverses
+    assert sorted(wanted - used) == []
+    combinations = {tuple(type(getattr(drive, part)).__name__ for part in ("motor", "control", "load")) for drive in drives}
+    assert len(combinations) == 10
+
+
+def test_the_ten_drives_run(gallery: Callable[[str], dict[str, Any]]) -> None:
+    runs = gallery("04")["runs"]
+    assert list(runs) == [path.stem for path in DRIVES]
+    for run in runs.values():
+        assert 1.0 < np.abs(run["torque"]).max() < 30.0
+
+
+def test_orders_peak_at_the_eigenfrequency_over_the_order(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Free shafts on a linear spring: omega^2 = k (1 / J_out + 1 / (i^2 J_in)), here of 8000, 0.05 and 1.5e-4."""
+    found = gallery("05")
+    mode = np.sqrt(8000.0 * (1.0 / 0.05 + 1.0 / (100.0**2 * 1.5e-4)))
+    assert found["mode"] == pytest.approx(mode, rel=1e-9)
+    assert found["observed"] == pytest.approx(mode / np.array([1.0, 2.0, 4.0, 11.5 * (1.0 - 5.5 / 45.0) * 1.01]), rel=0.02)
+
+
+def test_the_places_lose_what_a_loop_loses(gallery: Callable[[str], dict[str, Any]]) -> None:
+    for study in gallery("06")["studies"].values():
+        for _, (_, area, taken) in study:
+            assert taken.sum() == pytest.approx(area, rel=2e-3)
+            assert (taken > -1e-9).all()
+
+
+def test_shares_of_a_loop_change_as_the_page_says(gallery: Callable[[str], dict[str, Any]]) -> None:
+    shares = {
+        quantity: np.array([taken / taken.sum() for _, (_, _, taken) in study])
+        for quantity, study in gallery("06")["studies"].items()
+    }
+    generator, teeth, bearing, _, _ = shares["torque [N.m]"].T
+    assert bearing[0] == max(shares["torque [N.m]"][0])
+    assert (np.diff(teeth) > 0.0).all()
+    assert shares["frequency [Hz]"][-1, 0] > shares["frequency [Hz]"][0, 0]
+    assert (np.diff(shares["temperature, at 8 Hz [°C]"][:, 0]) < 0.0).all()
+    assert generator[0] == 0.0  # a small torque does not break it away
+
+
+def test_current_shows_the_kinematic_error_as_the_closed_form_says(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """At 20 N.m 32, 240 and 80 mA where the speed is held ideally; a loop has |T_c| times as much."""
+    found = gallery("08")
+    assert found["measured"] == pytest.approx(found["predicted"], rel=2e-3, abs=1e-5)
+    (at,) = np.flatnonzero(found["loads"] == 20.0)
+    assert found["measured"][at] == pytest.approx([0.032, 0.240, 0.080], rel=0.02)
+
+
+def test_a_move_of_the_joint_is_held_against_the_ratings(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """The file that the example saves holds the whole joint; its last move, the hasty one, exceeds the peak torque alone."""
+    found = gallery("02")
+    saved = sw.GearSet.read(found["folder"] / "my_joint.toml")
+    assert saved == found["joint"]
+    assert [check.name for check in sw.check_ratings(saved, found["run"]) if check.exceeded] == ["peak_torque"]
+
+
+def test_falling_friction_sticks_and_slips_only_at_creep_speed(gallery: Callable[[str], dict[str, Any]]) -> None:
+    rest = gallery("07")["rest"]
+    assert rest["falling", 0.2] > rest["falling", 0.8] > 0.5
+    assert rest["falling", 3.0] == 0.0
+    assert {rest["level", speed] for speed in (0.2, 0.8, 3.0)} == {0.0}
+
+
+def test_an_hour_warms_the_joint_as_its_thermal_resistances_say(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """In the steady state, with the heat of the last ten minutes: two bodies to the air and to each other."""
+    run = gallery("09")["run"]
+    last = run.between(3000.0, 3600.0)
+
+    def heat(*places: str) -> float:
+        return float(sum(last[f"energy_{place}"][-1] - last[f"energy_{place}"][0] for place in places)) / 600.0
+
+    flows = np.array([heat("motor"), heat("friction_input", "friction_mesh", "friction_output", "damping", "hysteresis")])
+    coupling = 0.5
+    conductance = np.array([[1.0 / 2.0 + coupling, -coupling], [-coupling, 1.0 / 2.5 + coupling]])
+    rises = np.linalg.solve(conductance, flows)
+    assert last["winding_temperature"].mean() - 293.15 == pytest.approx(rises[0], rel=0.01)
+    assert last["temperature"].mean() - 293.15 == pytest.approx(rises[1], rel=0.01)
+    largest = 0.05 * np.exp(-0.004 * rises[1]) + 8e-4 * np.abs(last["input_speed"]).max() * np.exp(-0.025 * rises[1])
+    assert np.abs(last["friction_input"]).max() == pytest.approx(largest, rel=0.005)
+
+
+def test_what_the_joint_takes_in_an_hour_is_lost_or_stored(gallery: Callable[[str], dict[str, Any]]) -> None:
+    run = gallery("09")["run"]
+    lost = sum(
+        run[f"energy_{place}"][-1] for place in ("motor", "friction_input", "hysteresis", "damping", "softening", "load")
+    )
+    stored = sum(run[name][-1] - run[name][0] for name in run.names if name.startswith("stored_"))
+    assert run["energy_supplied"][-1] == pytest.approx(lost + stored, rel=1e-4)
+
+
+def test_a_sampled_joint_swings_without_end_beyond_its_delay_margin(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """No lateness lies within 6 % of the margin; the mean lateness stands for the held samples up to such a difference."""
+    found = gallery("10")
+    assert (found["still"] == (found["lateness"] < found["margin"])).all()
+    assert 3 <= (found["still"] == 0.0).sum() < found["still"].size / 2
+    assert np.abs(found["lateness"] / found["margin"] - 1.0).min() > 0.06
+
+
+def test_a_python_controller_keeps_the_clamp_in_hand(gallery: Callable[[str], dict[str, Any]]) -> None:
+    run = gallery("03")["run"]
+    assert np.abs(run["command"] - run["output_angle"]).max() < 0.015
+    assert run["load_torque"].max() > 29.0
