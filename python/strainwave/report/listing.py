@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from math import tau
 
+import numpy as np
+
 from strainwave import Drive
 from strainwave.analysis.compare import Agreement, Difference
 from strainwave.analysis.linear import linearise, modes
@@ -16,6 +18,7 @@ from strainwave.files.recording import Recording
 from strainwave.messages import one_line
 
 Row = Sequence[str]
+_ROUNDING = 1e-12  # of the largest value of a column: what is smaller is rounding
 
 
 def listing(gear_set: GearSet, runs: Mapping[str, Recording] | None = None) -> str:
@@ -73,12 +76,13 @@ def range_table(recording: Recording) -> str:
             unit  smallest  largest  at the end
     torque  N.m        0.5        2         0.5
     """
-    rows = [("", "unit", "smallest", "largest", "at the end")]
+    rows: list[Row] = [("", "unit", "smallest", "largest", "at the end")]
     for name in recording.names:
         if name != "time":
             values = recording[name]
-            least, largest, last = (f"{each:.5g}" for each in (values.min(), values.max(), values[-1]))
-            rows.append((name, recording.unit(name), least, largest, last))
+            noise = _ROUNDING * np.abs(values).max()
+            shown = (f"{0.0 if abs(each) < noise else each:.5g}" for each in (values.min(), values.max(), values[-1]))
+            rows.append((name, recording.unit(name), *shown))
     return "\n".join(aligned(rows, "<<>>>"))
 
 

@@ -124,6 +124,15 @@ def test_tables_are_aligned() -> None:
     assert range_table(run).splitlines()[1] == "torque  N.m    -3.1416        2     -3.1416"
 
 
+def test_rounding_beside_a_large_value_is_none() -> None:
+    values = {"time": [0.0, 1.0, 2.0], "a": [-1e-20, 0.5, 2e-19], "b": [-1e-20, 0.0, 2e-19]}
+    table = range_table(Recording(values, {"time": "s", "a": "1", "b": "1"}))
+    assert [line.split() for line in table.splitlines()[1:]] == [
+        ["a", "1", "0", "0.5", "0"],
+        ["b", "1", "-1e-20", "2e-19", "2e-19"],
+    ]
+
+
 @pytest.mark.parametrize(("correlation", "shown"), [(1.0, "1"), (-1.0, "-1"), (0.0, "0"), (0.5, "0.5"), (0.9999999, "1")])
 def test_a_correlation_has_no_empty_digits(correlation: float, shown: str) -> None:
     assert agreement_table([Agreement("a", "1", 0.1, 0.1, 0.0, correlation, 2)]).endswith(f"  {shown}")
