@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 ratio = -100.0
 bearing = sw.bearing_orders(balls=23, ball_diameter=5.5e-3, pitch_diameter=45e-3, outer_speed=1 / ratio)
-orders = np.array([1.0, 2.0, 4.0, bearing.outer_ring])
+orders = [1.0, 2.0, 4.0, bearing.outer_ring]
 gear = sw.Gear(
     kinematics=sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202),
     kinematic_error=sw.kinematic_error.Fourier(order=orders, amplitude=[8e-5, 3e-4, 5e-5, 2e-6], phase=[0.0, 0.3, -1.1, 0.0]),
@@ -46,7 +46,7 @@ ripple = np.array([sw.orders(stretch, "output_speed", orders).amplitude for stre
 torque = np.array([sw.orders(stretch, "torque", orders).amplitude for stretch in stretches])
 
 (mode,) = sw.modes(drive)["free"]
-predicted = mode / orders
+predicted = mode / np.array(orders)
 observed = speed[torque.argmax(axis=0)]
 print(f"eigenfrequency {mode:.1f} rad/s = {mode / 2 / np.pi:.1f} Hz")
 for order, critical, peak in zip(orders, predicted, observed, strict=True):

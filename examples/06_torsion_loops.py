@@ -45,7 +45,7 @@ def loop(torque: float = 40.0, frequency: float = 1.0, celsius: float = 20.0) ->
     run = sw.simulate(drive, still, load_torque=wave, temperature=celsius + 273.15, sample=1.0 / (500.0 * frequency))
     cycle = run.between(2.0 / frequency, 3.0 / frequency)
     taken = np.array([cycle[f"energy_{place}"][-1] - cycle[f"energy_{place}"][0] for place in places])
-    area = abs(np.trapezoid(cycle["load_torque"], cycle["output_angle"]))
+    area = float(abs(np.trapezoid(cycle["load_torque"], cycle["output_angle"])))
     return cycle, area, taken
 
 

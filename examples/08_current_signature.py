@@ -9,7 +9,7 @@ import numpy as np
 import strainwave as sw
 from matplotlib.figure import Figure
 
-orders, error = np.array([1.0, 2.0, 4.0]), np.array([8e-5, 3e-4, 5e-5])  # rad at the output
+orders, error = [1.0, 2.0, 4.0], [8e-5, 3e-4, 5e-5]  # rad at the output
 stiffness, inertia, rotor, torque_constant, speed = 8000.0, 0.05, 1.5e-4, 0.05, 10.0
 gear = sw.Gear(
     kinematics=sw.kinematics.StrainWave(),
@@ -27,19 +27,19 @@ drive = sw.Drive(
 ratio = gear.kinematics.ratio
 duration = 14.0 * 2.0 * np.pi / speed
 loads = np.array([0.0, 5.0, 10.0, 20.0, 30.0, 40.0])
-measured = []
+found = []
 for load in loads:
     command = sw.scenario.constant(speed / ratio, duration)
     start = {"input_speed": speed, "output_speed": speed / ratio, "torque": load}
     run = sw.simulate(drive, command, load_torque=load, initial=start, sample=1e-3)
     settled = run.between(duration - 10.1 * 2.0 * np.pi / speed, duration)
-    measured.append(sw.orders(settled, "current", orders).amplitude)
-measured = np.array(measured)
+    found.append(sw.orders(settled, "current", orders).amplitude)
+measured = np.array(found)
 
-s = 1j * orders * speed
+s = 1j * np.array(orders) * speed
 inert = inertia * s**2 * (stiffness + 2.0 * s) / (inertia * s**2 + stiffness + 2.0 * s)  # torque per error, by the inertia
 gain = (4.0 + 100.0 / s) * torque_constant / (rotor * s)  # of the loop of the speed
-predicted = np.abs((inert / ratio + np.outer(loads, s / speed)) * gain / (1.0 + gain)) * error / torque_constant
+predicted = np.abs((inert / ratio + np.outer(loads, s / speed)) * gain / (1.0 + gain)) * np.array(error) / torque_constant
 
 figure = Figure(figsize=(7.0, 4.5), layout="constrained")
 axes = figure.subplots()
@@ -50,5 +50,5 @@ axes.set(xlabel="load torque [N.m]", ylabel="amplitude of the current [mA]", xli
 axes.grid(alpha=0.3)
 axes.legend()
 figure.savefig("current_signature.png", dpi=120)
-for load, found, closed in zip(loads, measured * 1e3, predicted * 1e3, strict=True):
-    print(f"{load:4.0f} N.m: {found.round(2)} mA simulated, {closed.round(2)} mA in closed form")
+for load, simulated, closed in zip(loads, measured * 1e3, predicted * 1e3, strict=True):
+    print(f"{load:4.0f} N.m: {simulated.round(2)} mA simulated, {closed.round(2)} mA in closed form")

@@ -35,7 +35,8 @@ run = sw.simulate(drive, command, dt=1e-2, sample=0.02)
 def largest(name: str) -> np.ndarray:
     """The largest of each cycle of two seconds, in percent of that of the first minute's last, shape (cycles,)."""
     each = np.abs(run[name][1:]).reshape(-1, 100).max(axis=1)
-    return 100.0 * each / each[29]
+    share: np.ndarray = 100.0 * each / each[29]
+    return share
 
 
 minutes, cycles = run.time / 60.0, np.arange(1, 1801) / 30.0
