@@ -34,12 +34,14 @@ METHODS = ("__getitem__", "__contains__", "__eq__", "__add__", "__sub__", "__mul
 # Results, which only the package makes; what it says to itself; and what has a kind of its own.
 RESULTS = (
     "Agreement",
+    "BearingOrders",
     "Derivatives",
     "Difference",
     "Ensemble",
     "Fit",
     "FrequencyResponse",
     "Linearisation",
+    "Orders",
     "RatingCheck",
     "Run",
     "Twin",
@@ -58,6 +60,7 @@ NOT_CALLED = {
     "experiment.TorsionLoop.path",
     "fit.Fit.rms",
     "simulation.scenario.Wave",
+    *("state.State.of", "state.State.__getitem__"),  # which says of other names what any mapping says
     *(f"files.recording.{name}" for name in ("envelope", "check_recording")),
 }
 
@@ -141,12 +144,20 @@ def valid() -> Mapping[str, Any]:
         "Recording.columns": {"time": [0.0, 1.0]}, "frequency_response.start": None, "compare.first": recording,
         "compare.second": recording, "inputs": {"load_torque": 0.1}, "initial": {"output_angle": 0.1},
         "read.drive": drive, "save.drive": drive, "ScenarioFile.save.path": "file.toml",
+        "orders.recording": turning(), "order_spectrum.recording": turning(), "column": "torque", "order": [2.0],
+        "orders.angle": "input_angle", "order_spectrum.angle": "input_angle", "balls": 9, "ball_diameter": 1.0,
+        "pitch_diameter": 10.0, "contact_angle": 0.1, "outer_speed": 0.0,
     }  # fmt: skip
 
 
 def friction_table() -> sw.Recording:
     speed = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0])
     return sw.Recording({"speed": speed, "torque": 0.02 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
+
+
+def turning() -> sw.Recording:
+    angle = np.linspace(0.0, 100.0, 1000)
+    return sw.Recording({"input_angle": angle, "torque": np.sin(2.0 * angle)}, {"input_angle": "rad", "torque": "N.m"})
 
 
 @cache
