@@ -44,12 +44,13 @@ RESULTS = (
     "Orders",
     "RatingCheck",
     "Run",
+    "Seen",
     "Twin",
 )
 NOT_CALLED = {
     *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning", "twin")),
     "files.entries.check_line",
-    *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter")),
+    *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter", "replaced")),
     *(
         f"identify.experiment.{name}"
         for name in ("Experiment", "Nuisance", "DriveLog", "FrictionTable", "TorsionLoop", "at_input")
@@ -60,7 +61,7 @@ NOT_CALLED = {
     "experiment.TorsionLoop.path",
     "fit.Fit.rms",
     "simulation.scenario.Wave",
-    *("state.State.of", "state.State.__getitem__"),  # which says of other names what any mapping says
+    *("state.State.of", "state.State.get", "state.State.__getitem__"),  # which say of other names what any mapping says
     *(f"files.recording.{name}" for name in ("envelope", "check_recording")),
 }
 

@@ -78,9 +78,12 @@ class State(Mapping[str, float]):
         return self._places[arguments.one_of("the name of a number", name, tuple(self._places))]
 
     def __getitem__(self, name: str) -> float:
-        if name not in self._places:
-            raise KeyError(f"a state of this drive has no {name!r}; it has {listed(self._places)}")
+        if name not in self:
+            raise KeyError(f"a state of this drive has no {shortened(name)}; it has {listed(self._places)}")
         return float(self.numbers[self._places[name]])
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name in self._places
 
     def __getattr__(self, name: str) -> float:
         if name.startswith("_") or name not in self._places:

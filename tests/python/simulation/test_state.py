@@ -47,6 +47,14 @@ def test_numbers_of_the_drive_itself_are_attributes() -> None:
         state["speed"]
 
 
+def test_what_is_no_name_is_no_number_of_a_state() -> None:
+    state = DRIVE.rest()
+    for name in ("speed", 3, [1.0]):
+        assert name not in state
+        with pytest.raises(KeyError, match="has no"):
+            state[name]  # type: ignore[index]
+
+
 def test_a_state_changes_for_nobody() -> None:
     state = DRIVE.rest()
     with pytest.raises(ValueError, match="read-only"):
