@@ -19,10 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
+from strainwave.messages import quoted
 
 Array = NDArray[np.float64]
 
 ROUNDING = 1e-9  # by which a number of revolutions may be off
+LARGEST = 1e150  # of a value, so that its square is a number, too
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,8 +236,11 @@ def _turned(recording: Recording, column: str, angle: str) -> tuple[Array, Array
     """The angle [rad] and the values of the column, shape (n,); an angle that turns back is refused."""
     check_recording("recording", recording)
     turned, values = recording.values(arguments.text("angle", angle), "rad"), recording[arguments.text("column", column)]
+    if (reached := float(np.abs(values).max())) > LARGEST:
+        raise ValueError(f"column {quoted(column)} reaches {reached:g}; orders are told of up to {LARGEST:g}")
     steps = np.diff(turned)
-    back = steps * steps[np.argmax(steps != 0.0)] < 0.0 if len(steps) else np.zeros(0, dtype=np.bool_)
+    sense = np.sign(steps)
+    back = sense * sense[np.argmax(steps != 0.0)] < 0.0 if len(steps) else np.zeros(0, dtype=np.bool_)
     if back.any():
         row = int(np.argmax(back)) + 1
         where = f"t = {recording.time[row]:g} s" if "time" in recording else f"row {row}"
@@ -270,8 +275,8 @@ def _check_sampled(turned: Array, highest: float, angle: str) -> None:
     """Refuses an order of which a cycle has fewer than two samples."""
     steps = np.abs(np.diff(turned))
     row = int(np.argmax(steps))
-    if highest * steps[row] >= pi:
-        allowed = pi / highest
+    allowed = pi / highest
+    if steps[row] >= allowed:
         raise ValueError(
             f"order {highest:g} needs samples less than {allowed:.3g} rad of {angle} apart; rows {row} and {row + 1} are "
             f"{steps[row]:.3g} rad apart"
