@@ -46,11 +46,12 @@ TABLE_4 = {  # root mean square error [rad], largest error [rad], correlation co
 }
 
 STROKES = (0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 45.0, 65.0, 90.0, 120.0, 160.0, 230.0)  # rad at the motor
+PULSES = 12  # of each voltage, from the least stroke to the largest
 VOLTAGES = (6.0, 12.0, 24.0)  # V, of pulses; above the 2.99 V at which the drive breaks away
 USUAL_VOLTAGE = 12.0  # V, of the pulses that are shown
 MOVE = 2.0  # s: how long a move under control takes
-COASTING = 3.0  # s: after a pulse, until the drive has come to rest
-COARSE = 5e-4  # s: a step, and the distance of samples, of the sweeps; shorter ones change no digit shown
+COASTING = 2.5  # s: after a pulse, until the drive has come to rest
+COARSE = 1e-3  # s: a step of the sweeps; ten times shorter ones change strokes by a few millionths
 
 
 @dataclass(frozen=True)
@@ -232,9 +233,9 @@ def _settling(run: Recording, command: Scenario) -> tuple[float, ...]:
 # ---- Strokes ---------------------------------------------------------------------------------------------------------
 
 
-def moves_under_control(drives: Mapping[str, Drive], strokes: tuple[float, ...] = STROKES) -> Recording:
+def moves_under_control(drives: Mapping[str, Drive]) -> Recording:
     """Half a cosine from rest to rest for each stroke [rad at the motor]; columns as of `PositionControl.under_control`."""
-    rows = [_move_under_control(drives, stroke) for stroke in strokes]
+    rows = [_move_under_control(drives, stroke) for stroke in STROKES]
     return _columns(rows, {"current": "A", "used": "A"})
 
 
@@ -265,10 +266,10 @@ def cosine_move(angle: float) -> Scenario:
     return sine(0.5 * angle, frequency=0.5 / MOVE, duration=MOVE, phase=-0.5 * pi, offset=0.5 * angle)
 
 
-def moves_by_pulse(drives: Mapping[str, Drive], voltage: float, count: int = 16) -> Recording:
+def moves_by_pulse(drives: Mapping[str, Drive], voltage: float) -> Recording:
     """One pulse of a voltage [V] in open loop for each of some strokes; columns as `PositionControl.by_pulse` has them."""
     ends = pulse_width(drives[SIMPLIFIED], voltage, STROKES[0]), pulse_width(drives[FULL], voltage, STROKES[-1])
-    return _columns([_move_by_pulse(drives, voltage, width) for width in np.geomspace(*ends, count)], {"width": "s"})
+    return _columns([_move_by_pulse(drives, voltage, width) for width in np.geomspace(*ends, PULSES)], {"width": "s"})
 
 
 def _move_by_pulse(drives: Mapping[str, Drive], voltage: float, width: float) -> dict[str, float]:
