@@ -11,6 +11,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import strainwave as sw
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.linalg import expm
 
 COULOMB = 0.072  # N.m, s3 of Table 1
@@ -178,6 +180,71 @@ def test_the_coulomb_oscillator_turns_at_its_peaks_and_sticks() -> None:
     assert peaks == pytest.approx([-0.712, 0.424, -0.136], rel=1e-10)
     assert first(lambda time: after(time)["input_speed"][-1] == 0.0, 0.45, 0.47) == pytest.approx(stuck, rel=1e-10)
     assert after(1.0)["input_angle"][-1] == pytest.approx(-0.136, rel=1e-10)
+
+
+# Further cases
+
+
+@pytest.mark.parametrize("voltage", [12.0, -24.0, 4.0])
+def test_no_load_speed_of_the_set_with_friction_at_its_load(voltage: float) -> None:
+    """(K_m u / R - f_cm - f_cl / N) / (b_m + b_l / N^2 + K_m K_b / R)."""
+    drive = sw.load("position-drive")
+    drive = drive.replace(gear=drive.gear.replace(damping=1.0), control=sw.control.OpenLoop())
+    run = sw.simulate(drive, sw.scenario.constant(voltage, 30.0), dt=1e-3, sample=30.0)
+    torque = 0.05 * abs(voltage) / 2.0 - COULOMB - 0.18 / 100.0
+    speed = math.copysign(torque / (MOTOR_DAMPING + LOAD_DAMPING / 1e4 + 0.05**2 / 2.0), voltage)
+    assert run["input_speed"][-1] == pytest.approx(speed, rel=1e-11)
+    assert run["current"][-1] == pytest.approx((voltage - 0.05 * speed) / 2.0, rel=1e-11)
+
+
+@given(st.floats(1e-4, 1e-2), st.floats(0.01, 0.3), st.floats(1e-4, 5e-3), st.floats(5.0, 300.0))
+@settings(max_examples=25)
+def test_coasting_down_from_any_speed(inertia: float, level: float, viscous: float, speed: float) -> None:
+    """It takes (J / b) ln(1 + b w / f), over an angle of (J w - f t) / b."""
+    stop = inertia / viscous * math.log1p(viscous * speed / level)
+    drive = DRIVE.replace(
+        gear=GEAR.replace(
+            stiffness=sw.stiffness.Linear(k=1e-30),
+            friction_input=sw.friction.Coulomb(coulomb=level, breakaway=level, viscous=viscous),
+        ),
+        motor=OPEN_CIRCUIT.replace(inertia=inertia),
+    )
+    start = drive.rest().replace(input_speed=speed, input_slip_direction=1.0)
+
+    def after(duration: float) -> sw.Recording:
+        return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt=stop / 500.0, sample=duration, start=start)
+
+    assert after(stop * (1.0 - 1e-9))["input_speed"][-1] > 0.0
+    stopped = after(stop * (1.0 + 1e-9))
+    assert stopped["input_speed"][-1] == 0.0
+    assert stopped["input_angle"][-1] == pytest.approx((inertia * speed - level * stop) / viscous, rel=1e-9)
+
+
+@given(st.floats(1e-4, 1e-2), st.floats(0.1, 10.0), st.floats(0.05, 0.45), st.floats(0.1, 10.0))
+@settings(max_examples=25)
+def test_a_coulomb_oscillator_of_any_numbers_loses_as_much_at_each_peak(
+    inertia: float, k: float, share: float, start_angle: float
+) -> None:
+    """Peak n lies at (-1)^n (x_0 - 2 n F / k), half a period after the one before, until it is within F / k."""
+    level = share * k * start_angle
+    law = sw.friction.Coulomb(coulomb=level, breakaway=level)
+    oscillator = sw.Drive(
+        gear=sw.Gear(
+            kinematics=sw.kinematics.PlainRatio(reduction=1.0), stiffness=sw.stiffness.Linear(k=k), friction_input=law
+        ),
+        motor=sw.motor.TorqueSource(inertia=inertia),
+        load=sw.loads.Inertia(inertia=1e30),
+    )
+    half = math.pi * math.sqrt(inertia / k)
+    peaks = [start_angle]
+    while abs(peaks[-1]) > level / k:
+        peaks.append(-peaks[-1] + math.copysign(2.0 * level / k, peaks[-1]))
+    start = oscillator.rest().replace(input_angle=start_angle, transmission_error=start_angle)
+    duration = len(peaks) * half
+    run = sw.simulate(oscillator, sw.scenario.constant(0.0, duration), dt=half / 500.0, sample=half, start=start)
+    found = run["input_angle"][: len(peaks)]
+    assert found == pytest.approx(peaks, abs=1e-9 * start_angle)
+    assert run["input_speed"][-1] == 0.0
 
 
 class Slider:
