@@ -179,13 +179,13 @@ def simulate(
         run = course.simulate(whole, 2e-4 if dt is None else dt, **options)
     else:
         run = course.simulate_adaptively(whole, tolerance, **options)
-    recording = Recording(run.columns, run.units, title=f"{gear_set.name}: {course.name or scenario.stem}")
+    recording = Recording(run.columns, run.units, title=one_line(f"{gear_set.name}: {course.name or scenario.stem}"))
     _write_run(recording, out, plot)
-    print(f"{one_line(recording.title)}\n{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}\n")
+    print(f"{recording.title}\n{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}\n")
     print(range_table(recording))
     for check in check_ratings(gear_set, recording):
         if check.exceeded:
-            print(f"rating: {check}")
+            print(one_line(f"rating: {check}"))
     for path in filter(None, (out, plot)):
         print(f"wrote {path}")
 

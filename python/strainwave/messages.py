@@ -81,9 +81,12 @@ def with_options(message: str) -> str:
     name it like --column speed=v
     >>> print(with_options('side = "middle" must be one of input, output'))
     --side middle must be one of input, output
+    >>> print(with_options("rtol = 1.0 must lie in [1e-11, 0.01]"))
+    --tolerance 1.0 must lie in [1e-11, 0.01]
     """
     told = re.sub(r" \(in Python \w+=\{.*?\}\)", "", message)
     told = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", told)
+    told = re.sub(r"^rtol = ", "--tolerance ", told)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
     return told.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
 

@@ -444,6 +444,9 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "ramp.toml").write_text(RAMP)
     (tmp_path / "points.csv").write_text("time [ms],command [deg]\n0,0\n200,6\n")
     (tmp_path / "mine.toml").write_text(GOOD_GEAR)
+    (tmp_path / "nan.csv").write_text("time [s],torque [N.m]\n0,0\n1,nan\n")
+    (tmp_path / "later.csv").write_text("time [s],torque [N.m]\n5,0\n6,1\n")
+    (tmp_path / "speed.csv").write_text("time [s],torque [rad/s]\n0,0\n1,1\n")
     JOINT.save(tmp_path / "joint.toml")
     time = np.linspace(0.0, 1.0, 101)
     for name, shift in (("a", 0.0), ("b", 0.25)):
@@ -553,7 +556,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         ([*SIMULATE, "--dt", "1e-15"], ("more than 1e+09 steps of 1e-15 s",)),
         ([*SIMULATE, "--sample", "0"], ("sample = 0.0 s must lie in (0, inf)",)),
         ([*SIMULATE, "--sample", "1e-12"], ("1e-12 s",)),
-        ([*SIMULATE, "--tolerance", "1"], ("rtol = 1.0 must lie in [1e-11, 0.01]",)),
+        ([*SIMULATE, "--tolerance", "1"], ("--tolerance 1.0 must lie in [1e-11, 0.01]",)),
         ([*SIMULATE, "--tolerance", "1e-6", "--dt", "1e-3"], ("--dt 0.001 and --tolerance 1e-06 exclude each other",)),
         ([*SIMULATE, "--record", "torqe"], ("record = ['torqe'] must list outputs of this drive: command,",)),
         ([*SIMULATE, "--set", "load.inertia"], ("--set load.inertia: write it as --set load.inertia=0.6",)),
@@ -574,6 +577,9 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["compare", "a.csv", "none.csv"], ("none.csv cannot be read: No such file",)),
         (["compare", "a.csv", "b.csv", "--column", "speed"], ('no column "speed"; there are time, torque',)),
         (["compare", "a.csv", "points.csv"], ("no column in common",)),
+        (["compare", "a.csv", "nan.csv"], ('nan.csv line 3, column "torque": nan is not finite',)),
+        (["compare", "a.csv", "later.csv"], ("no time in common: 0 s to 1 s and 5 s to 6 s; shift the time of one",)),
+        (["compare", "a.csv", "speed.csv"], ('column "torque": cannot convert "rad/s" to "N.m"; name the columns',)),
         (["compare", "joint.toml", "mine.toml", "--column", "x"], ("--column x: of gears and drives all",)),
         (["compare", "hfuc-25-100", "hfuc-25-101"], ('"hfuc-25-101"', "hfuc-25-100")),
         (["show"], ("Missing argument 'gear'",)),
@@ -589,6 +595,14 @@ def test_a_mistake_on_the_command_line_is_told_in_one_line(
     folder: Path, arguments: list[str], expected: tuple[str, ...]
 ) -> None:
     refused(folder, arguments, *expected)
+
+
+def test_memory_that_is_not_there_is_told_in_one_line(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError("2e+09 samples take 16 GB, more memory than there is; sample less often")
+
+    monkeypatch.setattr(sw.ScenarioFile, "simulate", full)
+    refused(folder, SIMULATE, "2e+09 samples take 16 GB", "sample less often")
 
 
 def test_without_a_verb_help_is_shown(tmp_path: Path) -> None:
@@ -643,7 +657,7 @@ def test_drives_are_listed_with_what_they_are(tmp_path: Path) -> None:
     assert strainwave("drives", "position-drive", folder=tmp_path).stdout.startswith("position-drive ")
 
 
-def test_an_interrupt_of_a_run_says_what_was_written(folder: Path) -> None:
+def test_an_interrupt_of_a_run_leaves_nothing(folder: Path) -> None:
     """The picture is drawn before anything is written, with a package that waits here."""
     (folder / "matplotlib.py").write_text("import os, time\nos.write(1, b'here\\n')\ntime.sleep(30.0)")
     environment = os.environ | {"PYTHONPATH": str(folder)}

@@ -151,9 +151,10 @@ def _vibration(gear_set: GearSet) -> Iterator[str]:
 
 def _closed_loop(drive: Drive) -> Row:
     """How the drive vibrates about its rest, as its controller, its friction and its damping have it."""
-    name = "at rest, under its controller"
+    default, law = Drive(), getattr(drive.control, "law", None)
+    name = "at rest, under its controller" + (", as if that acted all the time" if law else "")
     try:
-        linear = linearise(drive)
+        linear = linearise(drive.replace(control=law or drive.control, thermal=default.thermal, meter=default.meter))
     except ValueError as error:
         return name, f"not told: {error}", ""
     stuck = " and ".join(side for side in ("input", "output") if f"{side}_speed" not in linear.states)

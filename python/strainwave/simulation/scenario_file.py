@@ -307,7 +307,8 @@ def _signal(place: str, given: Any, duration: float, unit: str) -> Scenario | fl
     if not each:
         raise ValueError(f"{place} is empty; write [{place}] with kind = {_kinds()}")
     places = [place] if len(each) == 1 else [f"{place}[{i}]" for i in range(len(each))]
-    return reduce(add, [_piece(at, one, duration, unit, i == 0) for i, (at, one) in enumerate(zip(places, each, strict=True))])
+    pairs = enumerate(zip(places, each, strict=True))
+    return reduce(add, [_piece(place, piece, duration, unit, first=i == 0) for i, (place, piece) in pairs])
 
 
 def _has_kind(given: Any) -> bool:

@@ -68,13 +68,28 @@ def test_damping_of_the_gear_shows_in_the_damping_ratio() -> None:
 def test_a_drive_without_modes_says_why_and_a_gear_has_none() -> None:
     moved = sw.GearSet.of(DRIVE.replace(load=sw.loads.Prescribed()), name="x", source="y")
     assert "\nmodes\n  not told: " in listing(moved)
+    assert "modes" not in listing(sw.GearSet.of(GEAR, name="x", source="y"))
+
+
+MOTOR = sw.motor.DC(resistance=1.0, torque_constant=0.1, back_emf=0.1, inertia=1e-4)
+
+
+def test_a_sampled_controller_is_told_as_its_law_and_meter_and_heat_do_not_matter() -> None:
     law = sw.control.PID(proportional=1.0)
-    source = DRIVE.replace(motor=sw.motor.DC(resistance=1.0, torque_constant=0.1, back_emf=0.1, inertia=1e-4))
-    sampled = source.replace(control=sw.control.Sampled(law=law, period=1e-3))
-    text = listing(sw.GearSet.of(sampled, name="x", source="y"))
+    plain = DRIVE.replace(motor=MOTOR, control=law)
+    sampled = plain.replace(control=sw.control.Sampled(law=law, period=1e-3), meter=sw.meter.EnergyMeter())
+    texts = [listing(sw.GearSet.of(each, name="x", source="y")) for each in (plain, sampled)]
+    told = [re.split(r"\s{2,}", line_of(text, "at rest, under its controller"))[2:] for text in texts if "acted" not in text]
+    assert told[0][0].endswith("Hz)")
+    acted = line_of(texts[1], "at rest, under its controller, as if that acted all the time")
+    assert re.split(r"\s{2,}", acted)[2:] == told[0]
+
+
+def test_what_has_no_linear_model_is_told_in_its_place() -> None:
+    noisy = sw.Sensors(input_angle=sw.sensor.Noisy(amplitude=1e-4, bandwidth=50.0, seed=1))
+    text = listing(sw.GearSet.of(DRIVE.replace(sensors=noisy), name="x", source="y"))
     assert "not told: " in line_of(text, "at rest, under its controller")
     assert "free, undamped" in text
-    assert "modes" not in listing(sw.GearSet.of(GEAR, name="x", source="y"))
 
 
 def test_what_a_run_reached_of_each_rating_is_told_with_how_far_and_when() -> None:
