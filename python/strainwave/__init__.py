@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from strainwave.analysis.orders import BearingOrders, Orders, bearing_orders, order_spectrum, orders
     from strainwave.analysis.response import FrequencyResponse, frequency_response
     from strainwave.analysis.sensitivity import Derivatives, derivatives
+    from strainwave.analysis.settling import settling_time
     from strainwave.analysis.steady import equilibrium
     from strainwave.files.entries import Entry, Quantity
     from strainwave.files.gear_set import GearSet, catalogue, load, save
@@ -87,6 +88,7 @@ _LAZY = {
     "orders": "analysis.orders",
     "save": "files.gear_set",
     "scenario": "simulation.scenario",
+    "settling_time": "analysis.settling",
     "simulate": "simulation.run",
     "simulate_adaptively": "simulation.run",
     "simulate_controlled": "simulation.controller",
@@ -145,6 +147,7 @@ __all__ = [
     "save",
     "scenario",
     "sensor",
+    "settling_time",
     "simulate",
     "simulate_adaptively",
     "simulate_controlled",

@@ -17,16 +17,10 @@ from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.simulation import scenario
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario
+from strainwave.studies.position_control import TABLE_4
 
 PUBLISHED = Path(__file__).with_name("published")
 
-# Document P, Table 4: root mean square error [rad], largest error [rad], correlation coefficient. It compares simulated with
-# measured responses, and prints neither its amplitudes nor its measurements.
-TABLE_4 = {
-    "step": (0.0021, 0.0050, 0.995),
-    "sine, 1 Hz": (0.0018, 0.0042, 0.997),
-    "pulse train": (0.0015, 0.0038, 0.998),
-}
 REMARK = (
     "Amplitudes and controller are assumed, as document P gives none. The figures compare the response with the command; "
     "those of document P compare its simulation with measurements that were not published. They are shown to compare with, "
@@ -70,10 +64,13 @@ def experiments(found: Twin) -> list[SimulatedExperiment]:
         "twin with the friction of Tables 1 and 3": drive.replace(gear=earlier),
         "document P's drive, r = 1/100": printed,
     }
-    return [_experiment(name, command, drives) for name, command in commands().items()]
+    pairs = zip(commands().items(), TABLE_4.values(), strict=True)
+    return [_experiment(name, command, drives, published) for (name, command), published in pairs]
 
 
-def _experiment(name: str, command: Scenario, drives: dict[str, Drive]) -> SimulatedExperiment:
+def _experiment(
+    name: str, command: Scenario, drives: dict[str, Drive], table_4: tuple[float, float, float]
+) -> SimulatedExperiment:
     runs = tuple((label, simulate(drive, command, sample=2e-3)) for label, drive in drives.items())
     figures = zip(*(_figures(run) for _, run in runs), strict=True)
     names = (("root mean square error", "rad"), ("largest error", "rad"), ("correlation coefficient", "1"))
@@ -83,7 +80,7 @@ def _experiment(name: str, command: Scenario, drives: dict[str, Drive]) -> Simul
         runs=runs,
         figures=tuple(
             Figure(what, unit, values, published)
-            for (what, unit), values, published in zip(names, figures, TABLE_4[name], strict=True)
+            for (what, unit), values, published in zip(names, figures, table_4, strict=True)
         ),
         source="document P, Table 4",
     )

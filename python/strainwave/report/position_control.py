@@ -103,7 +103,7 @@ def position_control_report(found: PositionControl, provenance: Provenance | Non
 
 def summary(found: PositionControl) -> str:
     """What the study found, as lines of text."""
-    head = ("output angle", "rms", "largest", "correlation", "settles in")
+    head = ("output angle", "rms [mrad]", "largest [mrad]", "correlation", "settles in [ms]")
     table = [Row(*head)]
     for each in found.experiments:
         table += [Row(each.title, "", "", "", ""), *(row._replace(label=f"  {row.label}") for row in rows(each))]
@@ -147,7 +147,7 @@ def measured_rows(measured: Measured) -> list[Row]:
 
 def _agreed(agreement: Any) -> tuple[str, str, str]:
     """Root mean square and largest in mrad, and the correlation."""
-    sizes = (f"{number(1e3 * size, 3)} mrad" for size in (agreement.rms, agreement.largest))
+    sizes = (number(1e3 * size, 3) for size in (agreement.rms, agreement.largest))
     return (*sizes, number(agreement.correlation, 6))  # type: ignore[return-value] # two sizes and one more
 
 
@@ -156,19 +156,19 @@ def _settling(times: tuple[float, ...]) -> str:
     if not times:
         return ""
     texts = [number(1e3 * time, 3) if isfinite(time) else "never" for time in (min(times), max(times))]
-    return f"{' to '.join(dict.fromkeys(texts))} ms"
+    return " to ".join(dict.fromkeys(texts))
 
 
 def _later(experiment: Experiment) -> str:
-    """How much later the full model settles, where that differs most."""
+    """How much later the full model settles, where that differs most, in ms."""
     pairs = zip(experiment.settling[FULL], experiment.settling[SIMPLIFIED], strict=True)
     differences = [full - simplified for full, simplified in pairs]
-    return f"{number(1e3 * max(differences, key=abs), 2)} ms" if differences else ""
+    return number(1e3 * max(differences, key=abs), 2) if differences else ""
 
 
 def _limits(found: PositionControl) -> dict[str, Any]:
-    def angle(stroke: float) -> str:
-        return f"{number(stroke, 3)} rad"
+    def angle(stroke: float, digits: int = 3) -> str:
+        return f"{number(stroke, digits)} rad"
 
     law: Any = found.sets[FULL].gear.friction_input
     moves = found.under_control
@@ -179,11 +179,11 @@ def _limits(found: PositionControl) -> dict[str, Any]:
         "law": angle(found.law_suffices_to),
         "law_degrees": _at_output(found, found.law_suffices_to),
         "pulses": [
-            (number(voltage), angle(found.pulse_suffices_to(voltage)), _at_output(found, found.pulse_suffices_to(voltage)))
-            for voltage in found.by_pulse
+            (number(voltage), angle(stroke, 2), _at_output(found, stroke))
+            for voltage, stroke in found.pulse_suffices_to.items()
         ],
-        "usual": angle(found.pulse_suffices_to(study.USUAL_VOLTAGE)),
-        "usual_degrees": _at_output(found, found.pulse_suffices_to(study.USUAL_VOLTAGE)),
+        "usual": angle(found.pulse_suffices_to[study.USUAL_VOLTAGE], 2),
+        "usual_degrees": _at_output(found, found.pulse_suffices_to[study.USUAL_VOLTAGE]),
         "control": f"at all strokes up to {reach}" if control == np.inf else f"up to {angle(control)}",
         "unlimited": control == np.inf,
         "reach": reach,
@@ -195,7 +195,7 @@ def _limits(found: PositionControl) -> dict[str, Any]:
         "largest": quantity(float(differences.max()), "rad"),
         "times_less": number(LEAST_OF_TABLE_4 / float(differences.max()), 2),
         "periodic": number(_periodic_margin(found), 2),
-        "fit": angle(found.control_within_fit_to),
+        "fit": angle(found.control_within_fit_to, 1),
         "stuck": quantity(_stuck(found), "rad"),
         "stopped": quantity(_static(found) * _yield(found), "rad", 2),
         "error": quantity(study.FIT_ERROR * _yield(found), "rad", 2),
@@ -396,7 +396,7 @@ def pulse_figure(found: PositionControl) -> str:
         axes.plot(stroke, share("without_periodic"), color=LIGHT["ink"], linewidth=1.0, label="its average part alone")
         axes.plot(stroke, share("averaged"), color=LIGHT["earlier"], linestyle=":", label="constant averaged over the stroke")
         _over_strokes(axes)
-        _mark(axes, found.pulse_suffices_to(study.USUAL_VOLTAGE))
+        _mark(axes, found.pulse_suffices_to[study.USUAL_VOLTAGE])
         figures.label_axes(axes, "stroke beyond that of the simplified model", "%", "stroke of the motor", "rad")
         figures.legend(figure, axes)
 

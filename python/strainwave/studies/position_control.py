@@ -39,7 +39,9 @@ STEP, SINE = 0.04, 0.03  # rad at the output: as large as the spread of Table 4 
 SAMPLE = 1e-3  # s
 
 FIT_ERROR = 0.0052  # N.m: document P, Table 1, root mean square error of the average friction
-TABLE_4 = {  # root mean square error [rad], largest error [rad], correlation coefficient
+# Document P, Table 4: root mean square error [rad], largest error [rad], correlation coefficient. It compares simulated with
+# measured responses, and prints neither its amplitudes nor its measurements.
+TABLE_4 = {
     "step": (0.0021, 0.0050, 0.995),
     "sine": (0.0018, 0.0042, 0.997),
     "pulse-train": (0.0015, 0.0038, 0.998),
@@ -110,6 +112,8 @@ class PositionControl:
         by_pulse: moves by a pulse of each voltage in open loop. Columns: `stroke` [rad] of the simplified model, `width` [s] of
             the pulse, and the strokes [rad] of the others: `full`, `without_periodic`, `averaged`, and `stronger` and `weaker`,
             with a constant that is wrong by the error of the fit
+        pulse_suffices_to: for each voltage the stroke [rad] beyond which the full model leaves the range of `stronger` and
+            `weaker`; inf if it never does
         measured: a measured run, where one was given
     """
 
@@ -117,18 +121,13 @@ class PositionControl:
     experiments: tuple[Experiment, ...]
     under_control: Recording
     by_pulse: Mapping[float, Recording]
+    pulse_suffices_to: Mapping[float, float]
     measured: Measured | None
 
     @property
     def law_suffices_to(self) -> float:
         """The motor angle [rad] beyond which the average friction is further from the constant than the error of its fit."""
         return law_limit(self.sets[FULL].drive)
-
-    def pulse_suffices_to(self, voltage: float) -> float:
-        """The stroke [rad] beyond which the full model leaves what the error of the fit leaves open; inf if it never does."""
-        pulses = self.by_pulse[voltage]
-        excess = np.maximum(pulses["full"] - pulses["weaker"], pulses["stronger"] - pulses["full"])
-        return first_above(pulses["stroke"], excess / pulses["stroke"])
 
     @property
     def control_suffices_to(self) -> float:
@@ -158,7 +157,7 @@ def position_control(
     >>> found = position_control()
     >>> round(found.law_suffices_to, 1)  # rad at the motor
     14.6
-    >>> round(found.pulse_suffices_to(12.0)), found.control_suffices_to
+    >>> round(found.pulse_suffices_to[12.0]), found.control_suffices_to
     (46, inf)
     """
     sets = {model: GearSet.read(name) for model, name in SETS.items()}
@@ -170,13 +169,14 @@ def position_control(
         experiments.append(_experiment(name, title, command, drives))
     progress("strokes under control")
     under_control = moves_under_control(drives)
-    pulses = {}
+    pulses, limits = {}, {}
     for voltage in VOLTAGES:
         progress(f"strokes by pulses of {voltage:g} V")
         pulses[voltage] = moves_by_pulse(drives, voltage)
+        limits[voltage] = pulse_limit(drives, voltage, pulses[voltage])
     progress("measured run")
     own = None if recording is None else _measured(recording, drives)
-    return PositionControl(sets, tuple(experiments), under_control, pulses, own)
+    return PositionControl(sets, tuple(experiments), under_control, pulses, limits, own)
 
 
 # ---- The three experiments -------------------------------------------------------------------------------------------
@@ -278,6 +278,30 @@ def _move_by_pulse(drives: Mapping[str, Drive], voltage: float, width: float) ->
     return {"stroke": stroke, "width": width} | {
         name: travel(drive, voltage, width) for name, drive in models.items() if name != SIMPLIFIED
     }
+
+
+def pulse_limit(drives: Mapping[str, Drive], voltage: float, pulses: Recording) -> float:
+    """The stroke [rad] beyond which the full model leaves the range that the error of the fit opens; inf if it never does.
+
+    Args:
+        pulses: as `moves_by_pulse` gives them, which show between which widths to look
+    """
+    above = np.flatnonzero(_excess(pulses["full"], pulses["stronger"], pulses["weaker"]) > 0.0)
+    if not above.size:
+        return inf
+    models = _models(drives, STROKES[0])
+
+    def excess(width: float) -> float:
+        return float(_excess(*(travel(models[name], voltage, width) for name in (FULL, "stronger", "weaker"))))
+
+    first, last = (float(pulses["width"][place]) for place in (max(above[0] - 1, 0), above[0]))
+    width = float(brentq(excess, first, last, rtol=1e-4)) if first < last else first
+    return travel(models[SIMPLIFIED], voltage, width)
+
+
+def _excess(full: Any, stronger: Any, weaker: Any) -> Any:
+    """How far beyond the other two the first is; negative between them."""
+    return np.maximum(full - weaker, stronger - full)
 
 
 def travel(drive: Drive, voltage: float, width: float) -> float:

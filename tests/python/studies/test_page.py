@@ -49,7 +49,7 @@ def table(html: str, name: str, number: int) -> list[list[str]]:
 
 def milli(text: str) -> float:
     value, unit = text.rsplit(" ", 1)
-    assert unit in ("mrad", "ms")
+    assert unit == "mrad"
     return 1e-3 * printed(value)
 
 
@@ -77,12 +77,12 @@ def test_the_tables_say_what_the_recordings_hold(found: PositionControl, html: s
         head, rms, largest, correlation, *settling = table(html, "experiments", number)
         assert head == ["Output angle", "Full − command", "Simplified − command", "Full − simplified"]
         agreements = [*(experiment.tracking[model] for model in (FULL, SIMPLIFIED)), experiment.between["output_angle"]]
-        assert [milli(text) for text in rms[1:]] == pytest.approx([each.rms for each in agreements], rel=6e-3)
-        assert [milli(text) for text in largest[1:]] == pytest.approx([each.largest for each in agreements], rel=6e-3)
+        assert [1e-3 * printed(text) for text in rms[1:]] == pytest.approx([each.rms for each in agreements], rel=6e-3)
+        assert [1e-3 * printed(text) for text in largest[1:]] == pytest.approx([each.largest for each in agreements], rel=6e-3)
         assert [printed(text) for text in correlation[1:]] == pytest.approx([a.correlation for a in agreements], abs=1e-6)
         for row in settling:
             for text, model in zip(row[1:3], (FULL, SIMPLIFIED), strict=True):
-                ends = re.fullmatch(r"([\d.]+)(?: to ([\d.]+))? ms", text)
+                ends = re.fullmatch(r"([\d.]+)(?: to ([\d.]+))?", text)
                 assert ends
                 times = experiment.settling[model]
                 assert float(ends[1]) == pytest.approx(1e3 * min(times), abs=0.5)
@@ -94,7 +94,8 @@ def test_a_measurement_stands_beside_both_models(found: PositionControl, html: s
     assert found.measured is not None
     head, rms, *_ = table(html, "measured", 0)
     assert head[1:] == ["Full − measured", "Simplified − measured"]
-    assert [milli(text) for text in rms[1:]] == pytest.approx([a.rms for a in found.measured.agreement.values()], rel=6e-3)
+    errors = [agreement.rms for agreement in found.measured.agreement.values()]
+    assert [1e-3 * printed(text) for text in rms[1:]] == pytest.approx(errors, rel=6e-3)
 
 
 def test_strokes_are_listed_with_their_shares(found: PositionControl, html: str) -> None:
@@ -153,7 +154,7 @@ def test_the_lines_for_a_terminal_say_the_same(found: PositionControl) -> None:
     lines = summary(found).splitlines()
     step = found.experiments[0]
     apart = next(line for line in lines if line.startswith("  full − simplified"))
-    assert milli(" ".join(apart.split()[3:5])) == pytest.approx(step.between["output_angle"].rms, rel=6e-3)
+    assert 1e-3 * printed(apart.split()[3]) == pytest.approx(step.between["output_angle"].rms, rel=6e-3)
     assert any("up to 14.6 rad of the motor" in line for line in lines)
     assert any("not reproduced" in line for line in lines)
     assert all(line == line.rstrip() and len(line) < 170 for line in lines)

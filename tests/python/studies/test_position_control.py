@@ -179,12 +179,12 @@ def test_pulses_under_the_average_part_go_as_far_as_another_integrator_says(foun
 
 def test_where_pulses_leave_the_band_the_full_model_goes_as_far_as_a_constant_that_is_wrong(found: PositionControl) -> None:
     drives = {model: gear_set.drive for model, gear_set in found.sets.items()}
-    limit = found.pulse_suffices_to(12.0)
+    limit = found.pulse_suffices_to[12.0]
     assert 40.0 < limit < 55.0
     width = study.pulse_width(drives[SIMPLIFIED], 12.0, limit)
     weaker = study.with_coulomb(drives[SIMPLIFIED], S3 - 0.0052)
-    assert study.travel(drives[FULL], 12.0, width) == pytest.approx(study.travel(weaker, 12.0, width), rel=5e-3)
-    assert found.pulse_suffices_to(24.0) < limit < found.pulse_suffices_to(6.0)
+    assert study.travel(drives[FULL], 12.0, width) == pytest.approx(study.travel(weaker, 12.0, width), rel=1e-3)
+    assert found.pulse_suffices_to[24.0] < limit < found.pulse_suffices_to[6.0]
 
 
 def test_sweeps_are_as_good_with_shorter_steps(found: PositionControl, monkeypatch: pytest.MonkeyPatch) -> None:
