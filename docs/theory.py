@@ -100,7 +100,7 @@ def block(text: str) -> str:
 
 
 def lines(formula: str) -> list[str]:
-    """A formula, broken where it says so, and after commas where it is wider than the page; subscripts that are words upright."""
+    """A formula, broken where it says so, and after commas where it is wide; subscripts that are words stand upright."""
     upright = re.sub(r"_\{([a-z]{2,})\}", r"_{\\mathrm{\1}}", formula)
     return [line for part in re.split(r"\\\\\s+", upright) for line in filled(part)]
 

@@ -202,6 +202,10 @@ struct Choice {
     SW_VERB(growth)
 #undef SW_VERB
 
+    constexpr S fastest() const {
+        return visit([](const auto& law) { return strainwave::fastest<S>(law); });
+    }
+
     // Control, sampled or not.
     template <class Discrete>
     constexpr S actuation(const State& x, const Discrete& held, const control::Command<S>& command,

@@ -343,8 +343,12 @@ struct Drive {
     }
 
     /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the gear's own vibration at twists up to `twist`
-    /// [rad], or the decay of speeds. Of the latter a Runge-Kutta step of fourth order bears 2.78 times its length.
-    constexpr S max_rate(const S& twist) const { return max(natural_frequency(twist), damping() / S(2.5)); }
+    /// [rad], the decay of speeds, sensors, and what the controller filters. Of a decay a Runge-Kutta step of fourth order bears
+    /// 2.78 times its length.
+    constexpr S max_rate(const S& twist) const {
+        const S inner = max(sensors.fastest(), strainwave::fastest<S>(control));
+        return max(max(natural_frequency(twist), damping() / S(2.5)), inner);
+    }
 
     /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
     constexpr S bristle_frequency() const {

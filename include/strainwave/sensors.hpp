@@ -1,6 +1,7 @@
 #pragma once
 #include <strainwave/compiled.hpp>
 #include <strainwave/control/law.hpp>
+#include <strainwave/fastest.hpp>
 
 namespace strainwave {
 
@@ -88,12 +89,17 @@ struct Sensors {
     constexpr State relaxation_rate() const {
         return each([](const Sensor& sensor, const S&) { return sensor.relaxation_rate(); }, Measurement{});
     }
+    constexpr S fastest() const {
+        const S input = max(one(input_angle), one(input_speed)), output = max(one(output_angle), one(output_speed));
+        return max(max(input, output), max(one(current), one(torque)));
+    }
     /// The state in which they show what there is.
     constexpr State settled(const Measurement& actual) const {
         return each([](const Sensor& sensor, const S& value) { return sensor.settled(value); }, actual);
     }
 
 private:
+    static constexpr S one(const Sensor& sensor) { return strainwave::fastest<S>(sensor); }
     static constexpr S shown(const Sensor& sensor, const State& x, typename Sensor::State States::* own, const S& value) {
         if constexpr (stateless)
             return sensor.shown({}, value);

@@ -381,7 +381,7 @@ class Drive:
         The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
         """
 
-output_count: int = 41
+output_count: int = 43
 
 def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]:
     """

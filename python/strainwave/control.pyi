@@ -69,8 +69,8 @@ class PID:
     with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
     u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
     kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
-    error is referred to the input, so that the gains mean the same. The integral rests while the voltage is limited, here
-    or by the motor.
+    error is referred to the input, so that the gains mean the same. The integral rests where it would lead further beyond
+    what limit or motor allow.
 
     u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
     read A or N.m in place of V.
@@ -453,7 +453,8 @@ class LeadLag:
     with epsilon the error of the angle, referred to the input, of the shaft which feedback names: i r - theta_in or
     i (r - theta_out); k = gain, a_1, b_1 = lead_numerator, lead_denominator, a_2, b_2 = lag_numerator, lag_denominator,
     u_max = limit. The first leads where a_1 > b_1, the second lags where a_2 < b_2; either may do either. Both sections
-    begin at rest.
+    begin at rest. Steps of a fixed length must not be longer than 2.5 times the shorter of b_1 and b_2, unless the controller
+    is sampled: then both sections are exact for what is held over a period.
 
     u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
     read A or N.m in place of V.
@@ -631,11 +632,13 @@ class Sampled:
     A controller that runs in a computer: it acts at instants and holds its output between them.
 
     .. math:: u(t) = u_k, \\quad t_k + d \\le t < t_{k+1} + d, \\qquad u_k = \\text{law}(x_k, r_k, y_k), \\qquad
-              x_{k+1} = x_k + T \\dot x_k
+              x_{k+1} = x_k + \\frac{1 - e^{-\\lambda T}}{\\lambda}\\, \\dot x_k
 
     with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
-    t_k, x_k the numbers of the law, such as an integral. Before the first output the actuation is 0. Steps end at each t_k
-    and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not sampled itself.
+    t_k, x_k the numbers of the law. An integral has lambda = 0, thus x_{k+1} = x_k + T dx_k/dt. A section of a LeadLag has
+    lambda = 1 / b: over a period it moves as it does under a constant input. Before the first output the actuation is 0.
+    Steps end at each t_k and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not
+    sampled itself.
 
     In an ensemble, period and delay are the same for all members. They have no derivatives: time is not among the numbers.
 
@@ -657,7 +660,7 @@ class Sampled:
 
     Source
     ------
-    AstromWittenmark1997, chapter 8: zero-order hold, integrals by forward differences
+    AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly
     """
 
     def __init__(self, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., period: float = ..., delay: float = ...) -> None: ...

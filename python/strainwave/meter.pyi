@@ -63,9 +63,13 @@ class EnergyMeter:
 
     Each energy is the integral of its power since the start of the run. Lost are those of the motor, of friction at the three
     places, of damping, and of hysteresis; stored are those of both shafts, of the spring and of the motor, which a run
-    may begin with. Hysteresis and bristles of friction give part of what they take back: over a cycle what they took
-    is lost. What a brake takes counts to the load. The balance is as exact as the steps are; a random kinematic error whose
-    amplitude changes with load or speed does work besides, which no place takes.
+    may begin with. Hysteresis and bristles of friction store a part of what they take, and give it back later: over a
+    cycle what they took is lost. A spring that softens as it warms up turns some of its energy to heat. A random
+    kinematic error whose amplitude follows load or speed does work on the shafts, of either sign, as that amplitude changes.
+    What a brake takes counts to the load.
+
+    The balance is as exact as the steps are: they integrate the powers with the motion. What an input does by a jump takes no
+    time, so no power tells it: of the angle at which an output shaft is held, and of the temperature of a spring that softens.
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01), meter=sw.meter.EnergyMeter())

@@ -14,8 +14,9 @@ class DC:
     K_m = torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
     inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R, and with a brush drop no
     current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
-    difference counts as lost, as iron losses do. Leaves out cogging, and limits of the supply: those of BrushlessDC. A
-    motor whose current is controlled by its amplifier is a CurrentSource.
+    difference counts as lost, as iron losses do; where K_m exceeds K_b the motor gives more power than it takes. Leaves out
+    cogging, and limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier is a
+    CurrentSource.
 
     >>> from strainwave.motor import DC
     >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
@@ -105,8 +106,10 @@ class BrushlessDC:
     phases in series, K = torque_constant, of torque and back-EMF both, U = supply_voltage, I = current_limit. The amplifier
     limits the voltage so that the current never exceeds I; what it can give at each instant it hands back to the controller,
     whose integrals rest meanwhile. R rises with the temperature of the winding by resistance_rise per kelvin above 20 degC.
-    Leaves out commutation, cogging, and ripple: those of PMSM. Beyond the speed (U + R I) / K the supply cannot hold the
-    current back any more, and it exceeds I.
+    Where a load turns the motor faster than (U + R I) / K the supply cannot hold the current back any more, and it exceeds I.
+
+    Leaves out commutation, cogging, and ripple: those of PMSM. Leaves out, too, that an amplifier may first use all of its
+    voltage: here a current that is asked to be I approaches it with the time constant L / R.
 
     >>> from strainwave.motor import BrushlessDC
     >>> BrushlessDC(supply_voltage=24.0, current_limit=5.0).supply_voltage
@@ -200,12 +203,14 @@ class PMSM:
 
     The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d comes first, and u_q has what is left; u_q
     is limited besides so that the length of the current does not exceed current_limit. What is left is handed back to the
-    controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls.
+    controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls. Where a load
+    turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit.
 
     The sensors of the phase currents may be off: the controller then sees i_q + I_o sin(p theta), I_o = current_offset, and
     makes a ripple of the torque out of it. The energy of cogging is held, not lost. R rises with the temperature of the
     winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
-    and the switching of the inverter.
+    and the switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
+    the current with the time constant L_q / R.
 
     >>> from strainwave.motor import PMSM
     >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)

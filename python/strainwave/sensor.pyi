@@ -173,7 +173,7 @@ class SecondOrder:
     .. math:: \\ddot y = \\omega_0^2\\,(x - y) - 2 \\zeta \\omega_0 \\dot y
 
     with omega_0 = natural_frequency, zeta = damping_ratio. Behind a steady motion it stays back by 2 zeta / omega_0 seconds.
-    At the start of a run it has settled. Steps must follow omega_0.
+    At the start of a run it has settled. Steps of a fixed length must not be longer than 1 / omega_0.
 
     >>> from strainwave.sensor import SecondOrder
     >>> SecondOrder(natural_frequency=1200.0).damping_ratio
@@ -244,7 +244,7 @@ class Encoder:
     Parameters
     ----------
     counts: Counts N per revolution, in [1, inf); required
-    offset: What it shows at the angle 0 [rad]; default 0.0
+    offset: What it shows too much [rad]; default 0.0
     eccentricity: Amplitude a of the error once per revolution [rad]; default 0.0
     eccentricity_phase: Phase phi of that error [rad]; default 0.0
 
@@ -271,7 +271,7 @@ class Encoder:
 
     @property
     def offset(self) -> float:
-        """What it shows at the angle 0 [rad]"""
+        """What it shows too much [rad]"""
 
     @property
     def eccentricity(self) -> float:
@@ -305,9 +305,10 @@ class Delayed:
 
     .. math:: y = \\left(\\frac{1 - s \\delta / 8}{1 + s \\delta / 8}\\right)^4 x \\approx x(t - \\delta)
 
-    with x what the law shows, delta = delay. What passes keeps its size; the phase is that of the delay to 0.5 percent up
-    to frequencies of 1 / delta [rad/s], to 2 percent up to 2 / delta. A jump passes at once, and turns up again smeared over
-    the time around delta: for what jumps, the delay of a sampled controller is exact. At the start of a run it has settled.
+    with x what the law shows, delta = delay. What passes keeps its size. The phase lacks 0.52 percent of that of the delay at
+    the frequency 1 / delta [rad/s], 2.01 percent at 2 / delta, and less at lower ones. A jump passes at once, and turns up
+    again smeared over the time around delta: for what jumps, the delay of a sampled controller is exact. At the start of a
+    run it has settled. Steps of a fixed length must not be longer than delta / 8.
 
     >>> from strainwave.sensor import Delayed, Encoder
     >>> Delayed(law=Encoder(counts=8192), delay=2e-3).law.counts
@@ -325,7 +326,7 @@ class Delayed:
 
     Source
     ------
-    Pade approximation of a delay, in four equal sections: FranklinPowellEmamiNaeini2002, section 5.6
+    Pade approximation of a delay, in four equal sections: FranklinPowellEmamiNaeini2002, chapter 5
     """
 
     def __init__(self, *, law: Ideal | Gain | FirstOrder | SecondOrder | Encoder = ..., delay: float) -> None: ...
@@ -369,9 +370,9 @@ class Noisy:
 
     with x what the law shows, t the time since the start of the run, A = amplitude. The band from 0 to bandwidth has N = 32
     equal cells; each holds one frequency f_k, its place in the cell and its phase phi_k drawn by ``seed``. A smooth function of
-    time: no step length and no method changes it. Its values are close to Gaussian, and of a controller that samples
-    slower than twice the bandwidth close to independent. Steps must resolve the bandwidth. Sensors that are to differ
-    need different seeds.
+    time: no step length and no method changes it. Its values are close to Gaussian. Samples that are 1 / (2 bandwidth)
+    apart, or a multiple of that, are close to independent. Steps must resolve the bandwidth. Sensors that are to differ need
+    different seeds.
 
     >>> from strainwave.sensor import FirstOrder, Noisy
     >>> Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.02, bandwidth=500.0, seed=7).amplitude

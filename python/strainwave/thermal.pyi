@@ -67,7 +67,7 @@ class Heating:
     with T the temperature of the run, which is the ambient one; P_w what the motor loses; P_g what friction at all three places,
     damping and hysteresis take; C_w, C_g = winding_capacity, gear_capacity, R_w, R_g = winding_resistance, gear_resistance
     towards the air, G = coupling between both. All begin at initial_temperature. What the hysteresis holds back for a moment
-    counts as heat at once: over a cycle that is the same.
+    counts as heat at once: over a cycle that is the same. Leaves out the little heat that softening makes of elastic energy.
 
     Data sheets of motors give R_w and the time constant R_w C_w. For a gear the values follow from how its housing warms up.
 

@@ -84,3 +84,13 @@ def test_a_lag_lowers_the_error_that_is_left_by_its_ratio() -> None:
         law = LAW.replace(gain=gain, lag_numerator=0.5)
         run = sw.simulate(drive(law, TORQUE), sw.scenario.constant(0.0, 6.0), load_torque=0.4, sample=0.1)
         assert run["input_angle"][-1] == pytest.approx(-0.4 / RATIO / gain, rel=1e-6)
+
+
+@pytest.mark.parametrize("slow", ["lead_denominator", "lag_denominator"])
+def test_steps_that_cannot_follow_a_section_are_refused_unless_it_is_sampled(slow: str) -> None:
+    """Its output is limited, so that numbers which mean nothing would not show."""
+    law, command = LAW.replace(**{slow: 4e-5}), sw.scenario.constant(0.0, 0.01)
+    sw.simulate(drive(law), command, 0.99e-4)
+    with pytest.raises(FloatingPointError, match="as fast as a vibration of 1e\\+04 rad/s"):
+        sw.simulate(drive(law), command, 1.01e-4)
+    sw.simulate(drive(sw.control.Sampled(law=law, period=1e-3)), command, 1.01e-4)

@@ -82,3 +82,28 @@ def test_it_delays_what_another_sensor_shows() -> None:
     time, found = shown(late, sw.scenario.ramp(3.0, 0.25), 2e-5)
     assert found[-1] == pytest.approx(3.0 * (time[-1] - 0.01 - DELAY), rel=1e-9)
     assert set(probe(late).rest()) >= {f"sensors.output_angle.section[{i}]" for i in range(4)}
+
+
+def test_a_steady_motion_is_late_by_the_delay_at_the_coarsest_steps() -> None:
+    time, found = shown(LAW, sw.scenario.ramp(3.0, 0.1), DELAY / 8.0)
+    assert found[time > 0.05] == pytest.approx(3.0 * (time[time > 0.05] - DELAY), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "rate"),
+    [
+        (LAW, 8.0 / DELAY),
+        (sw.sensor.SecondOrder(natural_frequency=5000.0), 5000.0),
+        (sw.sensor.Delayed(law=sw.sensor.SecondOrder(natural_frequency=5000.0), delay=DELAY), 5000.0),
+        (sw.sensor.Noisy(law=LAW, amplitude=1e-6), 8.0 / DELAY),
+    ],
+)
+def test_steps_that_cannot_follow_a_sensor_are_refused(sensor: object, rate: float) -> None:
+    """Their numbers would mean nothing and look as if they did: what the controller makes of them is limited."""
+    motion = sw.scenario.ramp(3.0, 0.02)
+    shown(sensor, motion, 0.99 / rate)
+    with pytest.raises(FloatingPointError, match=rf"as fast as a vibration of {rate:.4g} rad/s"):
+        shown(sensor, motion, 1.01 / rate)
+    still, dampings, inputs = sw.scenario.constant(0.0, 0.02), {"gear.damping": [0.0, 1.0]}, {"output_angle": motion}
+    with pytest.warns(sw.EnsembleWarning, match="2 of 2 members have no result"):
+        sw.simulate_many(probe(sensor), still, dampings, 1.01 / rate, inputs=inputs)

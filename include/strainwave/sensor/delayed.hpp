@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/compiled.hpp>
+#include <strainwave/fastest.hpp>
 #include <strainwave/sensor/ideal.hpp>
 #include <strainwave/sensor/nested.hpp>
 
@@ -24,7 +25,7 @@ struct Delayed {
         with x what the law shows, delta = delay. What passes keeps its size. The phase lacks 0.52 percent of that of the delay at
         the frequency 1 / delta [rad/s], 2.01 percent at 2 / delta, and less at lower ones. A jump passes at once, and turns up
         again smeared over the time around delta: for what jumps, the delay of a sampled controller is exact. At the start of a
-        run it has settled.
+        run it has settled. Steps of a fixed length must not be longer than delta / 8.
 
         >>> from strainwave.sensor import Delayed, Encoder
         >>> Delayed(law=Encoder(counts=8192), delay=2e-3).law.counts
@@ -66,10 +67,10 @@ struct Delayed {
         return rate;
     }
     constexpr State relaxation_rate() const {
-        State rates{{}, numbers<S, Law>(law.relaxation_rate())};
-        for (int i = 0; i < sections; ++i) rates.section[i] = per_second();
-        return rates;
+        // None of the sections: each follows another, so that a step which is exact for one alone is not for their chain.
+        return {{}, numbers<S, Law>(law.relaxation_rate())};
     }
+    constexpr S fastest() const { return max(strainwave::fastest<S>(law), per_second()); }
     constexpr State settled(const S& value) const {
         const typename Law::State own = law.settled(value);
         State x{{}, numbers<S, Law>(own)};

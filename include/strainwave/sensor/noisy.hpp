@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/compiled.hpp>
+#include <strainwave/fastest.hpp>
 #include <strainwave/random.hpp>
 #include <strainwave/sensor/ideal.hpp>
 #include <strainwave/sensor/nested.hpp>
@@ -73,6 +74,7 @@ struct Noisy {
         }
         constexpr State relaxation_rate() const { return {S(0.0), numbers<S, Inner>(law.relaxation_rate())}; }
         constexpr State settled(const S& value) const { return {S(0.0), numbers<S, Inner>(law.settled(value))}; }
+        constexpr S fastest() const { return strainwave::fastest<S>(law); }
     };
     constexpr Compiled compile() const {
         return {compiled(law), S(Spectrum<S>::weight) * amplitude, Spectrum<S>::drawn(S(0.0), bandwidth, seed)};
@@ -83,6 +85,7 @@ struct Noisy {
     constexpr State rate(const State& x, const S& value) const { return compile().rate(x, value); }
     constexpr State relaxation_rate() const { return compile().relaxation_rate(); }
     constexpr State settled(const S& value) const { return compile().settled(value); }
+    constexpr S fastest() const { return strainwave::fastest<S>(law); }
 };
 
 }  // namespace strainwave::sensor

@@ -16,7 +16,7 @@ struct SecondOrder {
         .. math:: \ddot y = \omega_0^2\,(x - y) - 2 \zeta \omega_0 \dot y
 
         with omega_0 = natural_frequency, zeta = damping_ratio. Behind a steady motion it stays back by 2 zeta / omega_0 seconds.
-        At the start of a run it has settled. Steps must follow omega_0.
+        At the start of a run it has settled. Steps of a fixed length must not be longer than 1 / omega_0.
 
         >>> from strainwave.sensor import SecondOrder
         >>> SecondOrder(natural_frequency=1200.0).damping_ratio
@@ -44,6 +44,7 @@ struct SecondOrder {
     }
     constexpr State relaxation_rate() const { return {S(0.0), S(2.0) * damping_ratio * natural_frequency}; }
     constexpr State settled(const S& value) const { return {value, S(0.0)}; }
+    constexpr S fastest() const { return natural_frequency; }
 };
 
 }  // namespace strainwave::sensor
