@@ -324,6 +324,7 @@ class Recording:
             axis.plot(*envelope(self[against], self[name]), style, linewidth=1.2, label=_in_words(name))
         axis.set_ylabel(self._label(panel[0]) if len(panel) == 1 else f"[{self.unit(panel[0])}]", fontsize="small")
         axis.tick_params(labelsize="small")
+        axis.ticklabel_format(axis="y", useOffset=False)
         if len(panel) > 1:
             above = (1.0, 0.97)
             axis.legend(ncols=4, frameon=False, fontsize="small", loc="lower right", bbox_to_anchor=above, borderaxespad=0.0)

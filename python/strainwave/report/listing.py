@@ -9,7 +9,7 @@ import numpy as np
 
 from strainwave import Drive
 from strainwave.analysis.compare import Agreement, Difference
-from strainwave.analysis.linear import linearise, modes
+from strainwave.analysis.linear import Linearisation, linearise, modes
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
@@ -18,6 +18,7 @@ from strainwave.files.recording import Recording
 from strainwave.messages import one_line
 
 Row = Sequence[str]
+_NONE = 1e-7  # a frequency beside others, or a damping ratio: a double zero is told to the root of the rounding
 _ROUNDING = 1e-12  # of the largest value of a column: what is smaller is rounding
 
 
@@ -151,17 +152,33 @@ def _vibration(gear_set: GearSet) -> Iterator[str]:
 
 def _closed_loop(drive: Drive) -> Row:
     """How the drive vibrates about its rest, as its controller, its friction and its damping have it."""
-    default, law = Drive(), getattr(drive.control, "law", None)
-    name = "at rest, under its controller" + (", as if that acted all the time" if law else "")
+    name = "at rest, under its controller"
     try:
-        linear = linearise(drive.replace(control=law or drive.control, thermal=default.thermal, meter=default.meter))
+        linear, taken = _linear(drive)
     except ValueError as error:
         return name, f"not told: {error}", ""
     stuck = " and ".join(side for side in ("input", "output") if f"{side}_speed" not in linear.states)
-    pairs = [pole for pole in linear.poles.tolist() if pole.imag > 0.0]
-    damping = ", ".join(f"{0.0 - pole.real / abs(pole):.3g}" for pole in pairs)
-    remarks = (f"damping ratio {damping}" * bool(pairs), f"friction holds {stuck}" * bool(stuck))
+    fastest = max((abs(pole) for pole in linear.poles.tolist()), default=0.0)
+    pairs = [pole for pole in linear.poles.tolist() if pole.imag > _NONE * fastest]
+    damping = ", ".join(f"{_rounded(-pole.real / abs(pole)):.3g}" for pole in pairs)
+    remarks = (f"damping ratio {damping}" * bool(pairs), f"friction holds {stuck}" * bool(stuck), *taken)
     return name, _frequencies([abs(pole) for pole in pairs]), "; ".join(filter(None, remarks))
+
+
+def _linear(drive: Drive) -> tuple[Linearisation, list[str]]:
+    """The drive about its rest, without what has no linear model; and in words what was taken to be otherwise."""
+    default, law, taken = Drive(), getattr(drive.control, "law", None), []
+    plain = drive.replace(control=law or drive.control, thermal=default.thermal, meter=default.meter)
+    if law:
+        taken.append("controller taken as acting all the time")
+    try:
+        return linearise(plain), taken
+    except ValueError:
+        return linearise(plain.replace(sensors=default.sensors)), [*taken, "sensors taken as ideal"]
+
+
+def _rounded(ratio: float) -> float:
+    return 0.0 if abs(ratio) < _NONE else ratio
 
 
 def _frequencies(rates: Sequence[float]) -> str:

@@ -7,6 +7,7 @@ import os
 import pickle
 import re
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
 
@@ -377,6 +378,22 @@ def test_a_plot_has_one_subplot_for_each_unit() -> None:
     assert torque.get_legend() is not None
     assert np.array_equal(torque.lines[0].get_ydata(), RUN["torque"])
     assert speed.get_shared_x_axes().joined(speed, torque)
+
+
+def test_a_curve_that_would_be_flat_beside_a_larger_one_has_a_panel_of_its_own() -> None:
+    sizes = {"command": 1.0, "input_angle": 100.0, "still": 0.0, "output_angle": 5.0, "twist": 0.04}
+    columns = {"time": [0.0, 1.0], **{name: [0.0, -size] for name, size in sizes.items()}}
+    figure = Recording(columns, dict.fromkeys(sizes, "rad") | {"time": "s"}).plot()
+    panels = [[str(line.get_label()) for line in axis.lines] for axis in figure.axes]
+    assert panels == [["command"], ["input angle", "output angle"], ["still", "twist"]]
+    assert [axis.get_ylabel() for axis in figure.axes] == ["command [rad]", "[rad]", "[rad]"]
+
+
+def test_what_a_picture_says_of_names_is_no_mathematics() -> None:
+    recording = Recording({"time": [0.0, 1.0], "a$b$": [0.0, 1.0]}, {"time": "s", "a$b$": "1"}, title="$x^2$")
+    figure = recording.plot()
+    figure.savefig(BytesIO(), format="svg")
+    assert (figure.get_suptitle(), figure.axes[0].get_ylabel()) == (r"\$x^2\$", r"a\$b\$ [1]")
 
 
 def test_a_plot_against_another_column() -> None:

@@ -79,17 +79,26 @@ def test_a_sampled_controller_is_told_as_its_law_and_meter_and_heat_do_not_matte
     plain = DRIVE.replace(motor=MOTOR, control=law)
     sampled = plain.replace(control=sw.control.Sampled(law=law, period=1e-3), meter=sw.meter.EnergyMeter())
     texts = [listing(sw.GearSet.of(each, name="x", source="y")) for each in (plain, sampled)]
-    told = [re.split(r"\s{2,}", line_of(text, "at rest, under its controller"))[2:] for text in texts if "acted" not in text]
-    assert told[0][0].endswith("Hz)")
-    acted = line_of(texts[1], "at rest, under its controller, as if that acted all the time")
-    assert re.split(r"\s{2,}", acted)[2:] == told[0]
+    plainly, acting = (re.split(r"\s{2,}", line_of(text, "at rest, under its controller"))[2:] for text in texts)
+    assert plainly[0].endswith("Hz)")
+    assert acting == [plainly[0], f"{plainly[1]}; controller taken as acting all the time"]
 
 
-def test_what_has_no_linear_model_is_told_in_its_place() -> None:
-    noisy = sw.Sensors(input_angle=sw.sensor.Noisy(amplitude=1e-4, bandwidth=50.0, seed=1))
-    text = listing(sw.GearSet.of(DRIVE.replace(sensors=noisy), name="x", source="y"))
-    assert "not told: " in line_of(text, "at rest, under its controller")
-    assert "free, undamped" in text
+def test_sensors_that_have_no_linear_model_are_taken_as_ideal() -> None:
+    counting = sw.Sensors(output_angle=sw.sensor.Encoder(counts=1000))
+    texts = [listing(sw.GearSet.of(each, name="x", source="y")) for each in (DRIVE, DRIVE.replace(sensors=counting))]
+    ideal, counted = (line_of(text, "at rest, under its controller") for text in texts)
+    assert counted == f"{ideal}; sensors taken as ideal"
+
+
+def test_turning_freely_is_no_vibration() -> None:
+    free = DRIVE.replace(gear=GEAR.replace(friction_input=sw.friction.Viscous(), kinematic_error=sw.kinematic_error.Fourier()))
+    rest = line_of(listing(sw.GearSet.of(free, name="x", source="y")), "at rest, under its controller")
+    shown = re.split(r"\s{2,}", rest.strip())
+    assert shown[1:] == [
+        f"{(rate := sqrt(8000.0 * (1.0 / 0.05 + 1.0 / 1.5))):.6g} rad/s ({rate / tau:.4g} Hz)",
+        "damping ratio 0",
+    ]
 
 
 def test_what_a_run_reached_of_each_rating_is_told_with_how_far_and_when() -> None:
