@@ -8,8 +8,11 @@ from math import sqrt, tau
 import numpy as np
 import pytest
 import strainwave as sw
+from hypothesis import given, settings
 from strainwave import Agreement, Difference, Entry, Quantity, Recording
 from strainwave.report.listing import agreement_table, aligned, difference_table, listing, range_table
+
+from tests.strategies import drives
 
 GEAR = sw.Gear(
     kinematics=sw.kinematics.PlainRatio(reduction=100.0),
@@ -42,6 +45,16 @@ def test_every_number_is_shown_with_its_unit_and_source(name: str) -> None:
             assert entry.source in " ".join(shown[path]), path
     assert float(shown["gear.damping"][1]) == pytest.approx(gear_set.gear.damping, rel=1e-9)
     assert shown["gear.damping"][2] == "N.m.s/rad"
+
+
+@settings(max_examples=15)
+@given(drives)
+def test_any_drive_can_be_shown(drive: sw.Drive) -> None:
+    text = listing(sw.GearSet.of(drive, name="x", source="y"))
+    assert all(line.isprintable() for line in text.splitlines())
+    assert f"\n[motor] {drive.motor.name}\n" in text
+    assert "\nmodes\n" in text
+    assert "nan" not in text.split("\nmodes\n")[1]
 
 
 def test_how_well_a_number_is_known_is_said_behind_its_source() -> None:
