@@ -654,6 +654,20 @@ def test_the_examples_of_the_page_are_read_as_they_are_meant(folder: Path) -> No
     assert varying.hysteresis.trace([0.0, math.radians(0.1)])[-1] == pytest.approx(0.2, rel=1e-12)
 
 
+def test_the_whole_drive_of_the_page_is_read_and_runs(folder: Path) -> None:
+    write_examples()
+    gear_set = GearSet.read("joint.toml")
+    assert gear_set.control.period == pytest.approx(1e-3, rel=1e-15)
+    assert gear_set.gear.friction_input.stribeck_speed == pytest.approx(math.pi, rel=1e-15)
+    assert gear_set.thermal.initial_temperature == pytest.approx(293.15, rel=1e-15)
+    run = sw.simulate(gear_set, sw.scenario.step(amplitude=0.2, duration=1.0))
+    assert run["output_angle"][-1] == pytest.approx(0.2, rel=0.05)
+    supplied, lost = run["energy_supplied"][-1], sum(run[name][-1] for name in run.names if name.startswith("energy_friction"))
+    assert supplied > lost > 0.0
+    gear_set.save("copy.toml")
+    assert GearSet.read("copy.toml") == gear_set
+
+
 def test_the_code_of_the_page_runs(folder: Path) -> None:
     write_examples()
     names: dict[str, Any] = {}
