@@ -15,7 +15,7 @@ gear = sw.load("csg-25-100").replace(
     hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[8e3, 4e3, 2e3], breakaway=[0.8, 1.0, 1.2]),
     damping=10.0,
     friction_input=sw.friction.MixedLubrication(
-        coulomb=0.03, breakaway=0.05, stribeck_speed=0.3, viscous=0.03, viscosity_fall=0.03, load_sensitivity=0.005
+        coulomb=0.03, breakaway=0.05, stribeck_speed=0.3, viscous=0.03, viscosity_fall=0.03, load_sensitivity=0.3
     ),
     friction_mesh=sw.friction.LoadDependent(
         driving_forward=0.1, driving_reverse=0.1, backdriving_forward=0.1, backdriving_reverse=0.1

@@ -189,3 +189,27 @@ def test_a_python_controller_keeps_the_clamp_in_hand(gallery: Callable[[str], di
     run = gallery("03")["run"]
     assert np.abs(run["command"] - run["output_angle"]).max() < 0.015
     assert run["load_torque"].max() > 29.0
+
+
+def test_efficiency_is_what_its_losses_leave(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Load over load, losses of the teeth and friction of the bearing by its Hersey number, referred to the output."""
+    found = gallery("11")
+    for celsius, shown in found["maps"].items():
+        speed, load = np.meshgrid(found["speeds"], found["torques"])
+        viscosity, pressure = np.exp(-0.03 * (celsius - 20.0)), 1.0 + 0.3 * load / 100.0
+        hersey = viscosity * speed / (20.0 * pressure)
+        friction = pressure * (0.03 + 0.05 * np.exp(-(hersey**2))) + 6e-4 * viscosity * speed
+        assert shown == pytest.approx(load / (1.08 * load + 100.0 * friction), rel=1e-4)
+
+
+def test_resonance_shapes_what_an_encoder_pair_sees(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """An error e shows as e (k + c s) / (k + c s + Z), 1/Z = 1/Z_out + 1/Z_in; the loop of the speed belongs to Z_in."""
+    found = gallery("12")
+    for speed in (15.0, 60.0):
+        s = 1j * speed * np.array(found["orders"])
+        spring, output, input_ = 8000.0 + s, 0.05 * s**2, 100.0**2 * (1.5e-4 * s**2 + 0.1 * s + 2.0)
+        shown = np.abs(spring / (spring + 1.0 / (1.0 / output + 1.0 / input_))) * found["amplitudes"]
+        leak = 0.8e-6 / (np.pi * 20.0 * 0.1)  # of a line of noise, 0.1 from an order, over 20 revolutions
+        assert found["found"][speed].amplitude == pytest.approx(shown, rel=0.005, abs=leak)
+    rest = [found["found"][speed].residual for speed in (15.0, 60.0, 190.0)]
+    assert rest[0] > 5.0 * rest[1] > 25.0 * rest[2]

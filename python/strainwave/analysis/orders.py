@@ -160,8 +160,6 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
     (2.0, 0.03)
     """
     from scipy.interpolate import CubicSpline
-    from scipy.signal import detrend
-    from scipy.signal.windows import hann
 
     highest = arguments.number("highest", highest, low=0.0)
     turned, values = _turned(recording, column, angle)
@@ -174,8 +172,10 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
     path = np.abs(turned[moving] - turned[0])
     count = max(len(path), 4 * lines)
     places = path[-1] - tau * revolutions * np.arange(count, 0, -1) / count
-    series = detrend(CubicSpline(path, values[moving])(np.maximum(places, 0.0)))
-    amplitude = 4.0 / count * np.abs(np.fft.rfft(series * hann(count, sym=False)))[1 : lines + 1]
+    series = CubicSpline(path, values[moving])(np.maximum(places, 0.0))
+    along = np.linspace(-1.0, 1.0, count)
+    series -= series.mean() + along * (along @ series) / (along @ along)
+    amplitude = 4.0 / count * np.abs(np.fft.rfft(series * np.hanning(count + 1)[:-1]))[1 : lines + 1]
     order = np.arange(1, lines + 1) / revolutions
     title = f"orders of {angle} in {column}"
     return Recording({"order": order, "amplitude": amplitude}, {"order": "1", "amplitude": recording.unit(column)}, title)
