@@ -22,9 +22,9 @@ from strainwave.studies.position_control import TABLE_4
 PUBLISHED = Path(__file__).with_name("published")
 
 REMARK = (
-    "Amplitudes and controller are assumed, as document P gives none. The figures compare the response with the command; "
-    "those of document P compare its simulation with measurements that were not published. They are shown to compare with, "
-    "not as reproduced."
+    "Amplitudes, controller and the dry friction of the load are assumed, as document P gives none. The figures compare the "
+    "response with the command; those of document P compare its simulation with measurements that were not published. They are "
+    "shown to compare with, not as reproduced."
 )
 
 
