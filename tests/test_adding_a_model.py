@@ -43,6 +43,7 @@ ELSEWHERE = {
     "Viscous": {"specialised.hpp": USUAL, "identify/log.py": LOG, "identify/friction.py": STEADY_TABLE},
     "Coulomb": {
         "specialised.hpp": USUAL,
+        "analysis/linear.py": "holds the input while the output vibrates",
         "friction/thermal.hpp": "what it modulates by default",
         "identify/log.py": LOG,
         "identify/friction.py": STEADY_TABLE,
@@ -63,6 +64,7 @@ ELSEWHERE = {
     "PID": {"specialised.hpp": USUAL, "control/sampled.hpp": "what it samples by default"},
     "Sampled": {"any.hpp": BOUND_TO_ANY},
     "BrushlessDC": {"files/gear_set.py": "suits every controller, so a set without a motor is checked with one"},
+    "TorqueSource": {"analysis/linear.py": "a motor of which nothing counts but its inertia"},
     "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
     "Ideal": {
         "specialised.hpp": USUAL,
