@@ -52,7 +52,7 @@ def loop(torque: float = 40.0, frequency: float = 1.0, celsius: float = 20.0) ->
 studies = {
     "torque [N.m]": [(value, loop(torque=value)) for value in (5.0, 10.0, 20.0, 40.0, 80.0)],
     "frequency [Hz]": [(value, loop(frequency=value)) for value in (0.5, 1.0, 2.0, 4.0, 8.0)],
-    "temperature, at 8 Hz [°C]": [(value, loop(celsius=value, frequency=8.0)) for value in (-20.0, 0.0, 20.0, 40.0, 60.0)],
+    "8 Hz, at [°C]": [(value, loop(celsius=value, frequency=8.0)) for value in (-20.0, 0.0, 20.0, 40.0, 60.0)],
 }
 
 figure = Figure(figsize=(11.0, 7.0), layout="constrained")
@@ -63,7 +63,7 @@ for (quantity, study), above, below in zip(studies.items(), *figure.subplots(2, 
         sums = f"area {area * 1e3:6.3f} mJ, sum of the places {taken.sum() * 1e3:6.3f} mJ"
         print(f"{quantity:25} {value:5g}: width {width * 1e3:.3f} mrad, {sums}")
     above.set(xlabel="output angle [mrad]", ylabel="torque on the output [N.m]")
-    above.legend(title=quantity, fontsize="small")
+    above.legend(loc="lower right", fontsize="small", title=quantity, title_fontsize="small")
     shares = np.array([taken / taken.sum() for _, (_, _, taken) in study])
     bottom = np.zeros(len(study))
     for name, share in zip(places.values(), shares.T, strict=True):

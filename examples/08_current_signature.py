@@ -45,7 +45,7 @@ figure = Figure(figsize=(7.0, 4.5), layout="constrained")
 axes = figure.subplots()
 for number, order in enumerate(orders):
     (line,) = axes.plot(loads, 1e3 * measured[:, number], "o", label=f"order {order:g}, simulated")
-    axes.plot(loads, 1e3 * predicted[:, number], color=line.get_color(), label="closed form")
+    axes.plot(loads, 1e3 * predicted[:, number], color=line.get_color(), label="closed form" if number == 2 else None)
 axes.set(xlabel="load torque [N.m]", ylabel="amplitude of the current [mA]", xlim=(0.0, None), ylim=(0.0, None))
 axes.grid(alpha=0.3)
 axes.legend()

@@ -42,7 +42,7 @@ figure = Figure(figsize=(11.0, 4.2), layout="constrained")
 for axes, (celsius, found) in zip(figure.subplots(1, 3, sharey=True), maps.items(), strict=True):
     drawn = axes.contourf(speeds, torques, 100.0 * found, levels=np.arange(0.0, 101.0, 10.0), cmap="viridis")
     lines = axes.contour(speeds, torques, 100.0 * found, levels=np.arange(10.0, 100.0, 10.0), colors="white", linewidths=0.6)
-    axes.clabel(lines, fmt="%.0f", fontsize="small")
+    axes.clabel(lines, levels=[40.0, 60.0, 80.0], fmt="%.0f", fontsize="small")
     axes.set(title=f"{celsius:.0f} °C", xlabel="input speed [rad/s]", xscale="log", yscale="log")
     row, column = np.unravel_index(found.argmax(), found.shape)
     print(f"{celsius:4.0f} °C: best {found.max():.1%} at {speeds[column]:.0f} rad/s and {torques[row]:.0f} N.m")
