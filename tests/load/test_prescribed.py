@@ -36,6 +36,25 @@ def test_the_shaft_is_where_it_is_put_and_the_gear_transmits_the_twist() -> None
     assert run["load_torque"] == pytest.approx(run["torque"] - 0.3 * run["output_speed"])
 
 
+def test_a_shorted_motor_that_is_turned_from_outside_brakes_with_its_back_emf_and_friction() -> None:
+    """At constant speed: T = -i^2 (b_in + K^2 / R) w, and what turns the shaft does the work that all places lose."""
+    drive = geared(
+        load=sw.loads.Prescribed(),
+        motor=sw.motor.DC(resistance=2.0, torque_constant=0.05, back_emf=0.05, inertia=1e-5),
+        friction_input=sw.friction.Viscous(viscous=4e-4),
+        friction_output=sw.friction.Viscous(viscous=0.3),
+    ).replace(meter=sw.meter.EnergyMeter())
+    turned = sw.scenario.ramp(1.5, 0.5)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), 2e-5, inputs={"output_angle": turned}, sample=1e-2)
+    drag = RATIO**2 * (4e-4 + 0.05**2 / 2.0) * 1.5
+    assert run["torque"][-1] == pytest.approx(-drag, rel=1e-9)
+    assert run["load_torque"][-1] == pytest.approx(-drag - 0.45, rel=1e-9)
+    assert run["current"][-1] == pytest.approx(-0.05 * RATIO * 1.5 / 2.0, rel=1e-9)
+    assert run["power_load"][-1] == pytest.approx(-(drag + 0.45) * 1.5, rel=1e-9)
+    lost = sum(run[f"power_{place}"][-1] for place in ("motor", "friction_input", "friction_output"))
+    assert lost == pytest.approx(-run["power_load"][-1], rel=1e-9)
+
+
 def test_all_ways_to_run_it_agree() -> None:
     turned = sw.scenario.sine(0.05, 2.0, 0.5)
     drive = geared(load=sw.loads.Prescribed(), friction_input=sw.friction.Coulomb(coulomb=0.02), damping=3.0)
