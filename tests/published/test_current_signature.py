@@ -11,6 +11,7 @@ T_c = K_t C s / (J_in s^2 + b s + K_t C s - H / i^2), C(s) the current that the 
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 
@@ -36,7 +37,7 @@ RATIO = -100.0
 Loop = Callable[[complex], complex]
 
 
-# Three loops: the controller of the drive, and the current per speed that follows from its equations
+# Loops: the controller of the drive, and the current per speed that follows from its equations
 
 
 def speed_loop(proportional: float, integral: float) -> tuple[sw.Drive, Loop]:
@@ -48,6 +49,17 @@ def speed_loop(proportional: float, integral: float) -> tuple[sw.Drive, Loop]:
         load=sw.loads.Inertia(inertia=OUTPUT_INERTIA),
     )
     return drive, lambda s: proportional + integral / s
+
+
+def sampled(proportional: float, integral: float, period: float, delay: float) -> tuple[sw.Drive, Loop]:
+    """The speed loop in a computer: it sums forward over its periods, and what it gives is held and comes late."""
+    drive, _ = speed_loop(proportional, integral)
+
+    def current_per_speed(s: complex) -> complex:
+        held = (1.0 - cmath.exp(-s * period)) / (s * period) * cmath.exp(-s * delay)
+        return (proportional + integral * period / (cmath.exp(s * period) - 1.0)) * held
+
+    return drive.replace(control=sw.control.Sampled(law=drive.control, period=period, delay=delay)), current_per_speed
 
 
 def cascade(motor: object, resistance: float, inductance: float) -> tuple[sw.Drive, Loop]:
@@ -83,6 +95,7 @@ BRUSHLESS = sw.motor.BrushlessDC(
 LOOPS = {
     "stiff speed loop": speed_loop(4.0, 200.0),
     "soft speed loop": speed_loop(0.5, 2.0),
+    "sampled speed loop": sampled(1.5, 30.0, 1e-3, 2e-4),
     "cascade, brushes": cascade(DC, 0.8, 2e-3),
     "cascade, brushless": cascade(BRUSHLESS, 0.8, 2e-3),
 }
@@ -150,7 +163,7 @@ def signature(drive: sw.Drive, speed: float, load: float) -> list[float]:
     settling, revolutions = 2.0, 2.0 * math.tau / abs(speed)
     duration = settling + revolutions
     at_output = speed / RATIO
-    by_speed = drive.control.name == "pi"
+    by_speed = isinstance(getattr(drive.control, "law", drive.control), sw.control.PI)
     command = sw.scenario.constant(at_output, duration) if by_speed else sw.scenario.ramp(at_output, duration)
     start = {"input_speed": speed, "output_speed": at_output}
     run = sw.simulate(drive, command, load_torque=load, initial=start, sample=revolutions / 800.0).between(settling, duration)
