@@ -18,6 +18,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import strainwave as sw
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
@@ -127,9 +129,9 @@ def pmsm() -> tuple[sw.Drive, Loop]:
 LOOPS["cascade, synchronous"] = pmsm()
 
 
-def dynamic(s: complex) -> complex:
+def dynamic(s: complex, k: float = K, damping: float = DAMPING, inertia: float = OUTPUT_INERTIA) -> complex:
     """H."""
-    return -OUTPUT_INERTIA * s * s * (K + DAMPING * s) / (K + DAMPING * s + OUTPUT_INERTIA * s * s)
+    return -inertia * s * s * (k + damping * s) / (k + damping * s + inertia * s * s)
 
 
 def expected(loop: Loop | None, speed: float, load: float, reaction: float = 1.0) -> list[float]:
@@ -202,6 +204,29 @@ def test_a_stiff_loop_shows_the_figures_of_an_ideal_one() -> None:
     drive, loop = LOOPS["stiff speed loop"]
     assert expected(loop, SPEED, LOAD) == pytest.approx(ideal, rel=0.03)
     assert signature(drive, SPEED, LOAD) == pytest.approx(ideal, rel=0.03)
+
+
+@given(st.floats(20.0, 300.0), st.floats(1e3, 2e4), st.floats(0.02, 0.2), st.floats(0.05, 0.5), st.floats(-50.0, 50.0))
+@settings(max_examples=20)
+def test_a_speed_that_is_held_ideally_shows_the_dynamic_torque_exactly(
+    speed: float, k: float, inertia: float, damping_ratio: float, load: float
+) -> None:
+    """|H A_n| at each order, beyond the resonance too: an input of endless inertia leaves nothing out of the linear theory."""
+    damping = 2.0 * damping_ratio * math.sqrt(k * inertia)
+    gear = GEAR.replace(stiffness=sw.stiffness.Linear(k=k), damping=damping, friction_input=sw.friction.Viscous())
+    drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e30), load=sw.loads.Inertia(inertia=inertia))
+    settling = 30.0 / (damping_ratio * math.sqrt(k / inertia))
+    duration = settling + 2.0 * math.tau / speed
+    run = sw.simulate(
+        drive,
+        sw.scenario.constant(0.0, duration),
+        1e-4,
+        sample=2.0 * math.tau / speed / 400.0,
+        load_torque=load,
+        initial={"input_speed": speed, "output_speed": speed / RATIO},
+    ).between(settling, duration)
+    for order, amplitude, found in zip(ORDERS, AMPLITUDES, spectrum(run["input_angle"], run["torque"]), strict=True):
+        assert found == pytest.approx(abs(dynamic(1j * order * speed, k, damping, inertia)) * amplitude, rel=1e-5)
 
 
 # Without the reaction
