@@ -194,7 +194,7 @@ def _limits(found: PositionControl) -> dict[str, Any]:
         "back_at": f"{number(-law.linear / law.quadratic, 4)} rad",
         "largest": quantity(float(differences.max()), "rad"),
         "times_less": number(LEAST_OF_TABLE_4 / float(differences.max()), 2),
-        "periodic": number(_periodic_margin(found), 2),
+        "periodic": number(100.0 * _periodic_share(found), 2),
         "fit": angle(found.control_within_fit_to, 1),
         "stuck": quantity(_stuck(found), "rad"),
         "stopped": quantity(_static(found) * _yield(found), "rad", 2),
@@ -225,13 +225,13 @@ def _yield(found: PositionControl) -> float:
     return float(1.0 / (stiffness * drive.gear.kinematics.ratio))
 
 
-def _periodic_margin(found: PositionControl) -> float:
-    """The factor by which the assumed periodic part would have to be larger to show in the stroke of a pulse."""
+def _periodic_share(found: PositionControl) -> float:
+    """What the assumed periodic part changes of the stroke of a pulse, over what the error of the fit does, at the most."""
     pulses = found.by_pulse[study.USUAL_VOLTAGE]
     effect = pulses["full"] - pulses["without_periodic"]
     room = np.where(effect > 0.0, pulses["weaker"] - pulses["stroke"], pulses["stroke"] - pulses["stronger"])
     within = pulses["stroke"] < found.law_suffices_to
-    return float((room / np.abs(effect))[within].min())
+    return float((np.abs(effect) / room)[within].max())
 
 
 def _pulses(found: PositionControl) -> Iterator[list[str]]:

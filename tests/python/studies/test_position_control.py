@@ -30,7 +30,7 @@ DAMPING = TORQUE_CONSTANT * BACK_EMF / RESISTANCE + MOTOR_VISCOUS + LOAD_VISCOUS
 def found(tmp_path_factory: pytest.TempPathFactory) -> PositionControl:
     """The study, with its own sine under the simplified friction in place of a measurement."""
     _, command = study.commands()["sine"]
-    own = sw.simulate(sw.load("position-drive"), command, sample=1e-3, initial={"output_angle": 0.05})
+    own = sw.simulate(sw.load("position-drive"), command, sample=1e-3, initial={"output_angle": 0.05, "twist": 0.0})
     path = tmp_path_factory.mktemp("measured") / "own.csv"
     own.select(["time", "command", "output_angle"]).to_csv(path)
     return position_control(path)
@@ -86,7 +86,9 @@ def test_the_two_models_differ_in_their_friction_alone(found: PositionControl) -
     for experiment in found.experiments:
         full, simplified = (experiment.runs[model] for model in (FULL, SIMPLIFIED))
         assert np.array_equal(full["command"], simplified["command"])
-        assert full["output_angle"][0] == pytest.approx(0.05)
+        for run in (full, simplified):
+            assert run["output_angle"][0] == pytest.approx(0.05)
+            assert run["torque"][0] == 0.0
 
 
 def test_the_commands_are_those_of_document_p(found: PositionControl) -> None:
@@ -117,6 +119,9 @@ def test_the_drive_stops_as_near_to_its_command_as_both_frictions_let_it(found: 
     assert 0.0 < abs(run["input_angle"][-1] - RATIO * 0.09) <= at_motor
     assert abs(run["output_angle"][-1] - 0.09) <= at_motor / RATIO + at_load
     assert not np.ptp(run.between(1.0, 2.0)["input_angle"])
+    before = run.between(0.0, 0.0999)
+    assert not np.ptp(before["input_angle"])
+    assert np.abs(before["current"]).max() < 1e-20, "nothing happens before the step"
 
 
 def test_it_settles_where_the_last_sample_outside_of_the_band_is(found: PositionControl) -> None:
