@@ -166,6 +166,7 @@ def simulate(
     from strainwave.files.recording import Recording
     from strainwave.report.listing import range_table
     from strainwave.simulation.scenario_file import ScenarioFile
+    from strainwave.simulation.signals import chosen, outputs
 
     if dt is not None and tolerance is not None:
         raise ValueError(f"--dt {dt:g} and --tolerance {tolerance:g} exclude each other; give one of them")
@@ -173,17 +174,19 @@ def simulate(
         _check_target(option, path, endings, scenario)
     gear_set = GearSet.read(drive)
     whole = gear_set.drive.replace(dict(_change(each) for each in changed or []))
-    course = ScenarioFile.read(scenario, whole)
-    options: dict[str, Any] = {"sample": sample, "record": record, "progress": sys.stderr.isatty()}
+    given = ScenarioFile.read(scenario, whole)
+    wanted = list(chosen(whole, record) if record else outputs(whole))
+    rated = [name for name in ("torque", "input_speed") if name not in wanted]
+    options: dict[str, Any] = {"sample": sample, "record": [*wanted, *rated], "progress": sys.stderr.isatty()}
     if tolerance is None:
-        run = course.simulate(whole, 2e-4 if dt is None else dt, **options)
+        run = given.simulate(whole, 2e-4 if dt is None else dt, **options)
     else:
-        run = course.simulate_adaptively(whole, tolerance, **options)
-    recording = Recording(run.columns, run.units, title=one_line(f"{gear_set.name}: {course.name or scenario.stem}"))
+        run = given.simulate_adaptively(whole, tolerance, **options)
+    title = one_line(f"{gear_set.name}: {given.name or scenario.stem}")
+    recording = Recording(run.columns, run.units, title).select(["time", *wanted])
     _write_run(recording, out, plot)
-    print(f"{recording.title}\n{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}\n")
-    print(range_table(recording))
-    for check in check_ratings(gear_set, recording):
+    print(f"{title}\n{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}\n\n{range_table(recording)}")
+    for check in check_ratings(gear_set, run):
         if check.exceeded:
             print(one_line(f"rating: {check}"))
     for path in filter(None, (out, plot)):

@@ -517,6 +517,14 @@ def test_ratings_that_a_run_exceeds_are_told(folder: Path) -> None:
     assert re.search(rf"\n  peak_torque +{peak:.4g}  N\.m  {re.escape(beyond)}", shown.split("\njump.csv\n")[1].join("\n\n"))
 
 
+def test_ratings_are_told_whatever_is_recorded(folder: Path) -> None:
+    (folder / "jump.toml").write_text("duration = 0.1\ncommand = 0.6")
+    words = ["simulate", "joint.toml", "--scenario", "jump.toml", "-o", "jump.csv", "--record", "motor.current"]
+    result = strainwave(*words, folder=folder)
+    assert "rating: peak torque: " in result.stdout
+    assert sw.Recording.read(folder / "jump.csv").names == ("time", "current")
+
+
 def test_warnings_are_told_in_one_line(folder: Path) -> None:
     bristle = sw.friction.LuGre(
         coulomb=0.05, breakaway=0.07, stribeck_speed=0.1, bristle_stiffness=50.0, bristle_damping=5e-5, viscous=4e-4
