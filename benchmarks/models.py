@@ -104,6 +104,7 @@ SUITED: dict[str, list[dict[str, Any]]] = {
     "brake": [{"inertia": 0.5}],
     "delayed": [{"delay": 2e-3}],
     "noisy": [{"amplitude": 1e-5, "bandwidth": 500.0}],
+    "quantised": [{"resolution": 1e-3}],
     "thermal_softening": [{"stiffness_fall": 3e-4}],
 }
 

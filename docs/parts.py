@@ -236,6 +236,7 @@ SUITED: dict[str, dict[str, Any]] = {
     "encoder": {"": sw.sensor.Encoder(counts=64, eccentricity=0.05)},
     "delayed": {"": sw.sensor.Delayed(delay=2e-3)},
     "noisy": {"": sw.sensor.Noisy(amplitude=0.02, bandwidth=2000.0, seed=7)},
+    "quantised": {"": sw.sensor.Quantised(law=sw.sensor.Noisy(amplitude=0.02, bandwidth=2000.0, seed=7), resolution=0.05)},
     "heating": {
         "": sw.thermal.Heating(
             winding_capacity=120.0, winding_resistance=2.5, gear_capacity=600.0, gear_resistance=0.8, coupling=0.2

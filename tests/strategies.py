@@ -145,8 +145,8 @@ def smooth(drive: sw.Drive) -> sw.Drive:
 
 
 def quiet(sensor: Any) -> Any:
-    """Without noise, and without the counts of an encoder, of which nothing is a small deviation."""
-    if isinstance(sensor, sw.sensor.Noisy):
+    """Without noise and steps, and without the counts of an encoder, of which nothing is a small deviation."""
+    if isinstance(sensor, sw.sensor.Noisy | sw.sensor.Quantised):
         return quiet(sensor.law)
     return sw.sensor.Ideal() if isinstance(getattr(sensor, "law", sensor), sw.sensor.Encoder) else sensor
 

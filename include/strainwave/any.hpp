@@ -405,6 +405,10 @@ template <class S, class Law>
 struct AtRunTime<S, sensor::Noisy<S, Law>> {
     using type = sensor::Noisy<S, AnyOf<S, sensor::Late>>;
 };
+template <class S, class Law>
+struct AtRunTime<S, sensor::Quantised<S, Law>> {
+    using type = sensor::Quantised<S, AnyOf<S, sensor::Loud>>;
+};
 template <class S, class Density>
 struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
     using type = hysteresis::Preisach<S, AnyOf<S, hysteresis::Densities>>;

@@ -47,6 +47,7 @@
 #include <strainwave/sensor/gain.hpp>
 #include <strainwave/sensor/ideal.hpp>
 #include <strainwave/sensor/noisy.hpp>
+#include <strainwave/sensor/quantised.hpp>
 #include <strainwave/sensor/second_order.hpp>
 #include <strainwave/softening/thermal_softening.hpp>
 #include <strainwave/stiffness/cubic.hpp>
@@ -108,7 +109,8 @@ using Models = List<Inertia, Pendulum, TorsionSpring, Aerodynamic, TorqueTable, 
 namespace sensor {
 using Plain = List<Ideal, Gain, FirstOrder, SecondOrder, Encoder>;
 using Late = Extended<Plain, Delayed>;
-using Models = Extended<Late, Noisy>;
+using Loud = Extended<Late, Noisy>;
+using Models = Extended<Loud, Quantised>;
 }  // namespace sensor
 namespace softening {
 using Models = List<ThermalSoftening>;

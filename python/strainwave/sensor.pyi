@@ -435,3 +435,66 @@ class Noisy:
     source: str = ...
 
     fields: tuple[dict[str, Any], ...]
+
+class Quantised:
+    """
+    A sensor whose reading goes in steps, as behind an analogue-to-digital converter.
+
+    .. math:: y = q \\operatorname{round}\\left(\\frac{x}{q}\\right)
+
+    with x what the law shows, its noise and delay included, q = resolution. A reading that changes much errs by q / sqrt(12)
+    in the root mean square. Of a controller that is not sampled the actuation jumps with each step of the reading, as with
+    the counts of an Encoder, whose steps are those of an angle. Derivatives take what is read for what there is.
+
+    >>> from strainwave.sensor import FirstOrder, Noisy, Quantised
+    >>> speed = Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.05)
+    >>> Quantised(law=speed, resolution=0.1).law.amplitude
+    0.05
+
+    Parameters
+    ----------
+    law: The sensor without steps; default Ideal()
+    resolution: Step q of the reading, in the unit of what it measures, in (0, inf); required
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition: a uniform quantiser, as an analogue-to-digital converter is
+    """
+
+    def __init__(self, *, law: Ideal | Gain | FirstOrder | SecondOrder | Encoder | Delayed | Noisy = ..., resolution: float) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Ideal | Gain | FirstOrder | SecondOrder | Encoder | Delayed | Noisy = ..., resolution: float = ...) -> Quantised:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def law(self) -> Ideal | Gain | FirstOrder | SecondOrder | Encoder | Delayed | Noisy:
+        """The sensor without steps"""
+
+    @property
+    def resolution(self) -> float:
+        """Step q of the reading, in the unit of what it measures"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'quantised'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]

@@ -24,6 +24,7 @@ SENSORS: dict[str, Any] = {
     "encoder": sw.sensor.Encoder(counts=4096, offset=0.1, eccentricity=1e-3, eccentricity_phase=0.3),
     "delayed": sw.sensor.Delayed(delay=2e-3),
     "noisy": sw.sensor.Noisy(amplitude=0.01, bandwidth=300.0, seed=5),
+    "quantised": sw.sensor.Quantised(resolution=1e-3),
 }
 LISTED = {name: SENSORS.get(name) or law(**usual(law)) for name, law in _core.families["sensor"].items()}
 NESTED = {
@@ -32,6 +33,12 @@ NESTED = {
     "noisy lag": sw.sensor.Noisy(law=SENSORS["first_order"], amplitude=0.01, bandwidth=300.0, seed=7),
     "noisy late oscillator": sw.sensor.Noisy(
         law=sw.sensor.Delayed(law=SENSORS["second_order"], delay=2e-3), amplitude=0.01, bandwidth=300.0, seed=8
+    ),
+    "all of it": sw.sensor.Quantised(
+        law=sw.sensor.Noisy(
+            law=sw.sensor.Delayed(law=SENSORS["first_order"], delay=2e-3), amplitude=0.01, bandwidth=300.0, seed=9
+        ),
+        resolution=1e-3,
     ),
 }
 COMMAND = sw.scenario.sine(0.1, 4.0, 0.1) + sw.scenario.ramp(3.0, 0.1)
@@ -49,8 +56,15 @@ both_ways = pytest.mark.parametrize("sampled", [False, True], ids=["continuous",
 
 
 def inner(sensor: Any) -> Any:
-    """What is left of it where all stands still: no noise, no delay."""
-    return inner(sensor.law) if isinstance(sensor, sw.sensor.Noisy | sw.sensor.Delayed) else sensor
+    """The innermost."""
+    return inner(sensor.law) if hasattr(sensor, "law") else sensor
+
+
+def step_of(sensor: Any) -> float:
+    """From one reading to the next [rad]; 0 if it does not read in steps."""
+    if isinstance(sensor, sw.sensor.Quantised):
+        return max(sensor.resolution, step_of(sensor.law))
+    return tau / inner(sensor).counts if isinstance(inner(sensor), sw.sensor.Encoder) else 0.0
 
 
 @given(models("sensor"))
@@ -59,19 +73,24 @@ def test_it_begins_settled_and_stays_where_all_stands_still(sensor: Any) -> None
     assume(steps_follow(sensor))
     angle, law = 0.3, inner(sensor)
     run = run_of(sensor, sw.scenario.constant(angle, 2e-3), 1e-4)
-    noise = np.sqrt(2.0 * 32.0) * getattr(sensor, "amplitude", 0.0)  # all waves at their crests
-    wanted, count = angle, 0.0
+    noise = np.sqrt(2.0 * 32.0) * getattr(unquantised(sensor), "amplitude", 0.0)  # all waves at their crests
+    wanted = angle
     if isinstance(law, sw.sensor.Gain):
         wanted = law.gain * angle + law.offset
     elif isinstance(law, sw.sensor.Encoder):
-        wanted, count = angle + law.offset + law.eccentricity * np.sin(angle + law.eccentricity_phase), tau / law.counts
-    assert np.abs(run["motor_torque"] - wanted).max() <= 0.5 * count + noise + 1e-9 * (abs(wanted) + 1.0)
+        wanted = angle + law.offset + law.eccentricity * np.sin(angle + law.eccentricity_phase)
+    assert np.abs(run["motor_torque"] - wanted).max() <= step_of(sensor) + noise + 1e-9 * (abs(wanted) + 1.0)
+
+
+def unquantised(sensor: Any) -> Any:
+    return sensor.law if isinstance(sensor, sw.sensor.Quantised) else sensor
 
 
 def steps_follow(sensor: Any) -> bool:
     """Whether steps of 0.1 ms do."""
-    sensor = sensor.law if isinstance(sensor, sw.sensor.Noisy) else sensor
-    if isinstance(sensor, sw.sensor.Delayed) and sensor.delay < 1e-3:
+    late = unquantised(sensor)
+    late = late.law if isinstance(late, sw.sensor.Noisy) else late
+    if isinstance(late, sw.sensor.Delayed) and late.delay < 1e-3:
         return False
     return not (isinstance(inner(sensor), sw.sensor.SecondOrder) and inner(sensor).natural_frequency > 5e3)
 
@@ -106,11 +125,7 @@ def test_members_may_have_noises_of_their_own() -> None:
     assert len({row.tobytes() for row in many["output_angle"]}) == 9
 
 
-def counts(sensor: Any) -> bool:
-    return isinstance(inner(sensor), sw.sensor.Encoder)
-
-
-@pytest.mark.parametrize("sensor", [law for law in (LISTED | NESTED).values() if not counts(law)], ids=lambda law: law.name)
+@pytest.mark.parametrize("sensor", [law for law in (LISTED | NESTED).values() if not step_of(law)], ids=lambda law: law.name)
 @both_ways
 def test_adaptive_steps_lead_to_the_same(sensor: Any, sampled: bool) -> None:
     one = seen_by(sensor, sampled)
@@ -120,14 +135,14 @@ def test_adaptive_steps_lead_to_the_same(sensor: Any, sampled: bool) -> None:
         assert adaptive[column] == pytest.approx(fine[column], abs=2e-7 * np.abs(fine[column]).max())
 
 
-@pytest.mark.parametrize("sensor", [law for law in (LISTED | NESTED).values() if counts(law)], ids=lambda law: law.name)
-def test_adaptive_steps_lead_to_the_same_within_a_hundredth_of_a_count(sensor: Any) -> None:
-    """Sampled, an encoder does not care for steps. Within a delay each count begins where a step happens to end."""
+@pytest.mark.parametrize("sensor", [law for law in (LISTED | NESTED).values() if step_of(law)], ids=lambda law: law.name)
+def test_adaptive_steps_lead_to_the_same_within_a_hundredth_of_a_reading(sensor: Any) -> None:
+    """Sampled, what reads in steps does not care for those of time. Within a delay each begins where a step of time ends."""
     one = seen_by(sensor, sampled=True)
     fine = sw.simulate(one, COMMAND, 2e-5, sample=1e-3)
     adaptive = sw.simulate_adaptively(one, COMMAND, 1e-6, sample=1e-3)
-    share = 1e-2 if hasattr(sensor, "law") else 1e-4
-    assert adaptive["input_angle"] == pytest.approx(fine["input_angle"], abs=share * tau / 4096)
+    share = 1e-2 if isinstance(inner(sensor), sw.sensor.Encoder) and hasattr(sensor, "law") else 1e-4
+    assert adaptive["input_angle"] == pytest.approx(fine["input_angle"], abs=share * step_of(sensor))
 
 
 @every_sensor
@@ -135,24 +150,26 @@ def test_adaptive_steps_lead_to_the_same_within_a_hundredth_of_a_count(sensor: A
 def test_derivatives_go_through_it(sensor: Any, sampled: bool) -> None:
     """The run of the values is the run alone to the bit; by a gain they are those of differences.
 
-    Of what counts they take the line through the counts: so does an encoder of very many.
+    Of what reads in steps they take the line through the steps: so does one of very many.
     """
     one = seen_by(sensor, sampled)
     path = "control.law.proportional" if sampled else "control.proportional"
     found = sw.derivatives(one, COMMAND, [path], 1e-4, sample=1e-2)
     assert np.array_equal(found.run["output_angle"], sw.simulate(one, COMMAND, 1e-4, sample=1e-2)["output_angle"])
-    finer = one
-    if counts(sensor):
-        place = "sensors.input_angle" + (".law" * nesting(sensor)) + ".counts"
-        finer = one.replace({place: 1e14})
+    finer = one.replace({"sensors.input_angle": finely(sensor)})
     near = [sw.simulate(finer.replace({path: 0.5 + by}), COMMAND, 1e-4, sample=1e-2)["output_angle"] for by in (-5e-4, 5e-4)]
     slope = found["output_angle", path]
-    tolerance = 1e-5 if finer is one else 2e-2
+    tolerance = 2e-2 if step_of(sensor) else 1e-5
     assert slope == pytest.approx((near[1] - near[0]) / 1e-3, abs=tolerance * np.abs(slope).max())
 
 
-def nesting(sensor: Any) -> int:
-    return 1 + nesting(sensor.law) if hasattr(sensor, "law") else 0
+def finely(sensor: Any) -> Any:
+    """The same with so many steps that none is seen."""
+    if isinstance(sensor, sw.sensor.Quantised):
+        return sensor.replace(resolution=1e-14)
+    if isinstance(sensor, sw.sensor.Encoder):
+        return sensor.replace(counts=1e14)
+    return sensor.replace(law=finely(sensor.law)) if hasattr(sensor, "law") else sensor
 
 
 @pytest.mark.parametrize(
@@ -185,19 +202,19 @@ def test_derivatives_by_its_own_numbers_are_those_of_differences(sensor: Any, fi
         assert slope == pytest.approx((near[1] - near[0]) / (2.0 * step), abs=2e-5 * np.abs(slope).max())
 
 
+def read(law: Any, amplitude: float, resolution: float, seed: int) -> sw.sensor.Quantised:
+    """A sensor with a delay of 1 ms, noise and a converter."""
+    noisy = sw.sensor.Noisy(law=sw.sensor.Delayed(law=law, delay=1e-3), amplitude=amplitude, seed=seed)
+    return sw.sensor.Quantised(law=noisy, resolution=resolution)
+
+
 def test_the_sensors_of_document_a_can_be_put_together() -> None:
-    """Current of order zero, speed of first and position of second order, each with noise and delay; an encoder, too."""
+    """Current of order zero, speed of first and position of second order, each with noise, delay and steps of reading."""
     sensors = sw.Sensors(
-        current=sw.sensor.Noisy(law=sw.sensor.Delayed(law=sw.sensor.Gain(gain=1.01), delay=1e-3), amplitude=0.02, seed=1),
-        input_speed=sw.sensor.Noisy(
-            law=sw.sensor.Delayed(law=sw.sensor.FirstOrder(time_constant=1e-3), delay=1e-3), amplitude=0.05, seed=2
-        ),
-        output_angle=sw.sensor.Noisy(
-            law=sw.sensor.Delayed(law=sw.sensor.SecondOrder(natural_frequency=1500.0), delay=1e-3), amplitude=1e-5, seed=3
-        ),
-        input_angle=sw.sensor.Noisy(
-            law=sw.sensor.Delayed(law=sw.sensor.Encoder(counts=8192), delay=1e-3), amplitude=1e-4, seed=4
-        ),
+        current=read(sw.sensor.Gain(gain=1.01), 0.02, 0.01, seed=1),
+        input_speed=read(sw.sensor.FirstOrder(time_constant=1e-3), 0.05, 0.02, seed=2),
+        output_angle=read(sw.sensor.SecondOrder(natural_frequency=1500.0), 1e-5, 2e-5, seed=3),
+        input_angle=sw.sensor.Noisy(law=LATE, amplitude=1e-4, seed=4),
     )
     law = sw.control.Cascade(
         position_gain=15.0,

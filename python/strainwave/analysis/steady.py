@@ -76,12 +76,13 @@ def equilibrium(
 
 
 def _check_uncounted(drive: Drive) -> None:
-    """Refuses encoders: what is between two counts they do not show, so torques do not balance to rounding."""
+    """Refuses sensors that count or read in steps: what lies between they do not show, so torques do not quite balance."""
     for field in drive.sensors.fields:
         sensor = getattr(drive.sensors, field["name"])
+        steps = hasattr(sensor, "resolution")
         while hasattr(sensor, "law"):
             sensor = sensor.law
-        if hasattr(sensor, "counts"):
+        if steps or hasattr(sensor, "counts"):
             raise ValueError(
                 f"equilibrium needs sensors that do not count; sensors.{field['name']} does. Put sw.sensor.Ideal() in its place"
             )

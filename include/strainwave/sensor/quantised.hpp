@@ -1,0 +1,63 @@
+#pragma once
+#include <strainwave/compiled.hpp>
+#include <strainwave/fastest.hpp>
+#include <strainwave/sensor/ideal.hpp>
+#include <strainwave/sensor/nested.hpp>
+
+namespace strainwave::sensor {
+
+template <class S, class Law_ = Ideal<S>>
+struct Quantised {
+    using Law = Law_;
+
+    Law law{};
+    S resolution{1e-3};
+
+    static constexpr auto name = "quantised";
+    static constexpr auto source = "definition: a uniform quantiser, as an analogue-to-digital converter is";
+    static constexpr auto doc = R"(
+        A sensor whose reading goes in steps, as behind an analogue-to-digital converter.
+
+        .. math:: y = q \operatorname{round}\left(\frac{x}{q}\right)
+
+        with x what the law shows, its noise and delay included, q = resolution. A reading that changes much errs by q / sqrt(12)
+        in the root mean square. Of a controller that is not sampled the actuation jumps with each step of the reading, as with
+        the counts of an Encoder, whose steps are those of an angle. Derivatives take what is read for what there is.
+
+        >>> from strainwave.sensor import FirstOrder, Noisy, Quantised
+        >>> speed = Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.05)
+        >>> Quantised(law=speed, resolution=0.1).law.amplitude
+        0.05)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, law, "The sensor without steps"));
+        visit(SW_REQUIRED(m, resolution, "1", "Step q of the reading, in the unit of what it measures", smallest));
+    }
+
+    struct State {
+        Numbers<S, Law> own{};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, own, "1", "State of the sensor without steps"));
+        }
+    };
+
+    constexpr auto compile() const { return Quantised<S, decltype(compiled(law))>{compiled(law), resolution}; }
+
+    constexpr State initial_state() const { return {}; }
+    constexpr S shown(const State& x, const S& value) const {
+        const S exact = law.shown(state(law, x.own), value), read = resolution * rint(exact / resolution);
+        if constexpr (differentiates<S>)
+            return exact + detached(read - exact);
+        else
+            return read;
+    }
+    constexpr State rate(const State& x, const S& value) const { return {numbers<S, Law>(law.rate(state(law, x.own), value))}; }
+    constexpr State relaxation_rate() const { return {numbers<S, Law>(law.relaxation_rate())}; }
+    constexpr State settled(const S& value) const { return {numbers<S, Law>(law.settled(value))}; }
+    constexpr S fastest() const { return strainwave::fastest<S>(law); }
+};
+
+}  // namespace strainwave::sensor
