@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 import strainwave as sw
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
@@ -152,12 +154,15 @@ def motor_run(creep: Creep, derivative: float, duration: float) -> sw.Recording:
     return sw.simulate(drive, sw.scenario.ramp(creep.speed / 100.0, duration), sample=1e-3)
 
 
-def load_run(creep: Creep, duration: float) -> sw.Recording:
-    motor = sw.motor.TorqueSource(inertia=1e30)
-    gear = SET.gear.replace(friction_input=sw.friction.Viscous())
-    drive = sw.Drive(gear=gear, motor=motor, load=SET.load)
+def load_run(creep: Creep, duration: float, dt: float = 2e-4) -> sw.Recording:
+    gear = SET.gear.replace(
+        stiffness=sw.stiffness.Linear(k=creep.k),
+        friction_input=sw.friction.Viscous(),
+        friction_output=sw.friction.Coulomb(coulomb=creep.level, breakaway=creep.breakaway, viscous=creep.damping),
+    )
+    drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e30), load=sw.loads.Inertia(inertia=creep.inertia))
     start = {"input_speed": 100.0 * creep.speed, "output_speed": 0.0, "twist": 0.0}
-    return sw.simulate(drive, sw.scenario.constant(0.0, duration), sample=1e-3, initial=start)
+    return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt, sample=5.0 * dt, initial=start)
 
 
 def plateaus(angle: NDArray[np.float64], speed: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -190,6 +195,32 @@ def test_a_load_that_is_drawn_slowly_sticks_and_slips_as_its_closed_form(speed: 
     cycles = int((duration - creep.first_breakaway - creep.slipping) / creep.period) + 1
     assert len(found) == cycles + 1
     assert found == pytest.approx(speed * creep.period * np.arange(cycles + 1), rel=1e-7, abs=1e-12)
+
+
+@given(
+    st.floats(1e-3, 1.0),
+    st.floats(5.0, 300.0),
+    st.floats(0.0, 0.3),
+    st.floats(0.1, 5.0),
+    st.floats(0.05, 1.0),
+    st.floats(0.05, 0.9),
+)
+@settings(max_examples=25)
+def test_whatever_is_drawn_slowly_sticks_and_slips_as_its_closed_form(
+    inertia: float, w: float, damping_ratio: float, level: float, excess: float, share: float
+) -> None:
+    """Of any inertia, spring, damping and friction, at any share of its critical speed."""
+    k = inertia * w * w
+    creep = Creep(inertia, k, 2.0 * damping_ratio * inertia * w, level, (1.0 + excess) * level, excess * level / (k / w))
+    scale = min(1.0, creep.critical() / creep.speed) if creep.slowest > 0.0 else 1.0
+    creep = replace(creep, speed=share * scale * creep.speed)
+    assume(creep.sticking > 0.2 / w)  # two samples
+    duration = creep.first_breakaway + 3.5 * creep.period
+    run = load_run(creep, duration, dt=0.02 / w)
+    found = plateaus(run["output_angle"], run["output_speed"])
+    cycles = int((duration - creep.first_breakaway - creep.slipping) / creep.period) + 1
+    assert len(found) == cycles + 1
+    assert found == pytest.approx(creep.speed * creep.period * np.arange(cycles + 1), rel=1e-6, abs=1e-12)
 
 
 @pytest.mark.parametrize("derivative", [0.0, 0.1, 0.8])

@@ -131,6 +131,11 @@ def test_the_motor_of_the_robot_joint_is_that_of_its_source() -> None:
     assert sw.GearSet.read("robot-joint").ratings["peak_torque"].value > 100.0 * 0.0453 * 40.0
 
 
+def test_the_rule_for_starting_torques_meets_a_gear_that_it_was_not_made_from() -> None:
+    """The gear of the WALK-MAN Big Motor, of the stiffness of size 25, was found to break away at 8.9 N.m at its output."""
+    assert 100.0 * sw.load("csg-25-100").friction_input.breakaway == pytest.approx(8.9, rel=0.02)
+
+
 def test_the_joint_in_the_cold_is_stiffer_to_turn_when_it_runs_and_warms_up() -> None:
     """Grease at -20 degC is exp(0.03 x 40) = 3.3 times as viscous as at 20 degC."""
     law = sw.load("space-pointing-joint").gear.friction_input
