@@ -95,6 +95,21 @@ def test_a_step_of_the_drive_acts_within() -> None:
     assert state["control.actuation"] == pytest.approx(run["voltage"][-1], rel=1e-4)
 
 
+@pytest.mark.parametrize(("jump", "seen"), [(0.01, 0.01), (0.0102, 0.011), (0.0109999, 0.011), (0.0, 0.0)])
+def test_a_jump_of_the_command_is_seen_at_the_next_instant(jump: float, seen: float) -> None:
+    """One that happens at an instant is seen at it: the command is what it is from there on."""
+    one = geared(control=sw.control.Sampled(law=LAW.replace(derivative=0.0), period=PERIOD))
+    run = sw.simulate(one, sw.scenario.step(0.1, 0.02, start=jump), 1e-4)
+    assert run.time[np.argmax(run["voltage"] != 0.0)] == pytest.approx(seen + 1e-4 * (seen > 0.0), abs=1e-9)
+
+
+def test_its_instants_do_not_drift() -> None:
+    """Ten minutes of 7.3 ms, which no step divides: the next sample is due when a clock says so."""
+    slow = drive(period=7.3e-3, delay=2e-3)
+    run = sw.simulate(slow, sw.scenario.constant(0.1, 600.0), 1e-3, sample=100.0)
+    assert run.end["control.until_sample"] == pytest.approx(-600.0 % 7.3e-3, abs=1e-10)
+
+
 def test_a_fast_one_is_the_law_itself() -> None:
     errors = []
     for period in (1e-3, 5e-4):
