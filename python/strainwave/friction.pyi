@@ -1146,8 +1146,8 @@ class MixedLubrication:
               h = \\frac{\\eta |v|}{v_s\\, p}, \\qquad \\eta = e^{-\\beta (T - T_0)}, \\qquad p = 1 + s\\,|T_{load}|
 
     with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous, beta =
-    viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque transmitted. eta is
-    the viscosity, p the load on the bearing, both relative to T_0 and no load. The speed at which the lubricant carries grows
+    viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque that its place
+    transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative to T_0 and no load. The speed at which the lubricant carries grows
     as the load grows and as the lubricant thins: h is the number of Hersey. Warm oil lowers the viscous part, and lets dry
     friction last to higher speeds: one cause, opposite signs, as ``Thermal`` around ``Stribeck`` does not have it.
 
@@ -1159,7 +1159,7 @@ class MixedLubrication:
 
     Parameters
     ----------
-    coulomb: Friction torque F_c of a full film, without its viscous part [N.m], in [0, inf); required
+    coulomb: Friction torque F_c that is left once the lubricant carries, without the viscous part [N.m], in [0, inf); required
     breakaway: Static friction torque F_s [N.m], in [0, inf); required
     stribeck_speed: Speed v_s at which the excess has fallen to 1/e, at T_0 without load [rad/s], in (0, inf); required
     viscous: Torque per speed at T_0 [N.m.s/rad], in [0, inf); default 0.0
@@ -1174,7 +1174,7 @@ class MixedLubrication:
 
     Source
     ------
-    Stribeck1902: friction over viscosity times speed per load (Hersey1914); that its curve is this one, and how load and temperature enter, is assumed
+    Stribeck1902: friction over viscosity times speed per load (Hersey1914); viscosity over temperature: Reynolds1886; that the curve is this one, and how the load enters, is assumed
     """
 
     def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, viscous: float = ..., viscosity_fall: float = ..., load_sensitivity: float = ..., reference_temperature: float = ...) -> None: ...
@@ -1186,7 +1186,9 @@ class MixedLubrication:
 
     @property
     def coulomb(self) -> float:
-        """Friction torque F_c of a full film, without its viscous part [N.m]"""
+        """
+        Friction torque F_c that is left once the lubricant carries, without the viscous part [N.m]
+        """
 
     @property
     def breakaway(self) -> float:

@@ -225,7 +225,7 @@ class Aerodynamic:
 
     Source
     ------
-    definition of the hinge moment coefficient: EtkinReid1996, section 2.5; sin in place of the angle, and the drag of turning are ours; density of the standard atmosphere at sea level: ISO2533
+    definition of the hinge moment coefficient: EtkinReid1996, section 2.5; sin in place of the angle, and the drag of turning are ours; density of the standard atmosphere at sea level: ISO1975
     """
 
     def __init__(self, *, inertia: float = ..., area: float = ..., chord: float = ..., airspeed: float = ..., density: float = ..., moment_coefficient: float = ..., moment_slope: float = ..., neutral_angle: float = ..., drag_coefficient: float = ..., drag_radius: float = ...) -> None: ...

@@ -14,9 +14,10 @@ class DC:
     K_m = torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
     inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R, and with a brush drop no
     current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
-    difference counts as lost, as iron losses do; where K_m exceeds K_b the motor gives more power than it takes. Leaves out
-    cogging, and limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier is a
-    CurrentSource.
+    difference counts as lost, as iron losses do. It does so only while the motor drives: a motor with K_b > K_m that brakes,
+    and one with K_m > K_b that drives, gives more power than it takes. In SI units K_m = K_b of a motor without iron losses.
+    Leaves out cogging, and limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier
+    is a CurrentSource.
 
     >>> from strainwave.motor import DC
     >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant
@@ -206,8 +207,9 @@ class PMSM:
     controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls. Where a load
     turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit.
 
-    The sensors of the phase currents may be off: the controller then sees i_q + I_o sin(p theta), I_o = current_offset, and
-    makes a ripple of the torque out of it. The energy of cogging is held, not lost. R rises with the temperature of the
+    The sensors of the phase currents may each show a constant too much. Seen from the rotor that constant turns: the
+    controller then sees i_q + I_o sin(p theta), I_o = current_offset, and makes a ripple of the torque out of it. The same
+    ripple of i_d is left out. The energy of cogging is held, not lost. R rises with the temperature of the
     winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
     and the switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
     the current with the time constant L_q / R.

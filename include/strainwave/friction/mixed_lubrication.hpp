@@ -15,8 +15,9 @@ struct MixedLubrication {
 
     static constexpr auto name = "mixed_lubrication";
     static constexpr auto source =
-        "Stribeck1902: friction over viscosity times speed per load (Hersey1914); that its curve is this one, and how load and "
-        "temperature enter, is assumed";
+        "Stribeck1902: friction over viscosity times speed per load (Hersey1914); viscosity over temperature: Reynolds1886; that "
+        "the "
+        "curve is this one, and how the load enters, is assumed";
     static constexpr auto doc = R"(
         Friction of a lubricated bearing, as that of the wave generator: boundary, mixed and hydrodynamic by one number.
 
@@ -25,8 +26,8 @@ struct MixedLubrication {
                   h = \frac{\eta |v|}{v_s\, p}, \qquad \eta = e^{-\beta (T - T_0)}, \qquad p = 1 + s\,|T_{load}|
 
         with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous, beta =
-        viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque transmitted. eta is
-        the viscosity, p the load on the bearing, both relative to T_0 and no load. The speed at which the lubricant carries grows
+        viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque that its place
+        transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative to T_0 and no load. The speed at which the lubricant carries grows
         as the load grows and as the lubricant thins: h is the number of Hersey. Warm oil lowers the viscous part, and lets dry
         friction last to higher speeds: one cause, opposite signs, as ``Thermal`` around ``Stribeck`` does not have it.
 
@@ -38,7 +39,8 @@ struct MixedLubrication {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_REQUIRED(m, coulomb, "N.m", "Friction torque F_c of a full film, without its viscous part", 0));
+        visit(SW_REQUIRED(m, coulomb, "N.m",
+                          "Friction torque F_c that is left once the lubricant carries, without the viscous part", 0));
         visit(SW_REQUIRED(m, breakaway, "N.m", "Static friction torque F_s", 0));
         visit(SW_REQUIRED(m, stribeck_speed, "rad/s", "Speed v_s at which the excess has fallen to 1/e, at T_0 without load",
                           smallest));

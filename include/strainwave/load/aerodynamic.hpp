@@ -21,7 +21,7 @@ struct Aerodynamic {
     static constexpr auto source =
         "definition of the hinge moment coefficient: EtkinReid1996, section 2.5; sin in place of the angle, and the drag of "
         "turning "
-        "are ours; density of the standard atmosphere at sea level: ISO2533";
+        "are ours; density of the standard atmosphere at sea level: ISO1975";
     static constexpr auto doc = R"(
         A body in an air stream: a control surface, a nacelle that tilts.
 

@@ -27,9 +27,10 @@ struct DC {
         K_m = torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
         inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R, and with a brush drop no
         current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. Where K_b exceeds K_m the
-        difference counts as lost, as iron losses do; where K_m exceeds K_b the motor gives more power than it takes. Leaves out
-        cogging, and limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier is a
-        CurrentSource.
+        difference counts as lost, as iron losses do. It does so only while the motor drives: a motor with K_b > K_m that brakes,
+        and one with K_m > K_b that drives, gives more power than it takes. In SI units K_m = K_b of a motor without iron losses.
+        Leaves out cogging, and limits of the supply: those of BrushlessDC. A motor whose current is controlled by its amplifier
+        is a CurrentSource.
 
         >>> from strainwave.motor import DC
         >>> DC(resistance=2.0, torque_constant=0.05, back_emf=0.05).torque_constant

@@ -41,8 +41,9 @@ struct PMSM {
         controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls. Where a load
         turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit.
 
-        The sensors of the phase currents may be off: the controller then sees i_q + I_o sin(p theta), I_o = current_offset, and
-        makes a ripple of the torque out of it. The energy of cogging is held, not lost. R rises with the temperature of the
+        The sensors of the phase currents may each show a constant too much. Seen from the rotor that constant turns: the
+        controller then sees i_q + I_o sin(p theta), I_o = current_offset, and makes a ripple of the torque out of it. The same
+        ripple of i_d is left out. The energy of cogging is held, not lost. R rises with the temperature of the
         winding by resistance_rise per kelvin above 20 degC. Leaves out iron losses, saturation, harmonics of the flux, dead time
         and the switching of the inverter; and that an inverter may first use all of its voltage: here i_q approaches the limit of
         the current with the time constant L_q / R.
