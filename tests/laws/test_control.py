@@ -119,6 +119,20 @@ def test_adaptive_steps_lead_to_the_same(name: str, sampled: bool) -> None:
 
 @every_law
 @both_ways
+@pytest.mark.parametrize("method", ["rosenbrock", "moreau_jean"])
+def test_so_do_other_methods(name: str, sampled: bool, method: Any) -> None:
+    """Of third and of second order: half the step leaves at most a third of the error, which is small already."""
+    one = drive_of(name, sampled)
+    fine = sw.simulate(one, COMMAND, 2e-5, sample=1e-3)["output_angle"]
+    errors = [
+        np.abs(sw.simulate(one, COMMAND, dt, sample=1e-3, method=method)["output_angle"] - fine).max() for dt in (1e-4, 5e-5)
+    ]
+    assert errors[0] < 1e-4 * np.abs(fine).max()
+    assert errors[1] < errors[0] / 3.0 + 1e-10
+
+
+@every_law
+@both_ways
 def test_its_derivatives_are_those_of_differences(name: str, sampled: bool) -> None:
     """Central differences in every gain, of a run that is the run alone to the bit."""
     one = drive_of(name, sampled)
