@@ -48,7 +48,9 @@ public:
           known(known_),
           u(u_),
           x(drive_.initial_state()),
-          spring(drive_.gear, drive_.temperatures(x.continuous, u_).gear) {}
+          spring(drive_.gear, drive_.temperatures(x.continuous, u_).gear) {
+        x.input_slip_direction = x.output_slip_direction = S(0.0);  // what does not move has slipped to neither side
+    }
 
     /// Its transmission error is infinite where the rounds do not come to an end.
     constexpr typename Drive::State found() {

@@ -45,6 +45,37 @@ def test_the_output_does_not_accelerate_at_first() -> None:
     assert found["torque"] == pytest.approx(found["load_torque"] + 2.0, rel=1e-12)
 
 
+def test_what_stands_still_is_held_from_the_beginning() -> None:
+    """Friction at rest is what holds the shaft, not what it would oppose to motion: the input holds the weight's share."""
+    held = geared(friction_input=sw.friction.Coulomb(coulomb=0.5), friction_output=sw.friction.Coulomb(coulomb=5.0))
+    found = begin(held, output_angle=0.4)
+    assert found["friction_input"] == pytest.approx(-found["torque"] / RATIO, rel=1e-12)
+    assert found["torque"] == pytest.approx(found["load_torque"], rel=1e-12)
+    assert abs(found["friction_output"]) < 1e-12
+
+
+def test_a_shaft_that_is_held_at_zero_begins_there_whatever_the_error_of_the_gear() -> None:
+    """The twist is then what the angle leaves of the error, whose rounding is larger than any share of the twist."""
+    noise = sw.kinematic_error.Stochastic(amplitude=2e-5, seed=3, load_sensitivity=0.05, speed_sensitivity=0.01)
+    gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), kinematic_noise=noise)
+    for load in (sw.loads.Prescribed(), sw.loads.Inertia(inertia=0.05)):
+        drive = sw.Drive(gear=gear, load=load)
+        given = (
+            {"inputs": {"output_angle": 0.0}} if isinstance(load, sw.loads.Prescribed) else {"initial": {"output_angle": 0.0}}
+        )
+        assert abs(sw.simulate(drive, SHORT, 1e-4, **given)["twist"][0]) < 1e-17
+
+
+@given(angle=st.floats(-1.0, 1.0))
+def test_dry_friction_does_not_wind_up_what_rests(angle: float) -> None:
+    """It could hold the output to either side: it holds it to neither, and the gear carries the load alone."""
+    dry = sw.friction.Coulomb(coulomb=0.3, breakaway=0.4)
+    found = begin(geared(friction_input=dry, friction_output=dry), output_angle=angle)
+    assert found["torque"] == pytest.approx(15.0 * np.sin(angle), rel=1e-12, abs=1e-15)
+    flywheel = begin(geared(sw.loads.Inertia(inertia=0.5), friction_output=dry), input_angle=angle)
+    assert flywheel["torque"] == flywheel["twist"] == 0.0
+
+
 @given(torque=st.floats(-30.0, 30.0), angle=st.floats(-300.0, 300.0))
 def test_a_torque_is_that_of_the_gear(torque: float, angle: float) -> None:
     hysteresis = sw.hysteresis.MaxwellSlip(stiffness=[2000.0, 1000.0], breakaway=[1.0, 3.0])
