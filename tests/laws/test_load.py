@@ -55,7 +55,7 @@ def test_the_torque_slows_its_inertia(load: Any, angle: float, speed: float, giv
 
 @given(moved, angles, st.floats(0.01, 1.0))
 def test_a_slow_way_there_and_back_costs_nothing_but_friction(load: Any, start: float, way: float) -> None:
-    """The work over a way and back: none of a torque over the angle alone, and that of a brake, which is never less than none."""
+    """The work over a way and back: none of a torque over the angle alone, and of a brake never less."""
     there = start + way * np.linspace(0.0, 1.0, 21)
     forth = [held(load, angle, 1e-9, 1.0) for angle in there]
     back = [held(load, angle, -1e-9, 1.0) for angle in there]
