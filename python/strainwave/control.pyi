@@ -61,7 +61,7 @@ class OpenLoop:
 
 class PID:
     """
-    Position controller: proportional, integral, derivative, with the supply voltage as limit.
+    Position controller: proportional, integral, derivative, with a limit.
 
     .. math:: u = \\operatorname{clip}(k_p \\epsilon + k_i \\textstyle\\int \\epsilon\\,dt + k_d \\dot\\epsilon, \\pm u_{max}), \\qquad
               \\epsilon = i r - \\theta_{in} \\text{ or } \\epsilon = i\\,(r - \\theta_{out})

@@ -17,7 +17,7 @@ struct PID {
     static constexpr auto command_unit = "rad";
     static constexpr auto source = "AstromHagglund1995, chapter 3; anti-windup by conditional integration, section 3.5";
     static constexpr auto doc = R"(
-        Position controller: proportional, integral, derivative, with the supply voltage as limit.
+        Position controller: proportional, integral, derivative, with a limit.
 
         .. math:: u = \operatorname{clip}(k_p \epsilon + k_i \textstyle\int \epsilon\,dt + k_d \dot\epsilon, \pm u_{max}), \qquad
                   \epsilon = i r - \theta_{in} \text{ or } \epsilon = i\,(r - \theta_{out})

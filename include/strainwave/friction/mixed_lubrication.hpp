@@ -15,9 +15,8 @@ struct MixedLubrication {
 
     static constexpr auto name = "mixed_lubrication";
     static constexpr auto source =
-        "Stribeck1902: friction over viscosity times speed per load (Hersey1914); viscosity over temperature: Reynolds1886; that "
-        "the "
-        "curve is this one, and how the load enters, is assumed";
+        "Stribeck1902: friction over viscosity times speed per load (Hersey1914); viscosity over temperature: Reynolds1886; "
+        "this curve, and how the load enters, are assumed";
     static constexpr auto doc = R"(
         Friction of a lubricated bearing, as that of the wave generator: boundary, mixed and hydrodynamic by one number.
 
@@ -27,9 +26,10 @@ struct MixedLubrication {
 
         with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous, beta =
         viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque that its place
-        transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative to T_0 and no load. The speed at which the lubricant carries grows
-        as the load grows and as the lubricant thins: h is the number of Hersey. Warm oil lowers the viscous part, and lets dry
-        friction last to higher speeds: one cause, opposite signs, as ``Thermal`` around ``Stribeck`` does not have it.
+        transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative to
+        T_0 and no load. The speed at which the lubricant carries grows as the load grows and as the lubricant thins: h is the
+        number of Hersey. Warm oil lowers the viscous part, and lets dry friction last to higher speeds; ``Thermal`` around
+        ``Stribeck`` leaves these speeds where they are.
 
         >>> from strainwave.friction import MixedLubrication
         >>> law = MixedLubrication(coulomb=0.02, breakaway=0.05, stribeck_speed=5.0, viscous=1e-3, viscosity_fall=0.03)
