@@ -203,7 +203,7 @@ def commands() -> dict[str, tuple[str, Scenario]]:
 
 def _experiment(name: str, title: str, command: Scenario, drives: Mapping[str, Drive]) -> Experiment:
     runs = {
-        model: simulate(drive, command, sample=SAMPLE, initial={"output_angle": REST, "twist": 0.0})
+        model: simulate(drive, command, sample=SAMPLE, initial={"output_angle": REST})
         for model, drive in drives.items()
     }
     return Experiment(
@@ -397,7 +397,7 @@ def _recording(path: Path) -> Recording:
 
 def _measured(recording: Recording, drives: Mapping[str, Drive]) -> Measured:
     command = table(recording.time, recording["command"])
-    initial = {"output_angle": float(recording["output_angle"][0]), "twist": 0.0}
+    initial = {"output_angle": float(recording["output_angle"][0])}
     runs = {model: simulate(drive, command, sample=SAMPLE, initial=initial) for model, drive in drives.items()}
     measured = recording.select(["time", "output_angle"])
     agreement = {model: compare(measured, run)[0] for model, run in runs.items()}

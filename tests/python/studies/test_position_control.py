@@ -30,7 +30,7 @@ DAMPING = TORQUE_CONSTANT * BACK_EMF / RESISTANCE + MOTOR_VISCOUS + LOAD_VISCOUS
 def found(tmp_path_factory: pytest.TempPathFactory) -> PositionControl:
     """The study, with its own sine under the simplified friction in place of a measurement."""
     _, command = study.commands()["sine"]
-    own = sw.simulate(sw.load("position-drive"), command, sample=1e-3, initial={"output_angle": 0.05, "twist": 0.0})
+    own = sw.simulate(sw.load("position-drive"), command, sample=1e-3, initial={"output_angle": 0.05})
     path = tmp_path_factory.mktemp("measured") / "own.csv"
     own.select(["time", "command", "output_angle"]).to_csv(path)
     return position_control(path)
