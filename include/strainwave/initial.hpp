@@ -54,15 +54,16 @@ public:
 
     /// Its transmission error is infinite where the rounds do not come to an end.
     constexpr typename Drive::State found() {
-        constexpr int most = 500, more = 3;  // derivatives are a round or two behind the values
-        constexpr double rounding = 1e-15;
+        // Derivatives are a round or two behind the values; the rounding of an error is that of a larger angle [rad].
+        constexpr int most = 500, more = 3;
+        constexpr double rounding = 1e-15, least = 1e-3;
         S before(unbounded);
         int settled = 0;
         for (int i = 0; i < most && settled < more; ++i) {
             const S twist = round();
             const auto& y = x.continuous;
             const S output = (y.input_angle + S(2.0 * pi) * x.turns) * drive.gear.kinematics.inverse_ratio();
-            settled = S(rounding) * max(abs(output), abs(twist)) >= abs(twist - before) ? settled + 1 : 0;
+            settled = S(rounding) * max(max(abs(output), abs(twist)), S(least)) >= abs(twist - before) ? settled + 1 : 0;
             before = twist;
         }
         drive.advance_hysteresis(x, before);
