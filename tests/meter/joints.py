@@ -152,6 +152,7 @@ SENSORS = [
     sw.sensor.Encoder(counts=4096, offset=1e-3),
     sw.sensor.Delayed(law=sw.sensor.FirstOrder(time_constant=1e-3), delay=4e-3),
     sw.sensor.Noisy(law=sw.sensor.Gain(gain=0.98), amplitude=1e-4, bandwidth=500.0, seed=3),
+    sw.sensor.Quantised(law=sw.sensor.FirstOrder(time_constant=1e-3), resolution=1e-3),
 ]
 
 
@@ -192,9 +193,9 @@ def drawn(seed: int) -> sw.Drive:
     gear = sw.Gear(damping=5.0, input_inertia=2e-5, **{name: one_of(choices) for name, choices in GEAR_PARTS.items()})
     sensors = {field["name"]: one_of([sw.sensor.Ideal(), one_of(SENSORS)]) for field in sw.Sensors.fields}
     control, load, thermal = one_of(controls(scale)), one_of(LOADS), one_of([sw.thermal.Isothermal(), HEATING])
-    counts = any(isinstance(sensor, sw.sensor.Encoder) for sensor in sensors.values())
+    counts = any(isinstance(sensor, sw.sensor.Encoder | sw.sensor.Quantised) for sensor in sensors.values())
     if (counts or getattr(motor, "inductance", 1.0) == 0.0) and not isinstance(control, sw.control.Sampled):
-        # At the edge of a count a law that acts all the time jumps without end; and none acts on a current it sets at once.
+        # At the edge of a step a law that acts all the time jumps without end; and none acts on a current it sets at once.
         control = sw.control.Sampled(law=control, period=1e-3)
     return sw.Drive(
         gear=gear,
