@@ -55,13 +55,15 @@ def settling_time(
     band = arguments.number("band", band, low=0.0, high=1.0)
     last = float(values[-1]) if final is None else arguments.number("final", final, response.unit(name))
     first = time[0] if start is None else arguments.number("start", start, "s", "[]", time[0], time[-1])
-    at_start = float(np.interp(first, time, values))
-    if at_start == last:
+    largest = max(float(np.abs(values).max()), abs(last)) or 1.0  # differences of large numbers could overflow
+    offset = values / largest - last / largest
+    at_start = float(np.interp(first, time, offset))
+    if at_start == 0.0:
         there = f"{unquoted(name)} = {last:g} {response.unit(name)} at {first:g} s"
         raise ValueError(f"{there} is its final value already; give the start of a change, or the value that it leads to")
     later = time > first
-    times, offset = np.append(first, time[later]), np.append(at_start, values[later]) - last
-    return _last_entry(times, offset, band * abs(offset[0])) - float(first)
+    times, offsets = np.append(first, time[later]), np.append(at_start, offset[later])
+    return _last_entry(times, offsets, band * abs(at_start)) - float(first)
 
 
 def _last_entry(time: Array, offset: Array, width: float) -> float:

@@ -91,6 +91,12 @@ def test_the_start_of_a_change_and_the_end_of_a_recording_count() -> None:
     assert settling_time(recorded(time[:3], np.array([1.0, 0.0, -0.01])), final=0.0) == pytest.approx(0.0098)
 
 
+@pytest.mark.parametrize("size", [5e-324, 1e-300, 1.0, 1e308])
+def test_the_size_of_a_change_does_not_matter(size: float) -> None:
+    there_and_back = recorded(np.array([0.0, 1.0, 2.0]), size * np.array([1.0, -1.0, -1.0]))
+    assert settling_time(there_and_back, band=0.25) == pytest.approx(0.75)
+
+
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
