@@ -74,6 +74,15 @@ def kinds_of(field: Field) -> list[Any]:
     return list(field["options"].values()) if field["options"] else [type(field["default"])]
 
 
+def models_of(part: Any) -> set[str]:
+    """The models that a drive is made of, and those that these hold."""
+    found = {type(part).__name__}
+    for field in part.fields:
+        if field["kind"] == "part":
+            found |= models_of(getattr(part, field["name"]))
+    return found
+
+
 def values(field: Field, length: int) -> st.SearchStrategy[Any]:
     """What a field may be; a sequence has this length, for those of one model are equally long."""
     match field["kind"]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import strainwave as sw
+from strainwave import _core
 from strainwave.simulation.excitation import Excitation
 
-from tests.stress import WRONG, check, outcome, outcomes
+from tests.strategies import models_of
+from tests.stress import WRONG, check, model, outcome, outcomes
 from tests.workers import HANGS
 
 
@@ -15,6 +18,11 @@ def test_a_random_drive_ends_in_numbers_or_with_a_reason_and_is_in_a_pack_what_i
     """In 64311 the noise grows with the speed, so that a trial step goes further than an angle has digits."""
     found = outcome(number)
     assert not found.wrong, found.said
+
+
+def test_random_drives_hold_every_model_of_every_list_between_them() -> None:
+    found = set().union(*(models_of(model(sw.Drive, np.random.default_rng(number))) for number in range(200)))
+    assert {one.__name__ for models in _core.families.values() for one in models.values()} - found == set()
 
 
 def test_a_drive_that_takes_too_long_is_given_up_and_the_next_begun() -> None:

@@ -15,6 +15,7 @@ from strainwave.simulation.run import METHODS
 
 from tests.laws.test_gear import speeds
 from tests.meter.joints import COMMAND, DURATION, drawn, inputs
+from tests.strategies import models_of
 
 Array = NDArray[np.float64]
 
@@ -61,15 +62,6 @@ def test_what_a_drive_of_any_parts_takes_is_lost_goes_to_the_load_or_is_stored(s
 def test_the_drives_drawn_move_but_for_a_few_that_friction_holds() -> None:
     moved = [np.abs(run_of(seed)[1]["input_speed"]).max() > 1.0 for seed in SEEDS]
     assert np.count_nonzero(moved) >= len(SEEDS) - 3
-
-
-def models_of(part: Any) -> set[str]:
-    """The models that a drive is made of, and those that these hold."""
-    found = {type(part).__name__}
-    for field in part.fields:
-        if field["kind"] == "part":
-            found |= models_of(getattr(part, field["name"]))
-    return found
 
 
 def test_the_drives_drawn_hold_every_model_between_them() -> None:
