@@ -342,12 +342,28 @@ struct Drive {
         return select(square < S(0.0), sqrt(max(product, S(0.0))), max(mean + sqrt(max(square, S(0.0))), S(0.0)));
     }
 
+    /// How fast the controller lets the current decay [1/s], beyond what the winding does by itself, which steps take exactly.
+    constexpr S current_damping() const {
+        if (!motor::has_current<S>(motor)) return S(0.0);
+        const State x = rest();
+        const auto rate = [&](const S& current) {
+            Continuous y = x.continuous;
+            auto numbers = flattened<S>(y.motor);
+            numbers[0] = numbers[0] + current;
+            y.motor = refilled(y.motor, numbers);
+            return flattened<S>(derivatives(x, y, Input{}).rate.motor)[0];
+        };
+        const S little{1e-3};  // A, so that no limit hides it
+        const S decay = (rate(S(0.0)) - rate(little)) / little;
+        return max(decay - flattened<S>(motor.relaxation_rate())[0], S(0.0));
+    }
+
     /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the gear's own vibration at twists up to `twist`
-    /// [rad], the decay of speeds, sensors, and what the controller filters. Of a decay a Runge-Kutta step of fourth order bears
-    /// 2.78 times its length.
+    /// [rad], the decay of speeds and of a controlled current, sensors, and what the controller filters. Of a decay a Runge-Kutta
+    /// step of fourth order bears 2.78 times its length.
     constexpr S max_rate(const S& twist) const {
         const S inner = max(sensors.fastest(), strainwave::fastest<S>(control));
-        return max(max(natural_frequency(twist), damping() / S(2.5)), inner);
+        return max(max(natural_frequency(twist), max(damping(), current_damping()) / S(2.5)), inner);
     }
 
     /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.

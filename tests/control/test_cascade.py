@@ -142,3 +142,24 @@ def test_its_outer_loops_are_those_of_position_and_speed() -> None:
         run = sw.simulate(drive(law), command, 1e-5, sample=1e-3)
         errors.append(np.abs(run["output_angle"] - wanted["output_angle"]).max())
     assert errors[1] == pytest.approx(0.1 * errors[0], rel=0.2)
+
+
+def test_steps_that_cannot_follow_its_current_loop_are_refused() -> None:
+    """The current decays by k_c / L beyond R / L, which steps take exactly; of 1 / s a step bears 2.5 times its length."""
+    rate = LAW.current_proportional / DC.inductance
+    bound = 2.5 / rate
+    command = sw.scenario.constant(0.01, 0.02)
+    with pytest.raises(FloatingPointError, match=f"is too coarse for this drive.*take dt = {bound:.2g} s or less"):
+        sw.simulate(drive(LAW), command, 1.01 * bound)
+    assert np.isfinite(sw.simulate(drive(LAW), command, 0.99 * bound)["current"]).all()
+    sampled = sw.control.Sampled(law=LAW, period=1e-3)  # holds its voltage: nothing decays by it
+    assert len(sw.simulate(drive(sampled), command, 1.01 * bound)) > 1
+
+
+@pytest.mark.parametrize("gain", [1.0, 3.0])
+def test_steps_that_are_allowed_follow_it(gain: float) -> None:
+    law = LAW.replace(current_proportional=gain, current_integral=100.0 * gain, coulomb_feedforward=0.0)
+    command = sw.scenario.sine(0.02, 4.0, 0.1)
+    fine, coarse = (sw.simulate(drive(law), command, dt, sample=1e-3) for dt in (2e-6, 2e-4))
+    assert coarse["output_angle"] == pytest.approx(fine["output_angle"], abs=1e-6 * np.abs(fine["output_angle"]).max())
+    assert coarse["current"] == pytest.approx(fine["current"], abs=2e-3 * np.abs(fine["current"]).max())
