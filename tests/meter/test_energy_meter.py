@@ -11,6 +11,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from scipy.linalg import expm
 from strainwave import Drive, _core
+from strainwave.simulation.resolution import diverged
 from strainwave.simulation.run import METHODS
 
 from tests.laws.test_gear import speeds
@@ -322,3 +323,12 @@ def test_a_run_that_goes_on_goes_on_counting() -> None:
     then = sw.simulate(LINEAR, half, sample=1e-3, start=first.end)
     assert then["energy_supplied"][0] == first["energy_supplied"][-1]
     assert then["energy_supplied"][-1] == pytest.approx(whole["energy_supplied"][-1], rel=1e-12)
+
+
+def test_a_run_that_diverges_names_some_columns_and_how_many_more() -> None:
+    """Powers and energies make them so many that a message of all would be no line to read."""
+    names = list(run_of(SEEDS[0])[1].units)[1:]
+    said = diverged(np.array([0.0, 0.1]), names, np.full((len(names), 2), np.inf), "take a smaller dt")
+    assert said.startswith("the simulation diverged at t = 0 s (command, input_angle, ")
+    assert said.endswith(f" and {len(names) - 20} more); take a smaller dt")
+    assert len(said) < 500

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core
+from strainwave.messages import listed
 
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of a drive's own motion
@@ -26,7 +27,7 @@ def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str)
     sound = _meaningful(outputs)
     where = int(np.argmin(sound.all(axis=0)))
     wrong = [name for name, is_sound in zip(names, sound[:, where], strict=True) if not is_sound]
-    place = f" at t = {time[where]:.6g} s ({', '.join(wrong)})" if wrong else ""
+    place = f" at t = {time[where]:.6g} s ({listed(wrong)})" if wrong else ""
     return f"the simulation diverged{place}; {what_to_do}"
 
 
