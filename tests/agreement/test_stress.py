@@ -89,3 +89,11 @@ def test_what_sticks_and_moves_is_told() -> None:
     held = sw.Run({name: run[name] for name in run.names}, run.units, run.end.replace(input_slip_direction=0.0), run.method)
     with pytest.raises(AssertionError, match=r"^WRONG: the input sticks and moves$"):
         check(SLIDING, held, volts.over(volts.time_grid(1e-4, None))[-1, -1])
+
+
+def test_a_number_that_nobody_records_and_that_diverges_is_told() -> None:
+    """A delay no number is as short as: only the state of the sensor shows it."""
+    late = sw.sensor.Delayed(law=sw.sensor.Ideal(), delay=1.2e-38)
+    drive = SLIDING.replace(sensors=sw.Sensors(input_angle=late))
+    with pytest.raises(FloatingPointError):
+        sw.simulate_adaptively(drive, sw.scenario.constant(1.0, 0.01), 1e-4)

@@ -13,6 +13,7 @@ from strainwave import Drive, _core, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.files.recording import Recording
+from strainwave.messages import listed
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers, known
@@ -177,7 +178,7 @@ def simulate(
     if method != "rosenbrock":
         check_resolution(drive, time_grid.longest, _largest_twist(outputs[channels.index(TWIST)]))
     warn_of_bristles(drive, time_grid.longest)
-    end = State.of(drive, state)
+    end = _finite(State.of(drive, state), remedy(time_grid.longest))
     run = Run._made(drive, time, recorded, outputs, end, f"{_named(taken, drive)}, steps of {time_grid.longest:g} s")
     warn_of_ratings(model, run)
     return run
@@ -284,7 +285,7 @@ def simulate_adaptively(
         )
     check_meaning(samples, recorded, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
-    end = State.of(drive, state)
+    end = _finite(State.of(drive, state), "check the parameters")
     run = Run._made(drive, samples, recorded, outputs, end, f"{_named('exponential', drive)}, {kept}")
     warn_of_ratings(model, run)
     return run
@@ -341,6 +342,14 @@ def check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, w
     if not (outputs.max() <= LARGEST and outputs.min() >= -LARGEST):
         names = [*recorded, "twist"][: len(outputs)]
         raise FloatingPointError(diverged(time, names, outputs, what_to_do))
+
+
+def _finite(end: State, what_to_do: str) -> State:
+    """A state at the end of a run; what nobody recorded, as the state of a sensor, may have diverged alone."""
+    wrong = [name for name, number in zip(end, end.numbers, strict=True) if not np.isfinite(number)]
+    if wrong:
+        raise FloatingPointError(f"the simulation diverged ({listed(wrong)} at the end); {what_to_do}")
+    return end
 
 
 def _largest_twist(twist: Array) -> float:
