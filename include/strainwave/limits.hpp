@@ -17,11 +17,17 @@ struct Limits {
     constexpr S limited(const S& asked) const { return clip(asked, low, high); }
     constexpr Limits within(const S& most) const { return {clip(low, -most, most), clip(high, -most, most)}; }
 
-    /// The rate of an integral of `error` that feeds `asked`: the error, but none that would lead further beyond a limit.
+    /// The rate of an integral of `error` that feeds `asked`: the error, but where it leads further beyond a limit it fades, and is
+    /// gone a twentieth of the range beyond. If it ended at once, what is asked would slide along the limit, to and fro at every
+    /// step, and no step would be short enough for a tolerance.
     constexpr S integral_rate(const S& asked, const S& error) const {
-        const S within = select(asked > high, min(error, S(0.0)), error);
-        return select(asked < low, max(within, S(0.0)), within);
+        const S faded = max(S(fading) * (high - low), S(smallest));
+        const S above = min(max(asked - high, S(0.0)) / faded, S(1.0)), below = min(max(low - asked, S(0.0)) / faded, S(1.0));
+        return max(error, S(0.0)) * (S(1.0) - above) + min(error, S(0.0)) * (S(1.0) - below);
     }
+
+private:
+    static constexpr double fading = 0.05;
 };
 
 }  // namespace strainwave

@@ -14,9 +14,10 @@ def within(seen: sw.Seen, limit: float) -> tuple[float, float]:
 
 
 def advanced(error: float, asked: float, low: float, high: float) -> float:
-    """The error as an integral takes it that feeds what is asked: nothing that leads further beyond what is allowed."""
-    beyond = (asked > high and error > 0.0) or (asked < low and error < 0.0)
-    return 0.0 if beyond else error
+    """The error as an integral takes it that feeds what is asked: less of what leads further beyond what is allowed, the further
+    it is beyond, and nothing of it from a twentieth of the range on."""
+    beyond = max(asked - high if error > 0.0 else low - asked, 0.0)
+    return error * float(np.interp(beyond, [0.0, 0.05 * (high - low)], [1.0, 0.0]))
 
 
 class PID:

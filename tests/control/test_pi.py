@@ -53,3 +53,14 @@ def test_its_integral_does_not_wind_up() -> None:
     assert 0.9 < run.time[limited[-1]] < 1.0
     assert run["output_speed"].max() < 1.03 * speed  # what a second of error summed up would overshoot by tenfold
     assert run["output_speed"][-1] == pytest.approx(speed, rel=1e-6)
+
+
+@pytest.mark.parametrize("integral", [2.0, 20.0])
+def test_a_run_to_a_tolerance_passes_the_limit_of_the_motor(integral: float) -> None:
+    """Where the integral ended at once, what is asked would slide along the limit, and no step would be short enough."""
+    motor = sw.motor.BrushlessDC(resistance=0.5, inductance=5e-4, torque_constant=0.1, inertia=1e-4, current_limit=1.5)
+    limited = drive(sw.control.PI(proportional=0.1, integral=integral), motor)
+    command = sw.scenario.step(1.0, duration=0.2)
+    run = sw.simulate_adaptively(limited, command, 1e-8, sample=1e-3)
+    assert run["current"].max() == pytest.approx(1.5, rel=1e-2)
+    assert run["input_speed"] == pytest.approx(sw.simulate(limited, command, 1e-5, sample=1e-3)["input_speed"], abs=1e-4)

@@ -132,7 +132,7 @@ SPEED_LAW = sw.control.PI(proportional=0.3, integral=6.0, limit=1e6)
 def by_hand(duration: float, *, rests: bool, dt: float = 1e-5) -> Array:
     """Speed of the input under a PI law, of a rigid drive without its electric time constant, by Euler's method.
 
-    `rests`: the integral rests while the voltage is limited to what the supply and the current allow.
+    `rests`: what leads the integral further beyond what supply and current allow fades over a twentieth of that range.
     """
     speed = integral = 0.0
     speeds = [speed]
@@ -140,9 +140,9 @@ def by_hand(duration: float, *, rests: bool, dt: float = 1e-5) -> Array:
         error = RATIO * SPEED_STEP - speed
         asked = 0.3 * error + 6.0 * integral
         low, high = max(0.1 * speed - 5.0, -24.0), min(0.1 * speed + 5.0, 24.0)
-        limited = (asked > high and error > 0.0) or (asked < low and error < 0.0)
+        beyond = max(asked - high if error > 0.0 else low - asked, 0.0) if rests else 0.0
         current = (min(max(asked, low), high) - 0.1 * speed) / 0.5
-        integral += 0.0 if rests and limited else dt * error
+        integral += max(1.0 - beyond / (0.05 * (high - low)), 0.0) * dt * error
         speed += dt * 0.1 * current / TOTAL
         speeds.append(speed)
     return np.array(speeds)

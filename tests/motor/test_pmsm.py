@@ -374,7 +374,7 @@ CASCADE = sw.control.Cascade(
 def by_hand(target: float, duration: float, *, rests: bool, dt: float = 1e-5) -> Array:
     """The input angle of a rigid drive under the cascade, by Euler's method.
 
-    `rests`: both integrals rest where they would lead further beyond what the inverter can give.
+    `rests`: what leads the integrals further beyond what the inverter can give fades over a twentieth of that range.
     """
     angle = speed = current = of_speed = of_current = 0.0
     angles = [angle]
@@ -383,8 +383,9 @@ def by_hand(target: float, duration: float, *, rests: bool, dt: float = 1e-5) ->
         current_error = 0.3 * speed_error + 6.0 * of_speed - current
         asked, induced = 2.0 * current_error + 500.0 * of_current, speed / 15.0
         low, high = max(induced - 5.0, -24.0), min(induced + 5.0, 24.0)
-        beyond = float(asked > high) - float(asked < low) if rests else 0.0
-        kept = [0.0 if error * beyond > 0.0 else error for error in (speed_error, current_error)]
+        beyond = max(asked - high, 0.0) - max(low - asked, 0.0) if rests else 0.0
+        left = max(1.0 - abs(beyond) / (0.05 * (high - low)), 0.0)
+        kept = [left * error if error * beyond > 0.0 else error for error in (speed_error, current_error)]
         voltage = min(max(asked, low), high)
         angle, speed = angle + dt * speed, speed + dt * 0.1 * current / INERTIA
         current += dt * (voltage - 0.5 * current - induced) / 1e-3

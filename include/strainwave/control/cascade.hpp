@@ -32,8 +32,8 @@ struct Cascade {
 
         with i_r what the loops of PositionSpeed ask for, limited to current_limit, i_m the measured current, omega the measured input
         speed, k_c = current_proportional, k_ci = current_integral, K = back_emf_feedforward, u_max = voltage_limit. The motor
-        hands back what it can follow: where u_max or the motor limits the voltage, neither integral leads further beyond; where
-        the current is limited the integral of the speed does not.
+        hands back what it can follow. Where u_max or the motor limits the voltage, neither integral leads further beyond; where
+        the current is limited the integral of the speed does not. It fades there as that of PI.
 
         A current loop of the bandwidth w [rad/s] around resistance R and inductance L has k_c = L w and k_ci = R w. The motor must
         have an inductance, or the controller must be sampled: else voltage and current would determine each other at once.

@@ -20,8 +20,8 @@ struct PI {
                   \epsilon = i r - \omega_{in} \text{ or } \epsilon = i\,(r - \omega_{out})
 
         with r the commanded output speed [rad/s], i the signed ratio, k_p = proportional, k_i = integral, u_max = limit. The error
-        is that of the shaft which feedback names, referred to the input. The integral rests where it would lead further beyond
-        what limit or motor allow.
+        is that of the shaft which feedback names, referred to the input. What leads the integral further beyond what limit or
+        motor allow fades, and is nothing a twentieth of that range beyond.
 
         u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
         read A or N.m in place of V.

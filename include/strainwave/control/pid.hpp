@@ -25,8 +25,8 @@ struct PID {
         with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
         u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
         kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
-        error is referred to the input, so that the gains mean the same. The integral rests where it would lead further beyond
-        what limit or motor allow.
+        error is referred to the input, so that the gains mean the same. What leads the integral further beyond what limit or
+        motor allow fades, and is nothing a twentieth of that range beyond.
 
         u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
         read A or N.m in place of V.

@@ -30,7 +30,8 @@ struct PositionSpeed {
         with r the commanded output angle, i the signed ratio, omega the input speed, epsilon the error of the angle, referred to the
         input: that of the input shaft, i r - theta_in, or of the output shaft, i (r - theta_out), as feedback names it.
         k_p = position_gain, k_s = speed_proportional, k_i = speed_integral, f, b, c = speed_, viscous_ and coulomb_feedforward,
-        omega_max = speed_limit, u_max = limit. The integral rests where it would lead further beyond what limit or motor allow.
+        omega_max = speed_limit, u_max = limit. What leads the integral further beyond what limit or motor allow fades, and is
+        nothing a twentieth of that range beyond.
 
         u is a current, and the units below are those, of a motor that takes one. For a motor that takes a torque or a voltage
         read N.m or V in place of A.
