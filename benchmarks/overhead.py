@@ -91,7 +91,10 @@ def sampling(delay: float) -> Extra:
         speed_feedforward=1.0,
         voltage_limit=VOLTAGE_LIMIT,
     )
-    laws = {"without": law, "with": sw.control.Sampled(law=law, period=SAMPLE, delay=delay)}
+    laws: dict[str, sw.control.Cascade | sw.control.Sampled] = {
+        "without": law,
+        "with": sw.control.Sampled(law=law, period=SAMPLE, delay=delay),
+    }
     drive, command = strainwave_drive.drive(), strainwave_drive.command()
     drives = {name: drive.replace(control=each) for name, each in laws.items()}
     runs = {name: partial(sw.simulate, each, command, STEP, sample=SAMPLE) for name, each in drives.items()}

@@ -202,10 +202,7 @@ def commands() -> dict[str, tuple[str, Scenario]]:
 
 
 def _experiment(name: str, title: str, command: Scenario, drives: Mapping[str, Drive]) -> Experiment:
-    runs = {
-        model: simulate(drive, command, sample=SAMPLE, initial={"output_angle": REST})
-        for model, drive in drives.items()
-    }
+    runs = {model: simulate(drive, command, sample=SAMPLE, initial={"output_angle": REST}) for model, drive in drives.items()}
     return Experiment(
         name,
         title,
