@@ -14,8 +14,10 @@ def within(seen: sw.Seen, limit: float) -> tuple[float, float]:
 
 
 def advanced(error: float, asked: float, low: float, high: float) -> float:
-    """The error as an integral takes it that feeds what is asked: less of what leads further beyond what is allowed, the further
-    it is beyond, and nothing of it from a twentieth of the range on."""
+    """The error as an integral takes it that feeds what is asked.
+
+    What leads further beyond what is allowed fades over a twentieth of the range.
+    """
     beyond = max(asked - high if error > 0.0 else low - asked, 0.0)
     return error * float(np.interp(beyond, [0.0, 0.05 * (high - low)], [1.0, 0.0]))
 
