@@ -196,8 +196,7 @@ def bearing_orders(
     twice while that ring passes it; so a fault's order comes with neighbours. The outer ring turns with the flexspline. With
     the circular spline fixed r = 1 / i, i the signed ratio; with the flexspline fixed r = 0. They differ by some 1 %.
 
-    Source: R. B. Randall, J. Antoni: Rolling element bearing diagnostics: a tutorial. Mechanical Systems and Signal
-    Processing 25 (2), 2011, eqs. (1) to (4), for an outer ring that stands; for one that turns by their relative motion.
+    Source: RandallAntoni2011, eqs. (1) to (4), for an outer ring that stands; for one that turns by their relative motion.
 
     Args:
         balls: how many there are
