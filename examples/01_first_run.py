@@ -1,7 +1,7 @@
 """A first drive: put together, run and drawn.
 
-A motor turns a gear of the catalogue, a controller lets an arm follow a sine, then a mass hits it. Look at the torque: it
-carries the arm's weight, and wavers with the kinematic error of the gear.
+A motor turns a gear of the catalogue, and a controller lets an arm follow a sine. Then a constant torque pushes the arm. Look
+at the torque of the gear: it carries the arm's weight, and has a ripple from the kinematic error of the gear.
 """
 
 import numpy as np

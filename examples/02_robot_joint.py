@@ -1,8 +1,8 @@
 """From a gear of the catalogue to a robot joint, and whether a move keeps what the maker allows.
 
-A gear set has the source of each number and the maker's ratings. Motor, controller and arm are added, the whole is saved as a
-file, and read back. It swings its arm by a radian, gently and hastily, beside the joint that comes with the package. Look at
-the torque of the hasty move: to start and to stop the arm asks more of the gear than its repeated peak torque.
+A gear set has the source of each number and the maker's ratings. Motor, controller and arm are added; the joint is saved as a
+file and read back. It moves its arm by a radian, once gently and once hastily, and so does the joint that comes with the
+package. Look at the torque of the hasty move: at start and stop it exceeds the repeated peak torque of the gear.
 """
 
 import numpy as np

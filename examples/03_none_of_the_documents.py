@@ -1,8 +1,9 @@
-"""A drive that no document describes, in under twenty lines: two frictions, a load of its own, a controller of its own.
+"""A drive that no document describes, in under twenty lines besides imports: two frictions, a load and a controller of its own.
 
-Bristles rub at the wave generator, teeth lose in proportion to their load. The load is a toggle clamp: a torque measured over
-the angle. The controller is a function of Python that knows the clamp, called every millisecond. Look at the current: it
-follows the hump of the clamp before the arm could stay behind.
+The wave generator has the friction of bristles, the teeth lose in proportion to their load. The load is a toggle clamp: a
+torque measured over the angle. The controller is a function of Python, called every millisecond, that contains the torque
+table of the clamp. Look at the current: it rises and falls with the torque of the clamp at once, before an error of the angle
+builds up.
 """
 
 import numpy as np

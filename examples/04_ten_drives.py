@@ -1,7 +1,8 @@
 """Ten drives that share no combination of parts, each a TOML file in `drives/`: read, run, drawn.
 
-No line of Python knows which motor, controller, load, sensor or friction a file names. Only how far a drive goes and back is
-said here, in the unit that its controller takes: an angle [rad], or a speed [rad/s] of the rig with a brake and the conveyor.
+The script does not depend on which motor, controller, load, sensor or friction a file names. It has only how far each drive
+goes and back, in the unit that its controller takes: an angle [rad], or for the rig with a brake and the conveyor a speed
+[rad/s].
 """
 
 from pathlib import Path

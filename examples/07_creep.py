@@ -1,8 +1,8 @@
 """Stick-slip at creep speed: the motor stops and jumps although the command moves evenly.
 
-Friction that falls with the speed, and a controller with an integral, make an unsteady pair: the integral winds up until the
-shaft breaks away, which then goes too far and sticks again. Look at the steps in the angle below the speed of the Stribeck dip,
-and at how they vanish where the gear runs faster, or where friction does not fall.
+Friction that falls with the speed, together with an integral in the controller, makes the motion unsteady: the integral grows
+until the shaft breaks away; then the shaft goes too far and sticks again. Look at the steps of the angle at speeds below that
+of the Stribeck dip. They vanish at a higher speed, or with friction that does not fall.
 """
 
 import strainwave as sw

@@ -1,8 +1,9 @@
 """The kinematic error shows in the motor's current, in proportion to the load.
 
 The error of the gear moves the point where the load acts, and its reaction asks the motor for torque: order n of the current is
-n x load x error / torque constant, besides what the inertia of the output takes. Look at the straight lines: a joint that lifts
-something measures its own kinematic error, with no encoder at the output; one that lifts nothing does not.
+n x load x error / torque constant, besides what the inertia of the output takes. Look at the straight lines: without load only
+the ripple from the inertia of the output is left, 1.2 mA at most. So the current of a loaded joint shows its kinematic error
+without an encoder at the output.
 """
 
 import numpy as np

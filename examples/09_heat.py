@@ -1,7 +1,8 @@
 """An hour of duty warms a joint: its friction falls, and its spring gives way a little.
 
-An arm goes to and fro. What motor and gear lose warms them, and the warm gear loses less. Look at the temperatures, which
-settle after some time constants, at what they change, and at where the energy of the hour went. All numbers are assumed.
+An arm goes to and fro. The losses of motor and gear warm them, and the warm gear loses less. Look at the temperatures, which
+settle after some time constants, at what they change, and at where the energy of the hour went. What is lost and what is stored
+add up to what was supplied. All numbers are assumed.
 """
 
 import numpy as np
@@ -29,11 +30,11 @@ drive = sw.Drive(
     meter=sw.meter.EnergyMeter(),
 )
 command = sw.scenario.sine(amplitude=0.6, frequency=0.5, duration=hour, phase=-np.pi / 2, offset=0.6)
-run = sw.simulate(drive, command, dt=1e-2, sample=0.02)
+run = sw.simulate(drive, command, dt=4e-3, sample=0.02)
 
 
 def largest(name: str) -> np.ndarray:
-    """The largest of each cycle of two seconds, in percent of that of the first minute's last, shape (cycles,)."""
+    """The largest of each cycle of two seconds, in percent of that of the last cycle of the first minute, shape (cycles,)."""
     each = np.abs(run[name][1:]).reshape(-1, 100).max(axis=1)
     share: np.ndarray = 100.0 * each / each[29]
     return share
@@ -61,4 +62,7 @@ for axes in (top, middle, bottom):
     axes.grid(alpha=0.3)
 figure.savefig("heat.png", dpi=110)
 print(f"after an hour the winding has {winding_warmth[-1]:.1f} °C, the gear {gear_warmth[-1]:.1f} °C")
-print(f"supplied {run['energy_supplied'][-1] / 1e3:.3f} kJ, lost {taken.sum() / 1e3:.3f} kJ")
+supplied, kept = run["energy_supplied"][-1], run["energy_load"][-1] + run["energy_softening"][-1]
+kept += sum(run[name][-1] - run[name][0] for name in run.names if name.startswith("stored_"))
+print(f"supplied {supplied:,.1f} J = lost {taken.sum():,.1f} J + stored, softening and load {kept:.2f} J")
+print(f"the balance closes to {abs(supplied - taken.sum() - kept) / supplied:.0e} of the energy supplied")

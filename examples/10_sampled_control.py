@@ -1,8 +1,9 @@
 """A controller in a computer: how slow may it be, and how late?
 
-A law that is computed every T seconds and acts d seconds later is late by T/2 + d on average. The loop bears as much lateness
-as its phase margin gives at the frequency where its gain is one: its delay margin. Look at the overshoot: all periods and
-delays lie close to one curve over T/2 + d. Beyond the dashed line, found without any simulation, the joint swings without end.
+A law that is computed every T seconds and acts d seconds later is late by T/2 + d on average. The loop stays stable up to a
+delay of phase margin over crossover frequency: its delay margin. Look at the overshoot: all periods and delays lie close to
+one curve over T/2 + d. Beyond the dashed line, found without any simulation, the joint swings without end. The line is right
+to some percent, since T/2 stands for the held samples.
 """
 
 from math import tau
@@ -47,4 +48,4 @@ axes.set(xlabel="period / 2 + delay [ms]", ylabel="overshoot [%]", xlim=(0.0, No
 axes.grid(alpha=0.3)
 axes.legend(loc="upper left")
 figure.savefig("sampled_control.png", dpi=120)
-print(f"stable to {1e3 * lateness[still == 1.0].max():.2f} ms, not from {1e3 * lateness[still == 0.0].min():.2f} ms")
+print(f"stable up to {1e3 * lateness[still == 1.0].max():.2f} ms, unstable from {1e3 * lateness[still == 0.0].min():.2f} ms")

@@ -2,8 +2,8 @@
 
 Document R calls the part of the error that grows with the speed stochastic, and asks where it comes from. Here an encoder pair
 sees the error of teeth and bearing, noise that really is random but the same over the angle at every speed, and the twist that
-both shake. Look at the dashed line: whatever stands near the eigenfrequency grows, whatever lies far above it vanishes. What
-changes with the speed is the resonance, not the noise. Numbers are assumed.
+both excite. Look at the dashed line: orders near the eigenfrequency grow, orders far above it vanish. The resonance changes
+with the speed, not the noise. Numbers are assumed.
 """
 
 import numpy as np

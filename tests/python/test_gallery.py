@@ -194,7 +194,7 @@ def test_what_the_joint_takes_in_an_hour_is_lost_or_stored(gallery: Callable[[st
         run[f"energy_{place}"][-1] for place in ("motor", "friction_input", "hysteresis", "damping", "softening", "load")
     )
     stored = sum(run[name][-1] - run[name][0] for name in run.names if name.startswith("stored_"))
-    assert run["energy_supplied"][-1] == pytest.approx(lost + stored, rel=1e-4)
+    assert run["energy_supplied"][-1] == pytest.approx(lost + stored, rel=1e-6)  # as the script prints it
 
 
 def test_a_sampled_joint_swings_without_end_beyond_its_delay_margin(gallery: Callable[[str], dict[str, Any]]) -> None:
