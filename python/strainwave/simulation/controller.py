@@ -13,14 +13,12 @@ from strainwave import Drive, _core, arguments, control
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
-from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.memory import check_instants
-from strainwave.simulation.resolution import check_resolution, remedy, warn_of_bristles
-from strainwave.simulation.run import Run, beginning, channels_of, check_meaning, columns_of, progressing
+from strainwave.simulation.resolution import remedy, warn_of_bristles
+from strainwave.simulation.run import Course, Run, check_meaning, progressing, recorded_of
 from strainwave.simulation.scenario import Scenario
-from strainwave.simulation.signals import TWIST
 from strainwave.simulation.state import State
 
 Array = NDArray[np.float64]
@@ -118,48 +116,74 @@ def simulate_controlled(
     delay = arguments.number("delay", delay, "s", "[]", 0.0, period)
     interval = dt if sample is None else arguments.seconds("sample", sample)
     unit = arguments.text("unit", unit)
-    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
-    channels = channels_of(recorded)
+    recorded = recorded_of(drive, record)
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
     state = beginning_numbers(drive, start, initial, _under(0.0, excitation.first()))
     actions = _actions(command.duration, period, delay)
-    time_grid = excitation.time_grid(dt, interval, actions)
-    time, steps = time_grid.times, len(time_grid.instants) - 1
-    check_resolution(drive, time_grid.longest, 0.0)
-    course = excitation.over(time_grid)
-    held = asked = acted = 0.0
-    outputs, first = np.empty((0, 0)), 0
-    with progressing(progress, steps) as shown:
-        for number, (begin, end) in enumerate(pairwise([*_places(time_grid.instants, actions), steps])):
-            if number % 2 == 1:
-                held = asked
-            else:
-                now = course[begin, 0]
-                measured = _core.measured(drive, state, _under(acted, now))  # what there is just before the instant
-                seen = Seen(float(time_grid.instants[begin]), float(now[0]), float(now[1]), *measured.tolist())
-                asked = arguments.number(f"what the controller returns at t = {seen.time:g} s", controller(seen))
-            if begin == end:
-                continue
-            acted = held
-            if first == 0:
-                outputs, first = beginning(drive, state, _under(held, course[0, 0]), channels, len(time)), 1
-            keep = time_grid.samples[begin + 1 : end + 1]
-            instants, acting = time_grid.instants[begin : end + 1], _under(held, course[begin:end])
-            method = _core.Method.exponential
-            state = _core.simulate(drive, state, instants, acting, keep, method, channels, outputs, first)
-            first += int(np.count_nonzero(keep))
-            if shown is not None:
-                shown(end)
-    commanded = np.append(course[:1, 0, 0], course[:, 2, 0])[time_grid.samples.view(np.bool_)]
-    outputs[[each.name == "command" for each in recorded.values()] + [False] * (len(outputs) - len(recorded))] = commanded
-    check_meaning(time, recorded, outputs, remedy(time_grid.longest))
-    check_resolution(drive, time_grid.longest, float(np.abs(outputs[channels.index(TWIST)]).max()))
-    warn_of_bristles(drive, time_grid.longest)
-    units = {name: unit if name == "command" else own for name, own in signals.units(drive, recorded.values()).items()}
-    how = f"exponential Runge-Kutta, steps of {time_grid.longest:g} s, a controller called every {period:g} s"
-    run = Run(columns_of(time, recorded, outputs), units, State.of(drive, state), how)
+    course = Course.of(drive, excitation, recorded, dt, interval, actions)
+    longest = course.time_grid.longest
+    course.check_steps(twist=0.0)
+    given = excitation.over(course.time_grid)
+    with progressing(progress, len(given)) as shown:
+        outputs, state = _run(course, state, given, actions, controller, shown)
+    outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = _commanded(course, given)
+    check_meaning(course.time, recorded, outputs, remedy(longest))
+    course.check_steps(course.largest_twist(outputs))
+    warn_of_bristles(drive, longest)
+    how = f"exponential Runge-Kutta, steps of {longest:g} s, a controller called every {period:g} s"
+    run = course.run(outputs, state, how, unit)
     warn_of_ratings(model, run)
     return run
+
+
+def _run(
+    course: Course,
+    state: Array,
+    given: Array,
+    actions: Array,
+    controller: Callable[[Seen], float],
+    shown: Callable[[int], None] | None,
+) -> tuple[Array, Array]:
+    """The outputs, shape (channels, samples), and the state at the end, from one action to the next.
+
+    Args:
+        given: command, input of the load and temperature of each step, shape (steps, 3, 6)
+        actions: as `_actions` gives them
+    """
+    drive, instants = course.drive, course.time_grid.instants
+    steps, held, asked, acted = len(given), 0.0, 0.0, 0.0
+    outputs, first = np.empty((0, 0)), 0
+    for number, (begin, end) in enumerate(pairwise([*_places(instants, actions), steps])):
+        if number % 2 == 1:
+            held = asked
+        else:
+            before = _core.measured(drive, state, _under(acted, given[begin, 0]))  # what there is just before the instant
+            asked = _asked(controller, float(instants[begin]), given[begin, 0], before)
+        if begin == end:
+            continue
+        acted = held
+        if first == 0:
+            outputs, first = course.beginning(state, _under(held, given[0, 0])), 1
+        keep = course.time_grid.samples[begin + 1 : end + 1]
+        stretch, acting = instants[begin : end + 1], _under(held, given[begin:end])
+        method = _core.Method.exponential
+        state = _core.simulate(drive, state, stretch, acting, keep, method, course.channels, outputs, first)
+        first += int(np.count_nonzero(keep))
+        if shown is not None:
+            shown(end)
+    return outputs, state
+
+
+def _asked(controller: Callable[[Seen], float], time: float, given: Array, measured: Array) -> float:
+    """What the controller returns at an instant [s]."""
+    seen = Seen(time, float(given[0]), float(given[1]), *measured.tolist())
+    return arguments.number(f"what the controller returns at t = {time:g} s", controller(seen))
+
+
+def _commanded(course: Course, given: Array) -> Array:
+    """The command at the samples, in place of the actuation, which the drive itself took."""
+    commanded: Array = np.append(given[:1, 0, 0], given[:, 2, 0])[course.time_grid.samples.view(np.bool_)]
+    return commanded
 
 
 def _actions(duration: float, period: float, delay: float) -> Array:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import numpy as np
+
 MOST_INSTANTS = 1e9  # of a run or a signal: what memory could hold
 
 
@@ -28,6 +30,17 @@ def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None
     except MemoryError:
         size = f"{1e-9 * count * each:.3g} GB"
         raise MemoryError(f"{count:.3g} {what} take {size}, more memory than there is; {remedy}") from None
+
+
+def check_room(what: str, count: float, each: float, remedy: str) -> None:
+    """Refuses what is too large for the memory, as `room_for` says it, before time is spent on a part of it.
+
+    >>> check_room("samples", 1e15, 8.0, "take fewer")
+    Traceback (most recent call last):
+    MemoryError: 1e+15 samples take 8e+06 GB, more memory than there is; take fewer
+    """
+    with room_for(what, count, each, remedy):
+        np.empty(int(count * each), np.uint8)
 
 
 def check_instants(duration: float, step: float, remedy: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any, Literal, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +17,17 @@ from strainwave.messages import listed
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers, known
-from strainwave.simulation.memory import room_for
+from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import TWIST, Output
 from strainwave.simulation.state import State
-from strainwave.simulation.time_grid import CHUNK, TimeGrid, grid
+from strainwave.simulation.time_grid import CHUNK, LONG_RUN, LONGER_STEPS, STEP, TimeGrid, grid
 
 Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
 METHODS: tuple[Method, ...] = get_args(Method)
+SAMPLE_LESS = "sample less often, or record fewer outputs"
 MOST_FOR_ONE, MOST_STEPS = 1000, 100_000  # adaptive steps for each fixed one that bristles are too fast for, and of a short run
 
 
@@ -46,10 +47,22 @@ class Run(Recording):
         self._came_about(end, method)
 
     @classmethod
-    def _made(cls, drive: Drive, time: Array, recorded: Mapping[str, Output], outputs: Array, end: State, method: str) -> Run:
+    def _made(
+        cls,
+        drive: Drive,
+        time: Array,
+        recorded: Mapping[str, Output],
+        outputs: Array,
+        end: State,
+        method: str,
+        unit: str | None = None,
+    ) -> Run:
         """Of outputs that mean something: to check them as any others takes a quarter of a call."""
+        units = signals.units(drive, recorded.values())
+        if unit is not None and "command" in units:
+            units["command"] = unit
         run = object.__new__(cls)
-        run._hold(columns_of(time, recorded, outputs), signals.units(drive, recorded.values()), _title(method))
+        run._hold(columns_of(time, recorded, outputs), units, _title(method))
         run._came_about(end, method)
         return run
 
@@ -140,10 +153,11 @@ def simulate(
     model, drive = drive, drive_of(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
+    recorded = recorded_of(drive, record)
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
     state = beginning_numbers(drive, start, initial, excitation.first())
-    time_grid = excitation.time_grid(dt, interval, signals.instants(drive, state, command.duration))
+    course = Course.of(drive, excitation, recorded, dt, interval, signals.instants(drive, state, command.duration))
+    time_grid = course.time_grid
     if method is None and time_grid.longest * _core.bristle_frequency(drive) > FASTEST_ON_BRISTLES:
         run = simulate_adaptively(
             drive,
@@ -161,27 +175,86 @@ def simulate(
         warn_of_ratings(model, run)
         return run
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
-        check_resolution(drive, time_grid.longest, 0.0)
+        course.check_steps(twist=0.0)
     taken = method or "exponential"
-    time = time_grid.times
-    channels = channels_of(recorded)
-    outputs, first = beginning(drive, state, excitation.first(), channels, len(time)), 1
+    outputs, first = course.beginning(state, excitation.first()), 1
     with progressing(progress, len(time_grid.instants) - 1) as shown:
         for number, chunk in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * CHUNK + done)
             laid_out, keep = excitation.over(chunk), chunk.samples[1:]
             state = _core.simulate(
-                drive, state, chunk.instants, laid_out, keep, _core.Method[taken], channels, outputs, first, report
+                drive, state, chunk.instants, laid_out, keep, _core.Method[taken], course.channels, outputs, first, report
             )
             first += int(np.count_nonzero(keep))
-    check_meaning(time, recorded, outputs, remedy(time_grid.longest))
+    check_meaning(course.time, recorded, outputs, remedy(time_grid.longest))
     if method != "rosenbrock":
-        check_resolution(drive, time_grid.longest, _largest_twist(outputs[channels.index(TWIST)]))
+        course.check_steps(course.largest_twist(outputs))
     warn_of_bristles(drive, time_grid.longest)
-    end = _finite(State.of(drive, state), remedy(time_grid.longest))
-    run = Run._made(drive, time, recorded, outputs, end, f"{_named(taken, drive)}, steps of {time_grid.longest:g} s")
+    run = course.run(outputs, state, f"{_named(taken, drive)}, steps of {time_grid.longest:g} s")
     warn_of_ratings(model, run)
     return run
+
+
+class Course(NamedTuple):
+    """What a run with steps of its own choice needs besides a state to begin in: the steps, and what is recorded.
+
+    Attributes:
+        drive: what runs
+        time_grid: steps and samples
+        time: of the samples [s]
+        recorded: the outputs that the recording has, by name
+        channels: theirs, and that of the twist, which tells whether steps were short enough
+    """
+
+    drive: Drive
+    time_grid: TimeGrid
+    time: Array
+    recorded: Mapping[str, Output]
+    channels: list[int]
+
+    @classmethod
+    def of(
+        cls, drive: Drive, excitation: Excitation, recorded: Mapping[str, Output], dt: float, interval: float, instants: Array
+    ) -> Course:
+        """With steps of at most `dt`, samples at `interval` [s], and steps that end at `instants` [s] too.
+
+        Raises:
+            ValueError, MemoryError: the steps or the samples are too many
+        """
+        channels = channels_of(recorded)
+        duration = excitation.command.duration
+        check_instants(duration, dt, LONGER_STEPS)
+        check_room("steps", duration / dt, STEP, LONG_RUN)
+        check_samples(duration, interval, len(channels))
+        time_grid = excitation.time_grid(dt, interval, instants)
+        return cls(drive, time_grid, time_grid.times, recorded, channels)
+
+    def beginning(self, state: Array, first: Array) -> Array:
+        """Room for the outputs, that of the start filled in, under the inputs `first`."""
+        return beginning(self.drive, state, first, self.channels, len(self.time))
+
+    def check_steps(self, twist: float) -> None:
+        """Refuses steps that cannot follow the drive at a twist [rad]."""
+        check_resolution(self.drive, self.time_grid.longest, twist)
+
+    def largest_twist(self, outputs: Array) -> float:
+        return _largest_twist(outputs[self.channels.index(TWIST)])
+
+    def run(self, outputs: Array, state: Array, method: str, unit: str | None = None) -> Run:
+        """The run that ends in a state, with a unit of the command where it is not the drive's own."""
+        end = _finite(State.of(self.drive, state), remedy(self.time_grid.longest))
+        return Run._made(self.drive, self.time, self.recorded, outputs, end, method, unit)
+
+
+def recorded_of(drive: Drive, record: Sequence[str] | None) -> Mapping[str, Output]:
+    """The outputs that `record` names; all, if it is not given."""
+    return signals.outputs(drive) if record is None else signals.chosen(drive, record)
+
+
+def check_samples(duration: float, interval: float, columns: float) -> None:
+    """Refuses samples that no memory holds, before a grid is laid out for them."""
+    check_instants(duration, interval, SAMPLE_LESS)
+    check_room("samples", duration / interval, 8.0 * columns, SAMPLE_LESS)
 
 
 def channels_of(recorded: Mapping[str, Output]) -> list[int]:
@@ -196,7 +269,7 @@ def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int],
     There each side slides or sticks as the friction of this drive has it, whatever drive the state comes from, and a sampled
     controller has acted if it was due.
     """
-    with room_for("samples", samples, 8.0 * len(channels), "sample less often, or record fewer outputs"):
+    with room_for("samples", samples, 8.0 * len(channels), SAMPLE_LESS):
         outputs = np.empty((len(channels), samples))
     outputs[:, 0] = _core.now(drive, _core.begin(drive, state, first), first)[list(channels), 0]
     return outputs
@@ -271,9 +344,10 @@ def simulate_adaptively(
     atol = arguments.number("atol", atol, low=0.0)
     sample = arguments.seconds("sample", sample)
     max_steps = arguments.whole("max_steps", max_steps, 1)
-    recorded = signals.outputs(drive) if record is None else signals.chosen(drive, record)
+    recorded = recorded_of(drive, record)
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
     state = beginning_numbers(drive, start, initial, excitation.first())
+    check_samples(command.duration, sample, len(recorded))
     samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
     ends = excitation.ends(signals.instants(drive, state, command.duration))
     excitation.check_temperature(ends)

@@ -17,6 +17,7 @@ NEVER = np.empty(0)
 # What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
 STEP, INPUTS = 33.0, 144.0
 LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"
+LONGER_STEPS = "take longer steps or slower inputs"
 CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
 
 
@@ -57,6 +58,6 @@ class TimeGrid(ComparedByFields):
 
 def grid(step: float, duration: float, tolerance: float) -> Array:
     """0, step, 2 step … up to duration, which is always the last."""
-    check_instants(duration, step, "take longer steps or slower inputs")
+    check_instants(duration, step, LONGER_STEPS)
     with room_for("steps", duration / step, STEP, LONG_RUN):
         return _core.grid(step, duration, tolerance)

@@ -301,9 +301,9 @@ def test_a_temperature_that_dips_below_absolute_zero_between_steps_is_refused() 
 
 
 def test_more_steps_than_can_be_are_refused() -> None:
-    for duration, frequency in ((6e6, 0.0), (1.0, 3e8)):
+    for duration, frequency, remedy in ((6e6, 0.0, "sample less often"), (1.0, 3e8, "take longer steps or slower inputs")):
         voltage = sw.scenario.sine(1.0, frequency, duration)
-        with pytest.raises(ValueError, match=r" s are more than 1e\+09 steps of .* s; take longer steps or slower inputs$"):
+        with pytest.raises(ValueError, match=rf" s are more than 1e\+09 steps of .* s; {remedy}"):
             sw.simulate_adaptively(DRIVE, voltage)
 
 
@@ -312,7 +312,6 @@ def test_more_steps_than_can_be_are_refused() -> None:
     "run",
     [
         lambda long: sw.simulate(DRIVE, long),
-        lambda long: sw.simulate_adaptively(DRIVE, long, sample=2e-4),
         lambda long: sw.derivatives(DRIVE, long, ["gear.damping"]),
         lambda long: sw.simulate_many(DRIVE, long, {"gear.damping": [1.0]}),
     ],
@@ -329,6 +328,30 @@ def test_outputs_too_many_for_the_memory_say_how_large_they_are() -> None:
     words = r"^1e\+08 samples take 12\.8 GB, .*; sample less often, or record fewer outputs$"
     with little_memory(64 << 20), pytest.raises(MemoryError, match=words):
         simulation.beginning(DRIVE, DRIVE.rest().numbers, held, EVERY, 10**8)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
+@pytest.mark.parametrize(
+    "run",
+    [
+        lambda held: sw.simulate(DRIVE, held, sample=1e-8),
+        lambda held: sw.simulate_adaptively(DRIVE, held, sample=1e-8),
+        lambda held: sw.simulate_controlled(
+            DRIVE.replace(control=sw.control.OpenLoop()), lambda seen: 0.0, held, period=0.1, sample=1e-8
+        ),
+    ],
+    ids=["simulate", "adaptively", "controlled"],
+)
+def test_samples_too_many_for_the_memory_are_refused_before_a_grid_is_laid_out(
+    run: Callable[[sw.scenario.Scenario], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_core, "grid", None)
+    words = r"^1e\+08 samples take 1[0-9.]+ GB, .*; sample less often, or record fewer outputs$"
+    with little_memory(64 << 20), pytest.raises(MemoryError, match=words):
+        run(sw.scenario.constant(0.1, 1.0))
+    words = r"^100 s are more than 1e\+09 steps of 1e-08 s; sample less often, or record fewer outputs$"
+    with pytest.raises(ValueError, match=words):
+        run(sw.scenario.constant(0.1, 100.0))
 
 
 def test_a_run_that_leaves_all_bounds_is_no_result_though_its_numbers_are_finite() -> None:
