@@ -32,7 +32,7 @@ def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, fee
 
 
 @pytest.mark.parametrize("motor", [DC, TORQUE], ids=["voltage", "torque"])
-def test_so_it_is_on_any_motor(motor: object) -> None:
+def test_sampled_it_is_the_recursion_on_other_motors(motor: object) -> None:
     gain = 10.0 if motor == DC else 0.1
     law = LAW.replace(speed_proportional=0.04 * gain, speed_integral=0.6 * gain)
     check(law, by_hand.PositionSpeed(law, 1e-3), motor, 1e-3, 3e-4)

@@ -47,7 +47,7 @@ both_ways = pytest.mark.parametrize("sampled", [False, True], ids=["continuous",
 
 @every_law
 @both_ways
-def test_where_nothing_is_asked_of_what_rests_nothing_is_given(name: str, sampled: bool) -> None:
+def test_a_drive_at_rest_with_command_zero_stays_at_rest(name: str, sampled: bool) -> None:
     run = sw.simulate(drive_of(name, sampled), sw.scenario.constant(0.0, 0.02), sample=1e-3)
     for column in run.names:
         if column not in ("time", "temperature"):
@@ -56,7 +56,7 @@ def test_where_nothing_is_asked_of_what_rests_nothing_is_given(name: str, sample
 
 @every_law
 @both_ways
-def test_turned_round_it_does_the_same_turned_round(name: str, sampled: bool) -> None:
+def test_the_opposite_command_gives_the_opposite_motion(name: str, sampled: bool) -> None:
     one = drive_of(name, sampled)
     forth, back = (sw.simulate(one, sense * COMMAND, sample=1e-3) for sense in (1.0, -1.0))
     for column in ("input_angle", "input_speed", "output_angle", "torque"):
@@ -120,7 +120,7 @@ def test_adaptive_steps_lead_to_the_same(name: str, sampled: bool) -> None:
 @every_law
 @both_ways
 @pytest.mark.parametrize("method", ["rosenbrock", "moreau_jean"])
-def test_so_do_other_methods(name: str, sampled: bool, method: Any) -> None:
+def test_other_methods_converge_to_the_same_motion(name: str, sampled: bool, method: Any) -> None:
     """Of third and of second order: half the step leaves at most a third of the error, which is small already."""
     one = drive_of(name, sampled)
     fine = sw.simulate(one, COMMAND, 2e-5, sample=1e-3)["output_angle"]
