@@ -14,8 +14,9 @@ def main() -> None:
     written: list[Path] = []
     try:
         from strainwave import cli
+        from strainwave.files import writing
 
-        written = cli.written
+        written = writing.written
         cli.main()
     except (KeyboardInterrupt, SystemExit) as end:
         if isinstance(end, SystemExit) and end.code != INTERRUPTED:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-import shlex
 import signal
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
-from datetime import UTC, datetime
 from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TextIO
@@ -17,18 +15,19 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from strainwave.messages import listed, one_line, quoted, unquoted, with_options
-from strainwave.studies.command import study
+from strainwave.study_command import study
 
 if TYPE_CHECKING:
+    from strainwave import Drive
     from strainwave.files.gear_set import GearSet
     from strainwave.files.recording import Recording
     from strainwave.identify.measurement import Kind
     from strainwave.identify.twin import Twin
-    from strainwave.report.twin import Provenance
+    from strainwave.simulation.run import Run
+    from strainwave.simulation.scenario_file import ScenarioFile
 
 REFUSED = 2  # exit code for input that cannot be used
 DOUBTED = 3  # exit code for measurements that speak against themselves: no gear is written
-written: list[Path] = []  # folders and files that hold results of this command by now
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 
@@ -90,6 +89,7 @@ def twin(
     from strainwave.files.gear_set import GearSet
     from strainwave.identify.measurement import COLUMNS, columns_in, read_measurements, unused_columns
     from strainwave.identify.twin import twin as identify
+    from strainwave.report.provenance import Provenance
     from strainwave.report.twin import twin_report
 
     given: dict[Kind, Path | None] = {"friction": friction, "torsion": torsion, "log": log}
@@ -111,7 +111,7 @@ def twin(
             progress=stage,
         )
         stage("report")
-        report = twin_report(found, provenance=_provenance(files.values()))
+        report = twin_report(found, provenance=Provenance.of_this_command(files.values()))
         doubted = bool(found.doubts) and not accept
         _write(out, None if doubted else found.gear_set, report)
     _tell_doubts(found)
@@ -129,6 +129,7 @@ def twin(
 def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/demo")) -> None:
     """Identify two gears from published measurements, and simulate published experiments with one of them."""
     from strainwave.demo import PUBLISHED, experiments, position_drive, torsion_rig
+    from strainwave.report.provenance import Provenance
     from strainwave.report.twin import twin_report
 
     with _stages() as stage:
@@ -136,7 +137,8 @@ def demo(out: Annotated[Path, typer.Option(help="Folder for the results.")] = Pa
             stage(name.replace("-", " "))
             found = identify()
             runs = experiments(found) if name == "position-drive" else []
-            provenance = _provenance(PUBLISHED.glob(f"{'torsional' if name == 'torsion-rig' else 'position'}*"))
+            published = PUBLISHED.glob(f"{'torsional' if name == 'torsion-rig' else 'position'}*")
+            provenance = Provenance.of_this_command(published)
             _write(out / name, found.gear_set, twin_report(found, runs, provenance))
             _summarise(found)
             print(f"wrote {out / name / 'gear.toml'} and {out / name / 'report.html'}")
@@ -162,9 +164,7 @@ def simulate(
 ) -> None:
     """Run a drive through a scenario."""
     from strainwave.files.gear_set import GearSet
-    from strainwave.files.ratings import check_ratings
     from strainwave.files.recording import Recording
-    from strainwave.report.listing import range_table
     from strainwave.simulation.scenario_file import ScenarioFile
     from strainwave.simulation.signals import chosen, outputs
 
@@ -177,18 +177,11 @@ def simulate(
     given = ScenarioFile.read(scenario, whole)
     wanted = list(chosen(whole, record) if record else outputs(whole))
     rated = [name for name in ("torque", "input_speed") if name not in wanted]
-    options: dict[str, Any] = {"sample": sample, "record": [*wanted, *rated], "progress": sys.stderr.isatty()}
-    if tolerance is None:
-        run = given.simulate(whole, 2e-4 if dt is None else dt, **options)
-    else:
-        run = given.simulate_adaptively(whole, tolerance, **options)
+    run = _run(given, whole, dt, tolerance, {"sample": sample, "record": [*wanted, *rated], "progress": sys.stderr.isatty()})
     title = one_line(f"{gear_set.name}: {given.name or scenario.stem}")
     recording = Recording(run.columns, run.units, title).select(["time", *wanted])
     _write_run(recording, out, plot)
-    print(f"{title}\n{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}\n\n{range_table(recording)}")
-    for check in check_ratings(gear_set, run):
-        if check.exceeded:
-            print(one_line(f"rating: {check}"))
+    _tell_run(gear_set, run, recording)
     for path in filter(None, (out, plot)):
         print(f"wrote {path}")
 
@@ -312,9 +305,28 @@ def _change(given: str) -> tuple[str, float | str]:
     return path, value
 
 
+def _run(given: ScenarioFile, drive: Drive, dt: float | None, tolerance: float | None, options: dict[str, Any]) -> Run:
+    """The run in steps of --dt, or in steps as long as --tolerance allows."""
+    if tolerance is None:
+        return given.simulate(drive, 2e-4 if dt is None else dt, **options)
+    return given.simulate_adaptively(drive, tolerance, **options)
+
+
+def _tell_run(gear_set: GearSet, run: Run, recording: Recording) -> None:
+    """How the run went, the range of what is recorded, and the ratings that it exceeded."""
+    from strainwave.files.ratings import check_ratings
+    from strainwave.report.listing import range_table
+
+    how = f"{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}"
+    print(f"{recording.title}\n{how}\n\n{range_table(recording)}")
+    for check in check_ratings(gear_set, run):
+        if check.exceeded:
+            print(one_line(f"rating: {check}"))
+
+
 def _write_run(run: Recording, out: Path | None, plot: Path | None) -> None:
     """The recording, and a picture of what changes in it; nothing is written before all is made."""
-    from strainwave.files.writing import replacing
+    from strainwave.files.writing import replacing, written
 
     drawn = BytesIO()
     if plot is not None:
@@ -343,17 +355,10 @@ def _pairs(option: str, values: list[str] | None, known: set[str]) -> dict[str, 
     return pairs
 
 
-def _provenance(files: Iterable[Path]) -> Provenance:
-    from strainwave.report.twin import Provenance
-
-    now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return Provenance.of(sorted(files), command=shlex.join(["strainwave", *sys.argv[1:]]), date=now)
-
-
 def _write(folder: Path, gear_set: GearSet | None, report: str) -> None:
     """Both files or none, the gear only if there is one. An interrupt that comes while they are written changes nothing."""
     from strainwave.files import gear_file
-    from strainwave.files.writing import making, write_all
+    from strainwave.files.writing import making, write_all, written
 
     contents = {folder / "report.html": report}
     if gear_set is not None:
@@ -412,7 +417,7 @@ def main() -> None:
         _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
         code = REFUSED
     except (ValueError, TypeError, OSError, FloatingPointError, MemoryError) as error:
-        _print(f"strainwave: {one_line(with_options(str(error)))}\n", sys.stderr)
+        _print(f"strainwave: {one_line(with_options(str(error), names_columns=sys.argv[1:2] == ['twin']))}\n", sys.stderr)
         code = REFUSED
     finally:
         _print(said.getvalue(), sys.stdout)

@@ -74,8 +74,12 @@ def as_option(option: str, name: str, value: str) -> str:
     return f"--{option} {command} (in Python {option}s={{{quoted(name)}: {quoted(value)}}})"
 
 
-def with_options(message: str) -> str:
+def with_options(message: str, *, names_columns: bool = True) -> str:
     """A message as the command line says it: with options and commands in place of arguments and functions of Python.
+
+    Args:
+        message: as Python says it
+        names_columns: whether the verb has the options --column and --unit
 
     >>> print(with_options("name it like " + as_option("column", "speed", "v")))
     name it like --column speed=v
@@ -84,7 +88,10 @@ def with_options(message: str) -> str:
     >>> print(with_options("rtol = 1.0 must lie in [1e-11, 0.01]"))
     --tolerance 1.0 must lie in [1e-11, 0.01]
     """
-    told = re.sub(r" \(in Python \w+=\{.*?\}\)", "", message)
+    if not names_columns:
+        message = re.sub(r", or give it with --unit .*? \(in Python units=\{.*?\}\)", "", message)
+    told = re.sub(r", or pick columns with columns=\{\.\.\.\}", "", message)
+    told = re.sub(r" \(in Python \w+=\{.*?\}\)", "", told)
     told = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", told)
     told = re.sub(r"^rtol = ", "--tolerance ", told)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'

@@ -605,6 +605,23 @@ def test_a_mistake_on_the_command_line_is_told_in_one_line(
     refused(folder, arguments, *expected)
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["simulate", "joint.toml", "--scenario", "bare.csv"],
+        ["compare", "a.csv", "bare.csv"],
+        ["show", "joint.toml", "--run", "bare.csv"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_no_option_is_advised_that_the_verb_does_not_have(folder: Path, arguments: list[str]) -> None:
+    (folder / "bare.csv").write_text("time [s],command,torque\n0,0,0\n1,1,1\n")
+    result = strainwave(*arguments, folder=folder)
+    assert result.returncode == 2
+    assert result.stderr.endswith("has no unit; write it behind the name, as in torque [N.m]\n")
+    assert "--unit" in strainwave("twin", "--gear", "joint.toml", "--torsion", "bare.csv", folder=folder).stderr
+
+
 def test_memory_that_is_not_there_is_told_in_one_line(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object, **__: object) -> None:
         raise MemoryError("2e+09 samples take 16 GB, more memory than there is; sample less often")

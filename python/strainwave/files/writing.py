@@ -15,6 +15,7 @@ from uuid import uuid4
 from strainwave.messages import one_line
 
 DRAFT = ".strainwave-"  # how the names of files begin that are still being written
+written: list[Path] = []  # folders and files that hold results of the command of this process by now, told at an interrupt
 
 
 @contextmanager

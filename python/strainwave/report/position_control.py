@@ -18,7 +18,7 @@ from strainwave.files.recording import Recording
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT
 from strainwave.report.page import render
-from strainwave.report.twin import Provenance
+from strainwave.report.provenance import Provenance
 from strainwave.report.typeset import number, quantity, unit
 from strainwave.studies import position_control as study
 from strainwave.studies.position_control import FULL, SIMPLIFIED, Experiment, Measured, PositionControl

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
 from importlib import metadata
 from operator import attrgetter
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
@@ -23,35 +20,11 @@ from strainwave.identify.verdict import State, Verdict, estimated, numbers
 from strainwave.report import figures
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import render
+from strainwave.report.provenance import Provenance
 from strainwave.report.typeset import number, quantity, uncertain, unit
 
 if TYPE_CHECKING:
     from markupsafe import Markup
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """How a report came to be.
-
-    Attributes:
-        date: when, as the report shows it
-        command: what was called
-        files: SHA-256 of each file that was read, by the name the report shows
-    """
-
-    date: str = ""
-    command: str = ""
-    files: Mapping[str, str] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, files: Iterable[str | Path], *, command: str, date: str) -> Provenance:
-        """With the digests of files as they are now.
-
-        Raises:
-            OSError: a file cannot be read
-        """
-        digests = {Path(file).name: hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
-        return cls(date, command, digests)
 
 
 class ParameterRow(NamedTuple):

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from strainwave import Drive, control
 from strainwave.analysis.compare import Agreement, compare
@@ -286,6 +285,8 @@ def pulse_limit(drives: Mapping[str, Drive], voltage: float, pulses: Recording) 
     Args:
         pulses: as `moves_by_pulse` gives them, which show between which widths to look
     """
+    from scipy.optimize import brentq
+
     above = np.flatnonzero(_excess(pulses["full"], pulses["stronger"], pulses["weaker"]) > 0.0)
     if not above.size:
         return inf
@@ -317,6 +318,8 @@ def travel(drive: Drive, voltage: float, width: float) -> float:
 
 def pulse_width(drive: Drive, voltage: float, stroke: float) -> float:
     """How long a pulse [s] of a voltage [V] must be for a stroke of the motor [rad]."""
+    from scipy.optimize import brentq
+
     shortest, longest = 1e-3, 1e-2
     while travel(drive, voltage, longest) < stroke:
         shortest, longest = longest, 2.0 * longest

@@ -12,7 +12,8 @@ import strainwave as sw
 from strainwave.report import figures
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import write
-from strainwave.report.twin import Provenance, twin_report
+from strainwave.report.provenance import Provenance
+from strainwave.report.twin import twin_report
 
 from tests.python.report.reading import Node, Page, points, section
 from tests.python.report.twins import HOSTILE, swing

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 import strainwave as sw
 from strainwave import cli
+from strainwave.files import writing
 from strainwave.report.position_control import position_control_report, summary
-from strainwave.report.twin import Provenance
+from strainwave.report.provenance import Provenance
 from strainwave.studies import position_control as study
 from strainwave.studies.position_control import FULL, SIMPLIFIED, PositionControl, position_control
 
@@ -165,7 +166,7 @@ def test_the_command_writes_recordings_and_a_page(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(study, "PULSES", 2)
     monkeypatch.setattr(study, "STROKES", (0.5, 230.0))
     monkeypatch.setattr(sys, "argv", ["strainwave", "study", "position-control", "--out", str(tmp_path / "new" / "study")])
-    monkeypatch.setattr(cli, "written", [])
+    monkeypatch.setattr(writing, "written", [])
     said = StringIO()
     with redirect_stdout(said), pytest.raises(SystemExit) as end:
         cli.main()
@@ -173,7 +174,7 @@ def test_the_command_writes_recordings_and_a_page(tmp_path: Path, monkeypatch: p
     written = sorted(path.name for path in (tmp_path / "new" / "study").iterdir())
     runs = [f"{name}-{model}.parquet" for name in ("pulse-train", "sine", "step") for model in (FULL, SIMPLIFIED)]
     assert written == sorted([*runs, "report.html", "strokes-by-pulse-12V.parquet", "strokes-under-control.parquet"])
-    assert sorted(path.name for path in cli.written) == written
+    assert sorted(path.name for path in writing.written) == written
     page = Page((tmp_path / "new" / "study" / "report.html").read_text()).root
     assert "measured" not in [node.attributes.get("id") for node in page.walk()], "there was no measurement"
     step = sw.Recording.read(tmp_path / "new" / "study" / "step-full.parquet")

@@ -29,33 +29,25 @@ def position_control(
     how far the two are apart, and up to which angle average friction suffices. Document P prints neither its controller nor its
     measurements, so its Table 4 is not reproduced; report.html says why, and what is assumed.
     """
-    import shlex
-    import sys
-    from datetime import UTC, datetime
-
     from rich.console import Console
 
-    from strainwave import cli
-    from strainwave.files.writing import making
+    from strainwave.files.writing import making, written
     from strainwave.report.page import write
     from strainwave.report.position_control import position_control_report, summary
-    from strainwave.report.twin import Provenance
+    from strainwave.report.provenance import Provenance
     from strainwave.studies.position_control import position_control as run
     from strainwave.studies.position_control import recordings
 
     with Console(stderr=True).status("reading") as status:
         found = run(measured, progress=status.update)
         status.update("report")
-        read = [] if measured is None else [measured]
-        date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-        provenance = Provenance.of(read, command=shlex.join(["strainwave", *sys.argv[1:]]), date=date)
-        html = position_control_report(found, provenance)
+        html = position_control_report(found, Provenance.of_this_command([] if measured is None else [measured]))
     files = {out / f"{name}.parquet": recording for name, recording in recordings(found).items()}
     with making(out):
         for path, recording in files.items():
             recording.to_parquet(path)
-            cli.written.append(path)
+            written.append(path)
         write(html, out / "report.html")
-        cli.written.append(out / "report.html")
+        written.append(out / "report.html")
     print(summary(found))
     print(f"wrote {out / 'report.html'} and {len(files)} recordings beside it: {', '.join(path.name for path in files)}")

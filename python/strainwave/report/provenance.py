@@ -1,0 +1,46 @@
+"""How a report came to be."""
+
+from __future__ import annotations
+
+import hashlib
+import shlex
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """How a report came to be.
+
+    Attributes:
+        date: when, as the report shows it
+        command: what was called
+        files: SHA-256 of each file that was read, by the name the report shows
+    """
+
+    date: str = ""
+    command: str = ""
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, files: Iterable[str | Path], *, command: str, date: str) -> Provenance:
+        """With the digests of files as they are now.
+
+        Raises:
+            OSError: a file cannot be read
+        """
+        digests = {Path(file).name: hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
+        return cls(date, command, digests)
+
+    @classmethod
+    def of_this_command(cls, files: Iterable[Path]) -> Provenance:
+        """Of what the command line of this process makes now from these files.
+
+        Raises:
+            OSError: a file cannot be read
+        """
+        now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+        return cls.of(sorted(files), command=shlex.join(["strainwave", *sys.argv[1:]]), date=now)

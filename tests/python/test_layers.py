@@ -1,0 +1,50 @@
+"""Which part of the package may import which: arrows point one way, from the command down to the files."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import strainwave as sw
+
+PACKAGE = Path(sw.__file__).parent
+ANALYSES = {"analysis", "identify", "studies"}
+LAYERS = {
+    "files": {"files"},
+    "simulation": {"files", "simulation"},
+    "analysis": {"files", "simulation", "analysis"},
+    "identify": {"files", "simulation", "identify"},
+    "studies": {"files", "simulation", "analysis", "studies"},
+    "report": {"files", "simulation", *ANALYSES, "report"},
+}
+TOP = {"__main__", "cli", "study_command", "demo"}
+
+
+def imported(path: Path) -> Iterator[str]:
+    """The modules of the package that a module imports, within functions too."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module is not None and node.module.split(".")[0] == "strainwave":
+            yield from (f"{node.module}.{each.name}".removeprefix("strainwave.") for each in node.names)
+
+
+def test_each_layer_imports_from_those_below_alone() -> None:
+    known = {*LAYERS, *TOP}
+    for layer, below in LAYERS.items():
+        for path in sorted((PACKAGE / layer).rglob("*.py")):
+            parts = {name.split(".")[0] for name in imported(path)} & known
+            assert parts <= below, f"{path.relative_to(PACKAGE)} imports {parts - below}"
+
+
+def test_nothing_imports_the_command_but_its_start() -> None:
+    users = {path.stem for path in PACKAGE.rglob("*.py") if "cli" in {name.split(".")[0] for name in imported(path)}}
+    assert users == {"__main__"}
+
+
+def test_the_command_and_the_demonstration_begin_without_what_only_a_verb_needs() -> None:
+    code = "import strainwave.{}, sys; print({} & sys.modules.keys())"
+    for module, heavy in (("cli", {"numpy", "scipy", "pydantic", "jinja2"}), ("demo", {"scipy", "jinja2", "matplotlib"})):
+        done = subprocess.run([sys.executable, "-c", code.format(module, heavy)], capture_output=True, text=True, check=True)
+        assert done.stdout.strip() == "set()", module
