@@ -23,7 +23,7 @@ struct Limits {
     constexpr S integral_rate(const S& asked, const S& error) const {
         const S faded = max(S(fading) * (high - low), S(smallest));
         const S above = min(max(asked - high, S(0.0)) / faded, S(1.0)), below = min(max(low - asked, S(0.0)) / faded, S(1.0));
-        return max(error, S(0.0)) * (S(1.0) - above) + min(error, S(0.0)) * (S(1.0) - below);
+        return select(error > S(0.0), error * (S(1.0) - above), error * (S(1.0) - below));  // no sum: at 0 it has one slope
     }
 
 private:

@@ -22,10 +22,18 @@ def test_sampled_it_is_the_recursion(period: float, delay: float, dt: float, fee
 
 
 @pytest.mark.parametrize("motor", [PROMPT, TORQUE], ids=["prompt current", "torque"])
-def test_so_it_is_on_any_motor(motor: object) -> None:
+def test_sampled_it_is_the_recursion_on_other_motors(motor: object) -> None:
     gain = 1.0 if motor == PROMPT else 0.1
     law = LAW.replace(proportional=0.5 * gain, integral=3.0 * gain, derivative=0.01 * gain)
     check(law, by_hand.PID(law, 1e-3), motor, 1e-3, 3e-4)
+
+
+def test_at_rest_its_integral_rises_with_the_error_itself() -> None:
+    """Where the error is zero, the integral of its linear view has one slope, not the sum of those of both signs."""
+    linear = sw.linearise(drive(LAW, TORQUE))
+    integral, angle = (linear.states.index(name) for name in ("control.error_integral", "input_angle"))
+    assert linear.A[integral, angle] == pytest.approx(-1.0, rel=1e-12)
+    assert linear.B[integral, linear.inputs.index("command")] == pytest.approx(RATIO, rel=1e-12)
 
 
 def test_it_tracks_a_ramp_without_error_and_holds_a_load() -> None:
