@@ -123,17 +123,59 @@ def test_the_gear_of_a_joint_is_that_of_the_catalogue(name: str, gear: str) -> N
 
 
 def test_the_motor_of_the_robot_joint_is_that_of_its_source() -> None:
-    """Compliant Joint Toolbox, WMBig10k: k_t = 0.0453 N.m/A, r = 0.0885 Ohm, x = 0.14 mH, 24 V, 40 A."""
+    """Compliant Joint Toolbox, WMBig10k_ds, commit 5589953; k_t and i_p per rms current, r and x between two phases."""
     motor = sw.load("robot-joint").motor
-    assert 1.5 * motor.pole_pairs * motor.flux_linkage == pytest.approx(0.0453, rel=1e-6)
+    assert motor.pole_pairs == 12 / 2
+    assert 1.5 * motor.pole_pairs * motor.flux_linkage * math.sqrt(2.0) == pytest.approx(0.0453, rel=1e-6)
     assert 2.0 * motor.resistance == pytest.approx(0.0885, rel=1e-12)
     assert 2.0 * motor.quadrature_inductance == pytest.approx(0.14e-3, rel=1e-12)
+    assert motor.direct_inductance == motor.quadrature_inductance
+    assert motor.inertia == 5.48e-5
+    assert motor.supply_voltage == 24.0
+    assert motor.current_limit == pytest.approx(40.0 * math.sqrt(2.0), rel=1e-4)
+    assert (motor.cogging_torque, motor.cogging_order) == (15e-3, 6.0)
     assert sw.GearSet.read("robot-joint").ratings["peak_torque"].value > 100.0 * 0.0453 * 40.0
 
 
-def test_the_rule_for_starting_torques_meets_a_gear_that_it_was_not_made_from() -> None:
-    """The gear of the WALK-MAN Big Motor, of the stiffness of size 25, was found to break away at 8.9 N.m at its output."""
-    assert 100.0 * sw.load("csg-25-100").friction_input.breakaway == pytest.approx(8.9, rel=0.02)
+def test_the_motor_of_the_robot_joint_reaches_the_speed_of_its_source() -> None:
+    """5.86 rad/s at the output, ratio 100; without friction 24 V / (sqrt(3) p psi) = 649 rad/s, with that of the gear less."""
+    joint = sw.load("robot-joint")
+    fastest = joint.motor.supply_voltage / (math.sqrt(3.0) * joint.motor.pole_pairs * joint.motor.flux_linkage)
+    assert fastest == pytest.approx(648.9, abs=0.1)
+    free = sw.Drive(gear=joint.gear, motor=joint.motor, load=sw.loads.Inertia(inertia=0.1))
+    run = sw.simulate(free, sw.scenario.constant(24.0, 0.5), sample=1e-3)
+    assert 586.0 < run["input_speed"][-1] < fastest
+
+
+def test_the_loops_of_the_robot_joint_belong_to_its_motor() -> None:
+    """Torque per amplitude 3/2 p psi, back-EMF p psi, and the limits of current and voltage."""
+    joint = sw.load("robot-joint")
+    motor, law = joint.motor, joint.control.law
+    per_ampere = 1.5 * motor.pole_pairs * motor.flux_linkage
+    assert law.back_emf_feedforward == pytest.approx(motor.pole_pairs * motor.flux_linkage, rel=1e-3)
+    assert law.viscous_feedforward == pytest.approx(joint.gear.friction_input.law.viscous / per_ampere, rel=1e-3)
+    assert law.current_limit == motor.current_limit
+    assert law.voltage_limit == pytest.approx(motor.supply_voltage / math.sqrt(3.0), rel=1e-4)
+    best = math.sqrt(5.8e4 * joint.load.inertia) / 100.0**2 / per_ampere
+    assert law.speed_proportional == pytest.approx(0.9 * best, rel=5e-3)
+    assert law.current_proportional / motor.quadrature_inductance == pytest.approx(2000.0, rel=1e-9)
+    assert law.current_integral / motor.resistance == pytest.approx(2000.0, rel=1e-9)
+
+
+def test_the_rated_torque_presses_the_bearing_of_the_pointing_joint_by_a_fifth() -> None:
+    """10 N.m at the output are 0.1 N.m at the input."""
+    law = sw.load("space-pointing-joint").gear.friction_input
+    assert law.hold(load=0.1) / law.hold(load=0.0) == pytest.approx(1.2, rel=1e-12)
+
+
+def test_the_loops_of_the_pointing_joint_are_as_fast_as_their_sources_say() -> None:
+    joint = sw.load("space-pointing-joint")
+    law, torque, rotor = joint.control.law, joint.motor.torque_constant, joint.motor.inertia + joint.gear.input_inertia
+    below = law.speed_proportional * torque / (rotor + joint.load.inertia / 100.0**2)
+    above = law.speed_proportional * torque / rotor
+    assert (below, above) == pytest.approx((22.1, 277.0), rel=2e-3)
+    assert below / law.position_gain == pytest.approx(7.0, abs=0.5)
+    assert 4.0 < below / (law.speed_integral / law.speed_proportional) < 5.0
 
 
 def test_the_joint_in_the_cold_is_stiffer_to_turn_when_it_runs_and_warms_up() -> None:
