@@ -77,7 +77,8 @@ def read_parquet(path: str | Path, columns: Mapping[str, str] | None, units: Map
         with ParquetFile(Path(path), page_checksum_verification=True) as opened:
             schema = opened.schema_arrow
             sources = sources_of(file, [parquet_label(field) for field in schema], columns, units)
-            table = opened.read(columns=[schema.field(source.position).name for source in sources])
+            wanted = [schema.field(source.position).name for source in sources]
+            table = opened.read(columns=wanted, use_threads=False)  # as in `_parse`
             title = (schema.metadata or {}).get(b"title", b"").decode()
     except (OSError, pyarrow.ArrowException, UnicodeError) as error:
         raise ValueError(unreadable(path, error)) from None
@@ -314,7 +315,11 @@ class CsvTable:
         keys = {source.name: str(source.position) for source in sources}  # labels may occur twice, positions cannot
         table = arrow_csv.read_csv(
             pyarrow.BufferReader(pyarrow.py_buffer(self.body)),
-            read_options=arrow_csv.ReadOptions(block_size=_BLOCK, column_names=[str(i) for i in range(len(self.labels))]),
+            read_options=arrow_csv.ReadOptions(
+                use_threads=False,  # which the process may end before, and abort: apache/arrow#34314
+                block_size=_BLOCK,
+                column_names=[str(i) for i in range(len(self.labels))],
+            ),
             parse_options=arrow_csv.ParseOptions(delimiter=self.delimiter),
             convert_options=arrow_csv.ConvertOptions(
                 include_columns=sorted(set(keys.values())),
