@@ -145,11 +145,9 @@ def check_continuous(drive: Drive, what: str) -> None:
         raise ValueError(f"{what} needs an output shaft that torques move; the load of this drive prescribes its motion")
     if load_input(drive) != "load_torque":
         raise ValueError(f"{what} needs a load that does not brake; give another load")
-    for part in ("meter", "thermal"):
+    for part, why in (("meter", "counts no energy"), ("thermal", "is of one temperature, and this drive warms up")):
         if not isinstance(getattr(drive, part), kind := type(getattr(Drive(), part))):
-            raise ValueError(
-                f"{what} is of no use to the {part} of a drive; give drive.replace({part}=sw.{part}.{kind.__name__}())"
-            )
+            raise ValueError(f"{what} {why}; give drive.replace({part}=sw.{part}.{kind.__name__}())")
     if clocked := [name for name, _, _ in _core.state(drive)[0] if name.endswith(".clock")]:
         sensor = clocked[0].removesuffix(".clock")
         raise ValueError(f"{what} needs sensors without noise; {sensor} has some")
