@@ -32,7 +32,9 @@ from strainwave._core import (
 )
 
 if TYPE_CHECKING:
-    from strainwave.analysis.compare import Agreement, Difference, compare
+    from strainwave.analysis.agreement import Agreement
+    from strainwave.analysis.compare import compare
+    from strainwave.analysis.difference import Difference
     from strainwave.analysis.linear import Linearisation, linearise, modes
     from strainwave.analysis.orders import BearingOrders, Orders, bearing_orders, order_spectrum, orders
     from strainwave.analysis.response import FrequencyResponse, frequency_response
@@ -53,9 +55,9 @@ if TYPE_CHECKING:
 
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
-    "Agreement": "analysis.compare",
+    "Agreement": "analysis.agreement",
     "BearingOrders": "analysis.orders",
-    "Difference": "analysis.compare",
+    "Difference": "analysis.difference",
     "Derivatives": "analysis.sensitivity",
     "Ensemble": "simulation.ensemble",
     "Entry": "files.entries",

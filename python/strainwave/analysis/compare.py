@@ -3,100 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import zip_longest
-from math import isfinite
 from typing import Any, overload
 
-import numpy as np
-from numpy.typing import NDArray
-
-from strainwave import Drive, arguments
-from strainwave._core import Gear
-from strainwave.files.described import parameters, parts
-from strainwave.files.gear_file import at
-from strainwave.files.gear_set import GearSet
+from strainwave.analysis.agreement import Agreement, agreements
+from strainwave.analysis.difference import Difference, Model, differences
 from strainwave.files.recording import Recording
-from strainwave.messages import listed, quoted, shortened
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Agreement:
-    """How far a column of one recording follows that of another.
-
-    Attributes:
-        name, unit: of the column, as the first recording has it
-        rms: root mean square of the difference, each sample of the first counted once [unit]
-        largest: largest size of the difference [unit]
-        time: when it is that large [s]
-        correlation: Pearson's coefficient; None where one of them does not change
-        samples: how many were compared
-    """
-
-    name: str
-    unit: str
-    rms: float
-    largest: float
-    time: float
-    correlation: float | None
-    samples: int
-
-    def __str__(self) -> str:
-        """The agreement in one line."""
-        related = "one is constant" if self.correlation is None else f"correlation {self.correlation:.6g}"
-        sizes = f"rms {self.rms:.4g} {self.unit}, largest {self.largest:.4g} {self.unit} at t = {self.time:.4g} s"
-        return f"{self.name}: {sizes}, {related}"
-
-
-@dataclass(frozen=True)
-class Difference:
-    """A place where two models differ.
-
-    Attributes:
-        path: of a number, as "gear.stiffness.k1", of the model of a part, as "gear.stiffness", or of a rating
-        first, second: the numbers, or the models' names; None where one of them does not have it
-        unit: of the numbers, empty for names
-    """
-
-    path: str
-    first: float | str | None
-    second: float | str | None
-    unit: str = ""
-
-    @property
-    def change(self) -> float | None:
-        """The second less the first, relative to the first; None where that is no number."""
-        if isinstance(self.first, str | None) or isinstance(self.second, str | None) or self.first == 0:
-            return None
-        change = (self.second - self.first) / self.first
-        return change if isfinite(change) else None
-
-    def __str__(self) -> str:
-        """The difference in one line."""
-        unit = "" if self.unit in ("", "1") else f" {self.unit}"
-        first, second = (told if value is None else told + unit for told, value in zip(self.told, self._values, strict=True))
-        change = "" if self.change is None else f" ({100.0 * self.change:+.3g} %)"
-        return f"{self.path}: {first} against {second}{change}"
-
-    @property
-    def told(self) -> tuple[str, str]:
-        """Both numbers or names in words, without their unit; numbers with so many digits that they differ."""
-        digits = next(digits for digits in (6, 10, 17) if digits == 17 or len({_shown(v, digits) for v in self._values}) == 2)
-        first, second = (_shown(value, digits) for value in self._values)
-        return first, second
-
-    @property
-    def _values(self) -> tuple[float | str | None, float | str | None]:
-        return self.first, self.second
-
-
-def _shown(value: float | str | None, digits: int) -> str:
-    return "nothing" if value is None else value if isinstance(value, str) else f"{value:.{digits}g}"
-
-
-Model = Gear | Drive | GearSet
+from strainwave.messages import shortened
 
 
 @overload
@@ -135,131 +47,13 @@ def compare(first: Any, second: Any, names: Sequence[str] | None = None) -> Any:
     if kinds[0] != kinds[1]:
         raise TypeError(f"first is {kinds[0]}, second {kinds[1]}; give two recordings, or two of gear, drive and set")
     if isinstance(first, Recording):
-        return _of_recordings(first, second, names)
+        return agreements(first, second, names)
     if names is not None:
         raise TypeError(f"names = {shortened(names)}: of models all numbers are compared; leave it out")
-    return _of_models(first, second)
+    return differences(first, second)
 
 
 def _kind(name: str, each: object) -> str:
     if not isinstance(each, Recording | Model):
         raise TypeError(f"{name} = {shortened(each)} must be a recording, a gear, a drive or a set")
     return "a recording" if isinstance(each, Recording) else "a model"
-
-
-def _of_recordings(first: Recording, second: Recording, names: Sequence[str] | None) -> list[Agreement]:
-    time, other = first.time, second.time
-    wanted = _columns(first, second, names)
-    common = (time >= other[0]) & (time <= other[-1])
-    if not common.any():
-        raise ValueError(f"the recordings have no time in common: {_span(time)} and {_span(other)}; {_remedy(time, other)}")
-    return [_agreement(name, first, second, common) for name in wanted]
-
-
-def _columns(first: Recording, second: Recording, names: Sequence[str] | None) -> list[str]:
-    if names is not None:
-        if not (wanted := arguments.names("names", names)) or "time" in wanted:
-            raise ValueError(f"names = {shortened(wanted)} must name columns besides the time; there are {listed(first.names)}")
-        return wanted
-    shared = [name for name in first.names if name in second and name != "time"]
-    if not shared:
-        raise ValueError(f"the recordings have no column in common: {listed(first.names)}; and {listed(second.names)}")
-    return shared
-
-
-def _span(time: Array) -> str:
-    return f"{time[0]:g} s to {time[-1]:g} s"
-
-
-def _remedy(time: Array, other: Array) -> str:
-    """What to do where no sample of the first lies within the second."""
-    apart = time[-1] < other[0] or other[-1] < time[0]
-    return "shift the time of one" if apart else "no sample of the first lies within the second, so exchange them"
-
-
-def _agreement(name: str, first: Recording, second: Recording, common: NDArray[np.bool_]) -> Agreement:
-    """All sums are of numbers up to 2, as squares of the largest and of the smallest numbers are none."""
-    unit, at = first.unit(name), first.time[common]
-    try:
-        theirs = second.values(name, unit)
-    except ValueError as error:
-        others = "name the columns to compare"
-        raise ValueError(f"{error}; {others}" if name in second else str(error)) from None
-    ours = first[name][common]
-    scale = max(np.abs(ours).max(), np.abs(theirs).max()) or 1.0
-    ours, theirs = ours / scale, _read_off(second.time, theirs / scale, at)
-    difference = theirs - ours
-    worst = int(np.argmax(np.abs(difference)))
-    with np.errstate(over="ignore"):
-        rms, largest = (float(scale * part) for part in (np.sqrt(np.mean(difference**2)), abs(difference[worst])))
-    if not isfinite(largest):
-        raise ValueError(f"column {quoted(name)} differs by more than the largest number there is, at t = {at[worst]:g} s")
-    return Agreement(name, unit, rms, largest, float(at[worst]), _correlation(ours, theirs), len(at))
-
-
-def _read_off(time: Array, values: Array, at: Array) -> Array:
-    """Values between samples on a straight line, those at samples as they are."""
-    with np.errstate(over="ignore", invalid="ignore"):  # a jump within no time; what is not finite is refused by the caller
-        return values if np.array_equal(time, at) else np.interp(at, time, values)
-
-
-def _correlation(first: Array, second: Array) -> float | None:
-    """Pearson's coefficient; None where one of them does not change."""
-    deviations = [values - values.mean() for values in (first, second)]
-    sizes = [np.abs(each).max() for each in deviations]
-    if min(np.ptp(first), np.ptp(second)) == 0.0 or min(sizes) == 0.0:
-        return None
-    one, other = (each / size for each, size in zip(deviations, sizes, strict=True))
-    return float(np.clip((one @ other) / np.sqrt((one @ one) * (other @ other)), -1.0, 1.0))
-
-
-def _of_models(first: Model, second: Model) -> list[Difference]:
-    ours, theirs = _parts(first), _parts(second)
-    if isinstance(first, Gear) or isinstance(second, Gear):
-        return _between("gear", ours["gear"], theirs["gear"])
-    found = [each for name in ours for each in _between(name, ours[name], theirs[name])]
-    if isinstance(first, GearSet) and isinstance(second, GearSet):
-        found += _ratings(first, second)
-    return found
-
-
-def _parts(model: Model) -> dict[str, Any]:
-    """The parts of a drive by name; None where a set does not have one."""
-    return {"gear": model} if isinstance(model, Gear) else {each.name: getattr(model, each.name) for each in parts(Drive())}
-
-
-def _between(path: str, first: Any, second: Any) -> list[Difference]:
-    if type(first) is not type(second):
-        one, other = (None if each is None else str(each.name) for each in (first, second))
-        return [Difference(path, one, other)]
-    if first is None:
-        return []
-    found: list[Difference] = []
-    for each in parameters(first):
-        one, other = getattr(first, each.name), getattr(second, each.name)
-        for place, pair in _pairs(f"{path}.{each.name}", one, other):
-            if pair[0] != pair[1]:
-                found.append(Difference(place, *pair, each.unit or ""))
-    for part in parts(first):
-        found += _between(f"{path}.{part.name}", getattr(first, part.name), getattr(second, part.name))
-    return found
-
-
-def _pairs(path: str, first: Any, second: Any) -> list[tuple[str, tuple[Any, Any]]]:
-    """The two numbers at each place; None where one of two sequences has ended."""
-    if isinstance(first, float | int | str):
-        return [(path, (first, second))]
-    return [(f"{path}[{i}]", pair) for i, pair in enumerate(zip_longest(first, second))]
-
-
-def _ratings(first: GearSet, second: GearSet) -> list[Difference]:
-    """The ratings that differ, in the unit of the first set."""
-    found = []
-    for name in [*first.ratings, *(name for name in second.ratings if name not in first.ratings)]:
-        given = [each.ratings.get(name) for each in (first, second)]
-        unit = next(each.unit for each in given if each is not None)
-        with at(f"ratings.{name}:"):
-            one, other = (None if each is None else float(each.to(unit).value) for each in given)
-        if one != other:
-            found.append(Difference(f"ratings.{name}", one, other, unit))
-    return found

@@ -8,7 +8,8 @@ from math import tau
 import numpy as np
 
 from strainwave import Drive
-from strainwave.analysis.compare import Agreement, Difference
+from strainwave.analysis.agreement import Agreement
+from strainwave.analysis.difference import Difference
 from strainwave.analysis.linear import Linearisation, linearise, modes
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN

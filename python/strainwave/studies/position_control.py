@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, control
-from strainwave.analysis.compare import Agreement, compare
+from strainwave.analysis.agreement import Agreement
+from strainwave.analysis.compare import compare
 from strainwave.analysis.settling import settling_time
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
