@@ -26,7 +26,6 @@ drive = sw.Drive(
 )
 ratio = drive.gear.kinematics.ratio
 (mode,) = sw.modes(drive)["free"]
-np.set_printoptions(precision=2, suppress=True)
 found = {}
 figure = Figure(figsize=(9.0, 7.5), layout="constrained")
 for axes, speed in zip(figure.subplots(3, 1, sharex=True), (15.0, 60.0, 190.0), strict=True):
@@ -41,7 +40,7 @@ for axes, speed in zip(figure.subplots(3, 1, sharex=True), (15.0, 60.0, 190.0), 
     axes.axvline(mode / speed, color="black", linestyle="--", linewidth=1.0, label="eigenfrequency")
     axes.set(yscale="log", ylim=(1e-8, 1e-3), xlim=(0.0, 45.0), ylabel="amplitude [rad]", title=f"{speed:.0f} rad/s")
     axes.grid(alpha=0.3)
-    shown, rest = found[speed].amplitude * 1e6, found[speed].residual * 1e6
+    shown, rest = "  ".join(f"{each * 1e6:.2f}" for each in found[speed].amplitude), found[speed].residual * 1e6
     print(f"{speed:4.0f} rad/s: orders {shown} urad, the rest {rest:.2f} urad rms")
 figure.axes[0].legend(loc="upper center")
 figure.axes[-1].set_xlabel("order of the input [1]")

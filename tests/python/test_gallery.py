@@ -27,12 +27,13 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[st
     def of(number: str) -> dict[str, Any]:
         if number not in found:
             (script,) = ROOT.glob(f"{number}_*.py")
-            folder, before = tmp_path_factory.mktemp(script.stem), Path.cwd()
+            folder, before, printing = tmp_path_factory.mktemp(script.stem), Path.cwd(), np.get_printoptions()
             os.chdir(folder)
             try:
                 found[number] = runpy.run_path(str(script), run_name="__main__") | {"folder": folder}
             finally:
                 os.chdir(before)
+            assert np.get_printoptions() == printing  # else examples of pages that run later print other digits
         return found[number]
 
     return of
