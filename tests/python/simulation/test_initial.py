@@ -174,6 +174,14 @@ def test_where_nothing_balances_there_is_no_state() -> None:
         sw.simulate_many(soft, SHORT, {"load.inertia": [0.1, 0.2]}, dt=1e-5, initial={"input_angle": 3.0})
 
 
+def test_a_prescribed_motion_that_no_run_can_begin_with_is_told_as_such() -> None:
+    held = sw.Drive(load=sw.loads.Prescribed())
+    words = "^a run cannot begin with the motion that the load prescribes at t = 0: .*; let output_angle begin at a smaller"
+    for motion in (1e307, sw.scenario.ramp(1e307, SHORT.duration)):
+        with pytest.raises(ValueError, match=words):
+            sw.simulate(held, SHORT, inputs={"output_angle": motion})
+
+
 def test_a_fit_takes_a_log_that_begins_in_motion() -> None:
     """An arm let go at an angle, with a turning motor: the friction of the truth comes back."""
     truth = geared(friction_input=sw.friction.Viscous(viscous=2e-3), damping=20.0)
