@@ -287,7 +287,7 @@ class Stochastic:
     .. math:: n(\\theta) = a \\sqrt{\\frac{2}{N}} \\sum_{k=1}^{N} \\cos(B_k \\theta + \\varphi_k), \\qquad
               a = A \\, \\frac{1 + s_\\omega |\\omega|}{1 + s_T |T|} \\, e^{-s_d d}
 
-    with theta the input angle, omega the input speed, T the torque transmitted, A = amplitude, s_omega = speed_sensitivity,
+    with theta the input angle, omega the input speed, T the elastic torque at the reference temperature, A = amplitude, s_omega = speed_sensitivity,
     s_T = load_sensitivity, s_d = depth_sensitivity, d = insertion_depth of the wave generator in the flexspline. a is the
     root mean square over many turns. The band from lowest_order to highest_order has N = 32 equal cells; each holds one
     order B_k, its place in the cell and its phase phi_k drawn by ``seed``. A function of the angle and of nothing that

@@ -205,7 +205,9 @@ class PMSM:
     The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d comes first, and u_q has what is left; u_q
     is limited besides so that the length of the current does not exceed current_limit. What is left is handed back to the
     controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls. Where a load
-    turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit.
+    turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit. Where even
+    u_d alone exceeds U, nothing is left for u_q and the currents may oscillate without end: an inverter that keeps the
+    direction of its voltage would not do so. Such a run says that the motor is beyond its range, no more.
 
     The sensors of the phase currents may each show a constant too much. Seen from the rotor that constant turns: the
     controller then sees i_q + I_o sin(p theta), I_o = current_offset, and makes a ripple of the torque out of it. The same
@@ -232,7 +234,7 @@ class PMSM:
     direct_current: Current i_d0 along the magnets [A]; default 0.0
     cogging_torque: Amplitude tau_c of the cogging [N.m], in [0, inf); default 0.0
     cogging_order: Periods n of the cogging per input revolution, in [1, 10000]; default 24.0
-    current_offset: Amplitude I_o of what the current sensors show too much [A], in [0, inf); default 0.0
+    current_offset: Amplitude I_o that the current sensors add [A], in [0, inf); default 0.0
     resistance_rise: Relative rise of the resistance per kelvin [1/K], in [0, inf); default 0.0
 
     Raises
@@ -300,7 +302,7 @@ class PMSM:
 
     @property
     def current_offset(self) -> float:
-        """Amplitude I_o of what the current sensors show too much [A]"""
+        """Amplitude I_o that the current sensors add [A]"""
 
     @property
     def resistance_rise(self) -> float:

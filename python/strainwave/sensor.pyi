@@ -65,8 +65,8 @@ class Gain:
 
     Parameters
     ----------
-    gain: What it shows per what there is; default 1.0
-    offset: What it shows where there is nothing, in the unit of what it measures; default 0.0
+    gain: Reading per true value; default 1.0
+    offset: Reading where the true value is 0, in the unit of what it measures; default 0.0
 
     Raises
     ------
@@ -87,11 +87,11 @@ class Gain:
 
     @property
     def gain(self) -> float:
-        """What it shows per what there is"""
+        """Reading per true value"""
 
     @property
     def offset(self) -> float:
-        """What it shows where there is nothing, in the unit of what it measures"""
+        """Reading where the true value is 0, in the unit of what it measures"""
 
     def __repr__(self) -> str: ...
 
@@ -172,7 +172,7 @@ class SecondOrder:
 
     .. math:: \\ddot y = \\omega_0^2\\,(x - y) - 2 \\zeta \\omega_0 \\dot y
 
-    with omega_0 = natural_frequency, zeta = damping_ratio. Behind a steady motion it stays back by 2 zeta / omega_0 seconds.
+    with omega_0 = natural_frequency, zeta = damping_ratio. It lags a steady motion by 2 zeta / omega_0 seconds.
     At the start of a run it has settled. Steps of a fixed length must not be longer than 1 / omega_0.
 
     >>> from strainwave.sensor import SecondOrder
@@ -234,8 +234,8 @@ class Encoder:
     .. math:: y = q \\operatorname{round}\\left(\\frac{x + x_0 + a \\sin(x + \\varphi)}{q}\\right), \\qquad q = \\frac{2 \\pi}{N}
 
     with x the angle, N = counts per revolution, after interpolation, x_0 = offset, a = eccentricity, phi = eccentricity_phase.
-    Of a controller that is not sampled the actuation jumps with each count: steps of a fixed length do not see when, and
-    steps to a tolerance become as short as they may. Derivatives take what is counted for what there is.
+    A controller that is not sampled jumps with each count: steps of a fixed length do not see when; adaptive steps then become
+    very short. Noise around an encoder is added after counting. Derivatives ignore the rounding.
 
     >>> from strainwave.sensor import Encoder
     >>> Encoder(counts=2**17, eccentricity=1e-5).offset
@@ -244,7 +244,7 @@ class Encoder:
     Parameters
     ----------
     counts: Counts N per revolution, in [1, inf); required
-    offset: What it shows too much [rad]; default 0.0
+    offset: Added to the angle [rad]; default 0.0
     eccentricity: Amplitude a of the error once per revolution [rad]; default 0.0
     eccentricity_phase: Phase phi of that error [rad]; default 0.0
 
@@ -271,7 +271,7 @@ class Encoder:
 
     @property
     def offset(self) -> float:
-        """What it shows too much [rad]"""
+        """Added to the angle [rad]"""
 
     @property
     def eccentricity(self) -> float:
@@ -443,8 +443,8 @@ class Quantised:
     .. math:: y = q \\operatorname{round}\\left(\\frac{x}{q}\\right)
 
     with x what the law shows, its noise and delay included, q = resolution. A reading that changes much errs by q / sqrt(12)
-    in the root mean square. Of a controller that is not sampled the actuation jumps with each step of the reading, as with
-    the counts of an Encoder, whose steps are those of an angle. Derivatives take what is read for what there is.
+    in the root mean square. A controller that is not sampled jumps with each step of the reading, as with the counts of an
+    Encoder, whose steps are those of an angle. Derivatives ignore the rounding.
 
     >>> from strainwave.sensor import FirstOrder, Noisy, Quantised
     >>> speed = Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.05)

@@ -15,8 +15,8 @@ struct OpenLoop {
 
         .. math:: u = g r
 
-        with r the command, u the voltage [V] of a DC motor, the current [A] of a current source or the torque [N.m] of a
-        torque source, g = gain (an amplifier's). The command has the unit of u.
+        with r the command, u the voltage [V] of a DC, a BrushlessDC or a PMSM, the current [A] of a CurrentSource or the torque
+        [N.m] of a TorqueSource, g = gain (an amplifier's). The command has the unit of u.
 
         >>> from strainwave.control import OpenLoop
         >>> OpenLoop().gain

@@ -58,7 +58,7 @@ struct DC {
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, current, "A", "Armature current, where the inductance gives it a life of its own"));
+            visit(SW_FIELD(m, current, "A", "Armature current, a state of its own where there is an inductance"));
         }
     };
 

@@ -39,7 +39,9 @@ struct PMSM {
         The inverter reaches a voltage of the length U = supply_voltage / sqrt(3). u_d comes first, and u_q has what is left; u_q
         is limited besides so that the length of the current does not exceed current_limit. What is left is handed back to the
         controller. Field weakening that sets i_d0 by itself is left out: at the voltage limit the current falls. Where a load
-        turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit.
+        turns the motor so fast that the inverter does not reach the voltages for this, the current exceeds its limit. Where even
+        u_d alone exceeds U, nothing is left for u_q and the currents may oscillate without end: an inverter that keeps the
+        direction of its voltage would not do so. Such a run says that the motor is beyond its range, no more.
 
         The sensors of the phase currents may each show a constant too much. Seen from the rotor that constant turns: the
         controller then sees i_q + I_o sin(p theta), I_o = current_offset, and makes a ripple of the torque out of it. The same
@@ -66,7 +68,7 @@ struct PMSM {
         visit(SW_FIELD(m, direct_current, "A", "Current i_d0 along the magnets"));
         visit(SW_FIELD(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
         visit(SW_FIELD(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
-        visit(SW_FIELD(m, current_offset, "A", "Amplitude I_o of what the current sensors show too much", 0));
+        visit(SW_FIELD(m, current_offset, "A", "Amplitude I_o that the current sensors add", 0));
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
     }
 

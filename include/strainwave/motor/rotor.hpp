@@ -52,7 +52,7 @@ constexpr const char* taken_by(const Motor& motor) {
         return Motor::actuation;
 }
 
-/// Whether the current of a motor has a life of its own: it does not follow the actuation at once.
+/// Whether the current of a motor is a state: it does not follow the actuation at once.
 template <class S, class Motor>
 constexpr bool has_current(const Motor& motor) {
     const auto rates = flattened<S>(motor.relaxation_rate());

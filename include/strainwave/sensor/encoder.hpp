@@ -18,8 +18,8 @@ struct Encoder {
         .. math:: y = q \operatorname{round}\left(\frac{x + x_0 + a \sin(x + \varphi)}{q}\right), \qquad q = \frac{2 \pi}{N}
 
         with x the angle, N = counts per revolution, after interpolation, x_0 = offset, a = eccentricity, phi = eccentricity_phase.
-        Of a controller that is not sampled the actuation jumps with each count: steps of a fixed length do not see when, and
-        steps to a tolerance become as short as they may. Derivatives take what is counted for what there is.
+        A controller that is not sampled jumps with each count: steps of a fixed length do not see when; adaptive steps then become
+        very short. Noise around an encoder is added after counting. Derivatives ignore the rounding.
 
         >>> from strainwave.sensor import Encoder
         >>> Encoder(counts=2**17, eccentricity=1e-5).offset
@@ -28,7 +28,7 @@ struct Encoder {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, counts, "1", "Counts N per revolution", 1));
-        visit(SW_FIELD(m, offset, "rad", "What it shows too much"));
+        visit(SW_FIELD(m, offset, "rad", "Added to the angle"));
         visit(SW_FIELD(m, eccentricity, "rad", "Amplitude a of the error once per revolution"));
         visit(SW_FIELD(m, eccentricity_phase, "rad", "Phase phi of that error"));
     }

@@ -23,8 +23,8 @@ struct Gain {
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
-        visit(SW_FIELD(m, gain, "1", "What it shows per what there is"));
-        visit(SW_FIELD(m, offset, "1", "What it shows where there is nothing, in the unit of what it measures"));
+        visit(SW_FIELD(m, gain, "1", "Reading per true value"));
+        visit(SW_FIELD(m, offset, "1", "Reading where the true value is 0, in the unit of what it measures"));
     }
 
     using State = Stateless<S>;

@@ -21,8 +21,8 @@ struct Quantised {
         .. math:: y = q \operatorname{round}\left(\frac{x}{q}\right)
 
         with x what the law shows, its noise and delay included, q = resolution. A reading that changes much errs by q / sqrt(12)
-        in the root mean square. Of a controller that is not sampled the actuation jumps with each step of the reading, as with
-        the counts of an Encoder, whose steps are those of an angle. Derivatives take what is read for what there is.
+        in the root mean square. A controller that is not sampled jumps with each step of the reading, as with the counts of an
+        Encoder, whose steps are those of an angle. Derivatives ignore the rounding.
 
         >>> from strainwave.sensor import FirstOrder, Noisy, Quantised
         >>> speed = Noisy(law=FirstOrder(time_constant=1e-3), amplitude=0.05)

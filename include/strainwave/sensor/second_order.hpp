@@ -15,7 +15,7 @@ struct SecondOrder {
 
         .. math:: \ddot y = \omega_0^2\,(x - y) - 2 \zeta \omega_0 \dot y
 
-        with omega_0 = natural_frequency, zeta = damping_ratio. Behind a steady motion it stays back by 2 zeta / omega_0 seconds.
+        with omega_0 = natural_frequency, zeta = damping_ratio. It lags a steady motion by 2 zeta / omega_0 seconds.
         At the start of a run it has settled. Steps of a fixed length must not be longer than 1 / omega_0.
 
         >>> from strainwave.sensor import SecondOrder
