@@ -170,7 +170,7 @@ nb::object with_numbers(nb::handle model, const std::vector<double>& numbers) {
 Values trace_of(const AnyGear<double>& gear, const Call& call) {
     const auto path = steps_of(call["twist"], "twist", "rad");
     auto [out, torque] = like(path);
-    QuasiStatic<double, AnyGear<double>> moved(gear, friction::room_temperature);
+    QuasiStatic<double, AnyGear<double>> moved(gear, room_temperature);
     for (std::size_t i = 0; i < path.size(); ++i) {
         let_interrupt(i);
         check_domain("gear.stiffness", domain<double>(gear.stiffness, path.data()[i]));
@@ -183,7 +183,7 @@ Values trace_of(const AnyGear<double>& gear, const Call& call) {
 Values twist_of(const AnyGear<double>& gear, const Call& call) {
     const auto path = path_of(call["torque"], "torque");
     auto [out, twist] = like(path);
-    QuasiStatic<double, AnyGear<double>> moved(gear, friction::room_temperature);
+    QuasiStatic<double, AnyGear<double>> moved(gear, room_temperature);
     for (std::size_t i = 0; i < path.size(); ++i) {
         let_interrupt(i);
         twist[i] = moved.twist(path.data()[i]);
@@ -272,14 +272,23 @@ void bind_drives(nb::module_& core) {
         nb::sig("def schedule(drive: Drive, state: " SW_ARRAY ") -> tuple[float, float, float]"),
         "When a sampled controller acts: time to its next sample, period and delay [s]. A period of 0: it acts all the time.");
     core.def(
-        "natural_frequency", [](const Drive& drive, double twist) { return kernels().natural_frequency(drive, std::abs(twist)); },
-        nb::arg("drive"), nb::arg("twist"), nb::sig("def natural_frequency(drive: Drive, twist: float) -> float"),
-        "The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].");
+        "natural_frequency",
+        [](const Drive& drive, double twist, double temperature) {
+            return kernels().natural_frequency(drive, std::abs(twist), temperature);
+        },
+        nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
+        nb::sig("def natural_frequency(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
+        "The fastest angular frequency [rad/s] at which gear and load vibrate at twists up to `twist` [rad], where a run of this "
+        "`temperature` [K] begins.");
     core.def(
-        "max_rate", [](const Drive& drive, double twist) { return kernels().max_rate(drive, std::abs(twist)); }, nb::arg("drive"),
-        nb::arg("twist"), nb::sig("def max_rate(drive: Drive, twist: float) -> float"),
-        "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's "
-        "vibration, or the decay of speeds.");
+        "max_rate",
+        [](const Drive& drive, double twist, double temperature) {
+            return kernels().max_rate(drive, std::abs(twist), temperature);
+        },
+        nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
+        nb::sig("def max_rate(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
+        "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s], where a run of "
+        "this `temperature` [K] begins: the vibration of gear and load, the decay of speeds, sensors and controller.");
     core.def(
         "bristle_frequency", [](const Drive& drive) { return kernels().bristle_frequency(drive); }, nb::arg("drive"),
         nb::sig("def bristle_frequency(drive: Drive) -> float"),
@@ -298,8 +307,7 @@ void bind_drives(nb::module_& core) {
         nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def measured(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
         "What a controller sees through the sensors: input angle and speed, output angle and speed, current, torque; then the "
-        "least "
-        "and the largest actuation that the motor can follow.");
+        "least and the largest actuation that the motor can follow.");
     core.def(
         "differentiate_rates", &rate_derivatives, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def differentiate_rates(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> tuple[" SW_ARRAY ", " SW_ARRAY

@@ -132,7 +132,7 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
             if (i > 0 && shift < first + width) x.slope[shift - first] = 1.0;
             return x;
         };
-        QuasiStatic<Slope, AnyGear<Slope>> moved(dual, Slope(friction::room_temperature), point(0));
+        QuasiStatic<Slope, AnyGear<Slope>> moved(dual, Slope(room_temperature), point(0));
         for (std::size_t i = 0; i < n; ++i) {
             pauses(i, i);
             if (i > 0) moved.move(point(i));

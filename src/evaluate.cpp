@@ -63,9 +63,11 @@ Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval
     }
 }
 
-double natural_frequency(const Drive& drive, double twist) { return drive.compile().natural_frequency(twist); }
+double natural_frequency(const Drive& drive, double twist, double temperature) {
+    return drive.compile().natural_frequency(twist, temperature);
+}
 
-double max_rate(const Drive& drive, double twist) { return drive.compile().max_rate(twist); }
+double max_rate(const Drive& drive, double twist, double temperature) { return drive.compile().max_rate(twist, temperature); }
 
 double bristle_frequency(const Drive& drive) { return drive.compile().bristle_frequency(); }
 

@@ -262,7 +262,8 @@ template <class S, class Start, class Record>
 Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const InputSchedule& schedule, double max_rate, Record&& record,
                   const Pause& pause) {
     const CompiledDrive<S> drive = given.compile();
-    const S at_rest = drive.max_rate(S(0.0)), on_bristles = drive.bristle_frequency();
+    const Input<S> at_start = interval<S>(schedule.inputs).start;
+    const S at_rest = drive.max_rate(S(0.0), at_start.temperature), on_bristles = drive.bristle_frequency();
     const auto too_fast = at_rest > S(max_rate);
     if (all(too_fast)) return {S(0.0), at_rest, on_bristles, S(0.0)};
     S twist{0.0}, sound{1.0};
@@ -271,11 +272,11 @@ Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const InputSched
         sound = min(sound, soundness<S>(values));
         twist = max(twist, abs(values[twist_channel]));
     };
-    const Input<S> at_start = interval<S>(schedule.inputs).start;
     const auto from = start(drive, at_start);
     note(shown<S>(drive, begun(drive, from, at_start, S(missed(schedule.first_step()))), at_start));
     run<S>(drive, from, schedule, note, pause);
-    return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.max_rate(twist)), on_bristles, sound};
+    return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.max_rate(twist, at_start.temperature)), on_bristles,
+            sound};
 }
 
 }  // namespace strainwave::host

@@ -121,12 +121,13 @@ Drive::State break_away(const Drive& drive, const Drive::State& x, const Input<d
 /// After one step. Throws OutOfBounds.
 Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval<Input<double>>& u, double dt);
 
-// How fast a drive moves by itself, as angular frequencies [rad/s], at twists up to one [rad].
+// How fast a drive moves by itself, as angular frequencies [rad/s], at twists up to one [rad], where a run of a temperature [K]
+// begins.
 
-/// Of the gear on its spring.
-double natural_frequency(const Drive& drive, double twist);
+/// Of gear and load on their springs.
+double natural_frequency(const Drive& drive, double twist, double temperature);
 /// That, or the decay of speeds: what fixed steps must follow.
-double max_rate(const Drive& drive, double twist);
+double max_rate(const Drive& drive, double twist, double temperature);
 /// Of a shaft on its bristles.
 double bristle_frequency(const Drive& drive);
 

@@ -56,7 +56,9 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
         const Evaluation start = system::up_to_date(drive, drive.evaluate(x, u.at(0.0, dt)), u.at(0.0, dt), missed(dt));
         if (has_bounds) check_bounds<double>(drive, start, begin);
         const auto within = [&](double done, double to, const Evaluation& end, const auto& standing_at) {
-            if (taken == most) throw StepsSpent{begin + done * dt, drive.natural_frequency(0.0), drive.bristle_frequency()};
+            if (taken == most)
+                throw StepsSpent{begin + done * dt, drive.natural_frequency(0.0, u.at(done, dt).temperature),
+                                 drive.bristle_frequency()};
             pauses(taken++, i);
             if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : ends.at[i + 1];

@@ -49,7 +49,7 @@ struct ShortDriveOf<
         S, Control, Motor,
         Gear<S, Kinematics, Error, Noise, Stiffness, typename Short<16, Hysteresis>::type, typename Short<1, FrictionInput>::type,
              typename Short<1, FrictionMesh>::type, typename Short<1, FrictionOutput>::type, Softening>,
-        Load, Sensors<S, sensor::Ideal<S>>>;
+        Load, Sensors<S, sensor::Ideal<S>>, ThermalModel, Meter>;
 };
 
 /// One of a list of models: a choice only if there are several.

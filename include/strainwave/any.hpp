@@ -262,6 +262,9 @@ struct Choice {
     constexpr S load_torque(const S& angle, const S& speed, const S& input) const {
         return visit([&](const auto& law) { return strainwave::load_torque<S>(law, angle, speed, input); });
     }
+    constexpr S steepest() const {
+        return visit([](const auto& law) { return load_stiffness<S>(law); });
+    }
     constexpr Braking<S> braking(const S& input) const {
         return visit([&](const auto& law) { return strainwave::braking<S>(law, input); });
     }

@@ -31,7 +31,7 @@ struct Drive {
     static constexpr auto name = "drive";
     static constexpr auto source = "document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)";
     static constexpr auto doc = R"(
-        A motor, its controller, one strain wave gear, a load, and the sensors that the controller sees all this by.
+        A motor, its controller, one strain wave gear, a load, and the sensors through which the controller sees the drive.
 
         .. math:: J_{in} \ddot\theta_{in} = \tau - (T + F_{mesh})\,(1/i - e') - F_{in}, \qquad
                   J_{out} \ddot\theta_{out} = T - T_{load} - F_{out}
@@ -54,7 +54,7 @@ struct Drive {
         visit(SW_PART(m, motor, "The motor on the input shaft"));
         visit(SW_PART(m, control, "What turns the command into the motor's voltage, current or torque"));
         visit(SW_PART(m, load, "What the output shaft carries"));
-        visit(SW_PART(m, sensors, "What the controller sees the drive by"));
+        visit(SW_PART(m, sensors, "What the controller sees the drive through"));
         visit(SW_PART(m, thermal, "How warm gear and winding become"));
         visit(SW_PART(m, meter, "What is measured of powers and energies"));
     }
@@ -64,12 +64,10 @@ struct Drive {
             return "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
         const char* given = control::given_by(control);
         if (*given != 0 && !same(given, motor::taken_by(motor)))
-            return "control gives a voltage, and the motor takes none; a PositionSpeed suits a motor that takes a current or a "
-                   "torque";
+            return "control gives a voltage, and the motor takes none; a PositionSpeed suits one that takes a current or a torque";
         if (control::needs_current(control) && !motor::has_current<S>(motor))
-            return "control acts at once on the current, which follows the motor's voltage at once: give the motor an inductance, "
-                   "or "
-                   "let the control be Sampled";
+            return "control acts at once on the current, which follows the motor's voltage at once: give the motor an "
+                   "inductance, or let the control be Sampled";
         return nullptr;
     }
 
@@ -318,10 +316,15 @@ struct Drive {
         return x;
     }
 
-    /// The fastest angular frequency [rad/s] of the gear's own vibration at twists up to `twist` [rad].
-    constexpr S natural_frequency(const S& twist) const {
-        const S inverse = gear.kinematics.inverse_ratio();
-        return sqrt(gear.steepest(twist) * (S(1.0) / output_inertia() + inverse * inverse / input_inertia()));
+    /// The faster angular frequency [rad/s] of two masses, one spring between them and one behind the output: of gear and load,
+    /// each as stiff as it becomes, the gear at twists up to `twist` [rad] and as warm as it begins in a run of `temperature` [K].
+    constexpr S natural_frequency(const S& twist, const S& temperature) const {
+        const S inverse = gear.kinematics.inverse_ratio(), by_input = inverse * inverse / input_inertia();
+        const S stiffness = gear.steepest(twist, thermal.at(strainwave::initial_state(thermal), temperature).gear);
+        const S of_gear = stiffness * (S(1.0) / output_inertia() + by_input);
+        const S of_load = load_stiffness<S>(load) / output_inertia();
+        const S mean = S(0.5) * (of_gear + of_load), share = stiffness * by_input / max(mean, S(smallest));
+        return sqrt(mean * (S(1.0) + sqrt(max(S(1.0) - share * (of_load / max(mean, S(smallest))), S(0.0)))));
     }
 
     /// How fast speeds decay at most [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
@@ -358,12 +361,12 @@ struct Drive {
         return max(decay - flattened<S>(motor.relaxation_rate())[0], S(0.0));
     }
 
-    /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the gear's own vibration at twists up to `twist`
-    /// [rad], the decay of speeds and of a controlled current, sensors, and what the controller filters. Of a decay a Runge-Kutta
-    /// step of fourth order bears 2.78 times its length.
-    constexpr S max_rate(const S& twist) const {
-        const S inner = max(sensors.fastest(), strainwave::fastest<S>(control));
-        return max(max(natural_frequency(twist), max(damping(), current_damping()) / S(2.5)), inner);
+    /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the vibration of gear and load at twists up to
+    /// `twist` [rad] in a run that begins at `temperature` [K], the decay of speeds and of a controlled current, sensors, what
+    /// the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length.
+    constexpr S max_rate(const S& twist, const S& temperature) const {
+        const S inner = max(max(sensors.fastest(), strainwave::fastest<S>(control)), strainwave::fastest<S>(thermal));
+        return max(max(natural_frequency(twist, temperature), max(damping(), current_damping()) / S(2.5)), inner);
     }
 
     /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
@@ -504,9 +507,10 @@ private:
                 const S of_gear =
                     power.friction_input + power.friction_mesh + power.friction_output + power.damping + power.hysteresis;
                 now.rate.thermal = thermal.rate(y.thermal, thermal::Heat<S>{power.motor, of_gear}, u.temperature);
-                power = powers<S>(*this, x, y, u, now);  // how fast the gear warms up is known by now
             }
-            if (meter.active()) now.rate.meter = meter.rate(power);
+            if (!meter.active()) return;
+            if (thermal.active()) power = powers<S>(*this, x, y, u, now);  // how fast the gear warms up is known by now
+            now.rate.meter = meter.rate(power);
         }
     }
     constexpr typename Meter::Output measured(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {

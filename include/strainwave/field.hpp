@@ -191,6 +191,35 @@ struct Flat<S, X, false> {
 
 }  // namespace detail
 
+namespace detail {
+
+struct Names {
+    const char* name[64]{};
+    int count = 0;
+    template <class T>
+    constexpr void operator()(const T&, const Field& field) {
+        name[count++] = field.name;
+    }
+};
+
+template <class One, class Other>
+consteval bool alike() {
+    One one{};
+    Other other{};
+    Names names, others;
+    One::fields(one, names);
+    Other::fields(other, others);
+    for (int i = 0; i < names.count; ++i)
+        if (others.count != names.count || !same(names.name[i], others.name[i])) return false;
+    return true;
+}
+
+}  // namespace detail
+
+/// Whether two structs list members of the same names in the same order.
+template <Described One, Described Other>
+inline constexpr bool members_alike = detail::alike<One, Other>();
+
 /// How many scalars a described state holds, at most.
 template <class S, Described X>
 inline constexpr int size_of = detail::counter_of<S, X>.count;

@@ -138,13 +138,15 @@ struct Gear {
     }
 
     /// The largest stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign, and with it that of the
-    /// hysteresis where it is first loaded; on turning back some are up to twice as stiff.
-    constexpr S steepest(const S& twist) const {
+    /// hysteresis where it is first loaded, at a temperature [K]; on turning back some are up to twice as stiff.
+    constexpr S steepest(const S& twist, const S& temperature) const {
         constexpr int parts = 64;
         S largest = stiffness.tangent(S(0.0));
         for (int i = -parts; i <= parts; ++i) largest = max(largest, stiffness.tangent(twist * S(double(i) / parts)));
         const S little(1e-12);  // rad: within any loop's first slope, and more than rounding
-        return largest + hysteresis.torque(typename Hysteresis::State{}, little) / little;
+        const S remembered = hysteresis.torque(typename Hysteresis::State{}, little) / little;
+        if (!softening.active()) return largest + remembered;
+        return softening.of_stiffness(temperature) * largest + softening.of_hysteresis(temperature) * remembered;
     }
 
 private:

@@ -283,7 +283,7 @@ class Sensors:
 
 class Drive:
     """
-    A motor, its controller, one strain wave gear, a load, and the sensors that the controller sees all this by.
+    A motor, its controller, one strain wave gear, a load, and the sensors through which the controller sees the drive.
 
     .. math:: J_{in} \\ddot\\theta_{in} = \\tau - (T + F_{mesh})\\,(1/i - e') - F_{in}, \\qquad
               J_{out} \\ddot\\theta_{out} = T - T_{load} - F_{out}
@@ -306,7 +306,7 @@ class Drive:
     motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05, brush_drop=0.0, resistance_rise=0.0)
     control: What turns the command into the motor's voltage, current or torque; default OpenLoop(gain=1.0)
     load: What the output shaft carries; default Inertia(inertia=0.01)
-    sensors: What the controller sees the drive by; default Sensors(input_angle=Ideal(), input_speed=Ideal(), output_angle=Ideal(), output_speed=Ideal(), current=Ideal(), torque=Ideal())
+    sensors: What the controller sees the drive through; default Sensors(input_angle=Ideal(), input_speed=Ideal(), output_angle=Ideal(), output_speed=Ideal(), current=Ideal(), torque=Ideal())
     thermal: How warm gear and winding become; default Isothermal()
     meter: What is measured of powers and energies; default NoMeter()
 
@@ -345,7 +345,7 @@ class Drive:
 
     @property
     def sensors(self) -> Sensors:
-        """What the controller sees the drive by"""
+        """What the controller sees the drive through"""
 
     @property
     def thermal(self) -> strainwave.thermal.Isothermal | strainwave.thermal.Heating:
@@ -404,14 +404,14 @@ def schedule(drive: Drive, state: numpy.typing.NDArray[numpy.float64]) -> tuple[
     When a sampled controller acts: time to its next sample, period and delay [s]. A period of 0: it acts all the time.
     """
 
-def natural_frequency(drive: Drive, twist: float) -> float:
+def natural_frequency(drive: Drive, twist: float, temperature: float = 293.15) -> float:
     """
-    The fastest angular frequency [rad/s] of the gear's vibration at twists up to `twist` [rad].
+    The fastest angular frequency [rad/s] at which gear and load vibrate at twists up to `twist` [rad], where a run of this `temperature` [K] begins.
     """
 
-def max_rate(drive: Drive, twist: float) -> float:
+def max_rate(drive: Drive, twist: float, temperature: float = 293.15) -> float:
     """
-    The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s]: the gear's vibration, or the decay of speeds.
+    The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s], where a run of this `temperature` [K] begins: the vibration of gear and load, the decay of speeds, sensors and controller.
     """
 
 def bristle_frequency(drive: Drive) -> float:

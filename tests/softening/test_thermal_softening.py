@@ -7,9 +7,10 @@ import pytest
 import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
+from strainwave import _core
 
 from tests.flywheel import HEAVY
-from tests.geared import K, geared
+from tests.geared import RATIO, K, geared
 
 COLD = 293.15
 SOFT = sw.softening.ThermalSoftening(stiffness_fall=3e-3, hysteresis_fall=8e-3)
@@ -114,3 +115,25 @@ def test_the_gear_is_as_soft_as_its_own_losses_make_it() -> None:
     run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), 1e-4, start=start, inputs={"output_angle": follows})
     assert run["temperature"][-1] - COLD == pytest.approx(40.0, rel=1e-9)
     assert run["torque"] == pytest.approx(K * 1e-3 * np.exp(-3e-3 * 200.0 * run.time), rel=1e-8)
+
+
+def test_steps_must_follow_a_cold_gear_which_is_stiffer() -> None:
+    """w^2 = k (1 / J_out + 1 / (i^2 J_in)); 50 K below, k = e^0.15 K + e^0.4 2e4 N.m/rad. In a run or a body."""
+    drive = geared(load=sw.loads.Inertia(inertia=0.5), softening=SOFT, hysteresis=ELEMENT)
+    body = sw.thermal.Heating(winding_capacity=100.0, winding_resistance=1.0, gear_capacity=500.0, gear_resistance=1.0)
+    mobility = 1.0 / 0.5 + 1.0 / (RATIO**2 * 1e-4)
+    for colder in (0.0, 50.0, -50.0):
+        stiffness = np.exp(3e-3 * colder) * K + np.exp(8e-3 * colder) * 2e4
+        frequency = pytest.approx(np.sqrt(stiffness * mobility), rel=1e-6)
+        assert _core.natural_frequency(drive, 0.0, COLD - colder) == frequency
+        warmed = drive.replace(thermal=body.replace(initial_temperature=COLD - colder))
+        assert _core.natural_frequency(warmed, 0.0) == frequency
+
+
+def test_an_ensemble_in_the_cold_is_refused_steps_that_would_do_in_the_warmth() -> None:
+    drive = geared(load=sw.loads.Inertia(inertia=0.5), softening=SOFT.replace(stiffness_fall=0.02))
+    command = sw.scenario.constant(0.0, 0.01)
+    longest = 0.9 / _core.max_rate(drive, 0.0)
+    assert sw.simulate_many(drive, command, {"gear.damping": [0.0, 1.0]}, longest).failures == {}
+    with pytest.warns(sw.EnsembleWarning, match="2 of 2 members have no result"):
+        sw.simulate_many(drive, command, {"gear.damping": [0.0, 1.0]}, longest, temperature=233.15)

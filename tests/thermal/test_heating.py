@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import strainwave as sw
@@ -186,3 +188,23 @@ def test_a_run_begins_at_its_initial_temperature_whatever_the_ambient_one() -> N
 def test_its_numbers_must_be_given() -> None:
     with pytest.raises(TypeError, match="heating needs winding_capacity, winding_resistance, gear_capacity, gear_resistance"):
         sw.thermal.Heating()
+
+
+@pytest.mark.parametrize("coupling", [0.0, 30.0])
+def test_bodies_that_warm_up_faster_than_a_step_are_refused_with_the_step_that_does(coupling: float) -> None:
+    """Time constants of 2 us and less: longer steps would end in numbers out of all bounds."""
+    body = sw.thermal.Heating(
+        winding_capacity=1e-6, winding_resistance=2.0, gear_capacity=1e-6, gear_resistance=5.0, coupling=coupling
+    )
+    flows = np.array([[0.5 + coupling, -coupling], [-coupling, 0.2 + coupling]])
+    drive = flywheel(COIL, friction_input=sw.friction.Viscous(viscous=0.001)).replace(thermal=body)
+    acting = {"start": turning(drive, SPEED), "sample": 1e-3}
+    with pytest.raises(FloatingPointError, match=r"take dt = \S+ s or less") as refused:
+        sw.simulate(drive, sw.scenario.constant(2.0, 1e-3), 1e-4, **acting)
+    found = re.search(r"take dt = (\S+) s or less", str(refused.value))
+    assert found is not None
+    assert float(found[1]) * np.linalg.eigvalsh(flows).max() * 1e6 < 2.78
+    run = sw.simulate(drive, sw.scenario.constant(2.0, 1e-3), 0.9 * float(found[1]), **acting)
+    winding, gear = AMBIENT + np.linalg.solve(flows, [2.0 * 2.0**2, 0.001 * SPEED**2])
+    assert run["winding_temperature"][-1] == pytest.approx(winding, rel=1e-9)
+    assert run["temperature"][-1] == pytest.approx(gear, rel=1e-9)

@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/field.hpp>
-#include <strainwave/friction/contact.hpp>
 #include <strainwave/math.hpp>
+#include <strainwave/room_temperature.hpp>
 
 namespace strainwave {
 
@@ -12,7 +12,7 @@ struct Input {
     S command_rate{0.0};
     S load{0.0};
     S load_rate{0.0};
-    S temperature{friction::room_temperature};  ///< K
+    S temperature{room_temperature};  ///< K
     S temperature_rate{0.0};
 
     template <class Self, class Visit>

@@ -2,11 +2,10 @@
 #include <strainwave/angle.hpp>
 #include <strainwave/condition.hpp>
 #include <strainwave/math.hpp>
+#include <strainwave/room_temperature.hpp>
 
 /// Friction torque opposes the motion of the place it acts on: the input shaft, the mesh or the output shaft.
 namespace strainwave::friction {
-
-inline constexpr double room_temperature = 293.15;  // K
 
 /// What a modulation multiplies friction by.
 template <class S>

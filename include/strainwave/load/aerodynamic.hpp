@@ -57,6 +57,7 @@ struct Aerodynamic {
         const S drag = drag_coefficient * drag_radius * drag_radius * drag_radius * abs(speed) * speed;
         return pressure * (hinge + drag);
     }
+    constexpr S steepest() const { return S(0.5) * density * area * airspeed * airspeed * chord * abs(moment_slope); }
 };
 
 }  // namespace strainwave::load

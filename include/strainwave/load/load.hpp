@@ -11,6 +11,10 @@
 ///
 ///     slip(input)                   -> N.m, against slip of either sense
 ///     hold(input)                   -> N.m, the most that it balances at rest
+///
+/// and one whose torque follows the angle
+///
+///     steepest()                    -> N.m/rad, how fast the torque changes with the angle at most, without sign
 namespace strainwave::load {
 
 /// The input of a load that names no other.
@@ -65,6 +69,15 @@ constexpr S load_torque(const Load& load, const S& angle, const S& speed, const 
         return load.torque(angle, speed);
     else
         return load.torque(angle, speed) + input;
+}
+
+/// How fast the torque of a load changes with the output angle at most [N.m/rad].
+template <class S, class Load>
+constexpr S load_stiffness(const Load& load) {
+    if constexpr (requires { load.steepest(); })
+        return load.steepest();
+    else
+        return S(0.0);
 }
 
 /// The inertia of a part [kg.m2].

@@ -29,6 +29,7 @@ struct Pendulum {
     }
 
     constexpr S torque(const S& angle, const S&) const { return gravity_torque * sin(angle); }
+    constexpr S steepest() const { return gravity_torque; }
 };
 
 }  // namespace strainwave::load

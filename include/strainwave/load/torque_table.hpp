@@ -52,6 +52,12 @@ struct TorqueTable {
         }
         return sum;
     }
+    constexpr S steepest() const {
+        S largest{0.0};
+        for (int k = 0; k + 1 < angle.count; ++k)
+            largest = max(largest, abs((held_torque[k + 1] - held_torque[k]) / (angle[k + 1] - angle[k])));
+        return largest;
+    }
 };
 
 }  // namespace strainwave::load

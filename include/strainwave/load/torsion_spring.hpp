@@ -33,6 +33,7 @@ struct TorsionSpring {
     }
 
     constexpr S torque(const S& angle, const S& speed) const { return stiffness * (angle - rest_angle) + damping * speed; }
+    constexpr S steepest() const { return stiffness; }
 };
 
 }  // namespace strainwave::load

@@ -1,13 +1,12 @@
 #pragma once
 #include <strainwave/field.hpp>
+#include <strainwave/room_temperature.hpp>
 
 namespace strainwave::motor {
 
 /// The resistance of a winding, which rises with its temperature.
 template <class S>
 struct Winding {
-    static constexpr double reference_temperature = 293.15;  // K
-
     S resistance{1.0}, conductance{1.0};  ///< Ohm, 1/Ohm, at the reference temperature
     S rise{0.0};                          ///< 1/K
     bool rises = false;
@@ -20,9 +19,7 @@ struct Winding {
 
 private:
     /// Far below any cold at which a motor works, where the line would cross zero, it levels off.
-    constexpr S factor(const S& temperature) const {
-        return max(S(1.0) + rise * (temperature - S(reference_temperature)), S(0.01));
-    }
+    constexpr S factor(const S& temperature) const { return max(S(1.0) + rise * (temperature - S(room_temperature)), S(0.01)); }
 };
 
 }  // namespace strainwave::motor

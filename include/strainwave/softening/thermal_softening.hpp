@@ -1,6 +1,7 @@
 #pragma once
 #include <strainwave/field.hpp>
 #include <strainwave/math.hpp>
+#include <strainwave/room_temperature.hpp>
 
 namespace strainwave::softening {
 
@@ -8,7 +9,7 @@ template <class S>
 struct ThermalSoftening {
     S stiffness_fall{0.0};
     S hysteresis_fall{0.0};
-    S reference_temperature{293.15};
+    S reference_temperature{room_temperature};
 
     static constexpr auto name = "thermal_softening";
     static constexpr auto source =

@@ -14,7 +14,7 @@ from strainwave import Drive, _core, arguments
 from strainwave.analysis.steady import averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.messages import listed, quoted
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
 from strainwave.simulation.run import beginning, recording
@@ -187,7 +187,7 @@ class _Sines:
         """The outputs over each period, both ends included."""
         period = excitation.command.duration
         step = _step(period, self.dt)
-        check_resolution(self.drive, step, 0.0)
+        check_resolution(self.drive, step, 0.0, excitation.first()[TEMPERATURE])
         time_grid = excitation.time_grid(step, None)
         recorded = outputs_of(self.drive)
         channels = [each.channel for each in recorded.values()]

@@ -13,7 +13,7 @@ from strainwave import Drive, _core, arguments, control
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import remedy, warn_of_bristles
@@ -122,13 +122,13 @@ def simulate_controlled(
     actions = _actions(command.duration, period, delay)
     course = Course.of(drive, excitation, recorded, dt, interval, actions)
     longest = course.time_grid.longest
-    course.check_steps(twist=0.0)
+    course.check_steps(0.0, excitation.first()[TEMPERATURE])
     given = excitation.over(course.time_grid)
     with progressing(progress, len(given)) as shown:
         outputs, state = _run(course, state, given, actions, controller, shown)
     outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = _commanded(course, given)
     check_meaning(course.time, recorded, outputs, remedy(longest))
-    course.check_steps(course.largest_twist(outputs))
+    course.check_steps(course.largest_twist(outputs), excitation.first()[TEMPERATURE])
     warn_of_bristles(drive, longest)
     how = f"exponential Runge-Kutta, steps of {longest:g} s, a controller called every {period:g} s"
     run = course.run(outputs, state, how, unit)

@@ -19,6 +19,7 @@ from strainwave.simulation.time_grid import INPUTS, LONG_RUN, NEVER, STEP, TimeG
 
 Array = NDArray[np.float64]
 ROOM_TEMPERATURE = 293.15  # K
+TEMPERATURE = 4  # place among the inputs
 STRETCH = 5e-3  # s, after which an adaptive step ends at the latest
 PER_PERIOD = 5.0  # such steps in a period of an input, at the least
 
@@ -104,7 +105,7 @@ class Excitation:
         with room_for("steps", len(time_grid.instants), STEP + INPUTS, LONG_RUN):
             inputs = _core.inputs(*self.signals, time_grid.instants)
         if isinstance(self.temperature, Scenario):
-            check_temperature(float(inputs[:, :, 4].min()))
+            check_temperature(float(inputs[:, :, TEMPERATURE].min()))
         return inputs
 
 

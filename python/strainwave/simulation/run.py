@@ -15,7 +15,7 @@ from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
 from strainwave.simulation import signals
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers, known
 from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
@@ -175,7 +175,7 @@ def simulate(
         warn_of_ratings(model, run)
         return run
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
-        course.check_steps(twist=0.0)
+        course.check_steps(0.0, excitation.first()[TEMPERATURE])
     taken = method or "exponential"
     outputs, first = course.beginning(state, excitation.first()), 1
     with progressing(progress, len(time_grid.instants) - 1) as shown:
@@ -188,7 +188,7 @@ def simulate(
             first += int(np.count_nonzero(keep))
     check_meaning(course.time, recorded, outputs, remedy(time_grid.longest))
     if method != "rosenbrock":
-        course.check_steps(course.largest_twist(outputs))
+        course.check_steps(course.largest_twist(outputs), excitation.first()[TEMPERATURE])
     warn_of_bristles(drive, time_grid.longest)
     run = course.run(outputs, state, f"{_named(taken, drive)}, steps of {time_grid.longest:g} s")
     warn_of_ratings(model, run)
@@ -233,9 +233,9 @@ class Course(NamedTuple):
         """Room for the outputs, that of the start filled in, under the inputs `first`."""
         return beginning(self.drive, state, first, self.channels, len(self.time))
 
-    def check_steps(self, twist: float) -> None:
-        """Refuses steps that cannot follow the drive at a twist [rad]."""
-        check_resolution(self.drive, self.time_grid.longest, twist)
+    def check_steps(self, twist: float, temperature: float) -> None:
+        """Refuses steps that cannot follow the drive at a twist [rad], as warm as it begins at a temperature [K]."""
+        check_resolution(self.drive, self.time_grid.longest, twist, temperature)
 
     def largest_twist(self, outputs: Array) -> float:
         return _largest_twist(outputs[self.channels.index(TWIST)])
@@ -385,7 +385,7 @@ def differentiate(
     beginning_numbers(drive, None, initial, excitation.first())  # refuses what is no beginning
     instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
     time_grid = excitation.time_grid(dt, samples, instants)
-    check_resolution(drive, time_grid.longest, 0.0)
+    check_resolution(drive, time_grid.longest, 0.0, excitation.first()[TEMPERATURE])
     inputs = excitation.over(time_grid)
     recorded = signals.outputs(drive)
     with room_for("samples", len(time_grid.times), 8.0 * len(recorded) * (1 + len(numbers)), "sample less often"):
