@@ -42,6 +42,10 @@ class Search {
     typename Drive::State x;
     const QuasiStatic<S, decltype(Drive{}.gear)> spring;
 
+    using MotorState = decltype(Drive{}.motor.relaxation_rate());
+    using MotorNumbers = Flat<S, MotorState>;
+    static constexpr int count = size_of<S, MotorState>;
+
 public:
     constexpr Search(const Drive& drive_, const Known<S>& known_, const Input<S>& u_)
         : drive(drive_),
@@ -131,18 +135,71 @@ private:
         auto at = drive.evaluate(x, u);
         at = system::up_to_date(drive, at, u, S(0.0));  // before the first sample none is due but that
         x = at.state;
-        settle_motor(at.derivatives);
+        settle_motor(at.derivatives.mesh.torque);
         x.continuous.sensors = drive.sensors.settled(drive.measurable(x, x.continuous, u, at.derivatives.mesh.torque));
     }
-    constexpr void settle_motor(const typename Drive::Derivatives& now) {
-        auto numbers = flattened<S>(x.continuous.motor);
-        const auto rate = flattened<S>(now.rate.motor), relaxation = flattened<S>(drive.motor.relaxation_rate());
-        for (int i = 0; i < numbers.size(); ++i) {
-            const auto relaxes = relaxation[i] > S(0.0);
-            numbers[i] = select(relaxes, numbers[i] + rate[i] / max(relaxation[i], S(smallest)), numbers[i]);
-            if (i == 0 && known.knows(current)) numbers[i] = known[current];
+    /// The currents at which none changes, with controller and sensors as they are then, under a torque [N.m] of the gear: by
+    /// Newton's iteration, which for a linear winding ends at once. Where it finds none the motor stays as it was.
+    constexpr void settle_motor(const S& gear_torque) {
+        if constexpr (count > 0) {
+            constexpr int most = 30;
+            constexpr double rounding = sizeof(Real<S>) == sizeof(float) ? 1e-5 : 1e-13, least = 1e-3;  // least: A
+            MotorNumbers start = flattened<S>(x.continuous.motor), relaxation = flattened<S>(drive.motor.relaxation_rate());
+            if (known.knows(current)) {
+                start[0] = known[current];
+                relaxation[0] = S(0.0);
+            }
+            MotorNumbers at = start;
+            auto goes_on = S(0.0) == S(0.0), settled = !goes_on;
+            for (int i = 0; i < most && any(goes_on); ++i) {
+                const MotorNumbers step = newton_step(at, relaxation, gear_torque);
+                auto close = goes_on;
+                for (int k = 0; k < at.size(); ++k) {
+                    at[k] = select(goes_on, at[k] + step[k], at[k]);
+                    close = close & (abs(step[k]) < S(rounding) * max(abs(at[k]), S(least)));
+                }
+                const auto left = !close;
+                settled = !(left & !settled);
+                goes_on = goes_on & left;
+            }
+            for (int k = 0; k < at.size(); ++k) at[k] = select(settled, at[k], start[k]);
+            refill(x.continuous.motor, at);
         }
-        refill(x.continuous.motor, numbers);
+    }
+    /// By how much each number of the motor changes so that, by the slopes there, no rate is left of those that relax. Gauss's
+    /// elimination without exchange of rows, for the resistance stands on the diagonal.
+    constexpr MotorNumbers newton_step(const MotorNumbers& at, const MotorNumbers& relaxation, const S& gear_torque) const {
+        const S beside(1e-3);  // A, so that no limit hides it
+        const int n = at.size();
+        MotorNumbers right = motor_rate(at, relaxation, gear_torque);
+        Array<MotorNumbers, count> slope{};  // slope[j][i]: of rate i by number j
+        for (int j = 0; j < n; ++j) {
+            MotorNumbers moved = at;
+            moved[j] = moved[j] + beside;
+            const MotorNumbers then = motor_rate(moved, relaxation, gear_torque);
+            slope[j] = then;
+            for (int i = 0; i < n; ++i) slope[j][i] = (then[i] - right[i]) / (moved[j] - at[j]);
+            slope[j][j] = select(relaxation[j] > S(0.0), slope[j][j], S(-1.0));
+        }
+        for (int k = 0; k < n; ++k)
+            for (int i = k + 1; i < n; ++i) {
+                const S share = slope[k][i] / slope[k][k];
+                for (int j = k + 1; j < n; ++j) slope[j][i] = slope[j][i] - share * slope[j][k];
+                right[i] = right[i] - share * right[k];
+            }
+        for (int i = n - 1; i >= 0; --i) {
+            for (int j = i + 1; j < n; ++j) right[i] = right[i] + slope[j][i] * right[j];
+            right[i] = -right[i] / slope[i][i];
+        }
+        return right;
+    }
+    constexpr MotorNumbers motor_rate(const MotorNumbers& numbers, const MotorNumbers& relaxation, const S& gear_torque) const {
+        auto y = x.continuous;
+        refill(y.motor, numbers);
+        y.sensors = drive.sensors.settled(drive.measurable(x, y, u, gear_torque));
+        MotorNumbers rate = flattened<S>(drive.derivatives(x, y, u).rate.motor);
+        for (int i = 0; i < rate.size(); ++i) rate[i] = select(relaxation[i] > S(0.0), rate[i], S(0.0));
+        return rate;
     }
 };
 
@@ -150,7 +207,8 @@ private:
 
 /// The state of a drive of which some quantities are known. The rest follows: the input angle is 0 if no angle is known, speeds
 /// are 0 if none is; the twist is the one at which the output does not accelerate, reached from no history; friction, motor and
-/// sensors have settled. Its transmission error is not finite where there is no such state.
+/// sensors have settled; a motor for which no currents at rest are found has none. Its transmission error
+/// is not finite where there is no such state.
 template <class S, class Drive>
 constexpr typename Drive::State state(const Drive& drive, Known<S> known, const Input<S>& u) {
     if (prescribes(drive.load)) {

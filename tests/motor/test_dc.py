@@ -156,3 +156,23 @@ def test_far_below_any_cold_the_resistance_stays_positive() -> None:
 
 def test_a_settled_motor_without_limits_takes_any_voltage() -> None:
     assert settled(SLOW, 1e4, 0.0)["current"] == pytest.approx(5e3, rel=1e-9)
+
+
+@pytest.mark.parametrize(("temperature", "current"), [(343.15, 2.5073), (393.15, 2.1536), (493.15, 1.6797), (293.15, 3.0)])
+def test_a_run_that_begins_at_a_speed_begins_with_the_current_of_the_warm_winding(temperature: float, current: float) -> None:
+    """6 V over 2 Ohm (1 + 0.00393 (T - 293.15 K)), by hand; settled, it does not change."""
+    motor = PLAIN.replace(inductance=1e-3, resistance_rise=0.00393)
+    run = sw.simulate(
+        flywheel(motor), sw.scenario.constant(6.0, 1e-3), 1e-4, temperature=temperature, initial={"input_speed": 0.0}
+    )
+    assert run["current"][0] == pytest.approx(current, abs=5e-5)
+    assert run["current"] == pytest.approx(6.0 / (2.0 * (1.0 + 0.00393 * (temperature - 293.15))), rel=1e-12)
+
+
+def test_a_run_begins_with_the_current_at_which_a_current_loop_rests() -> None:
+    """u = k (i_r - i) and u = R i: i = k i_r / (k + R) = 2 x 3 / (2 + 2) A, with i_r the 3 A that it is limited to."""
+    law = sw.control.Cascade(position_gain=20.0, speed_proportional=1.0, current_proportional=2.0, current_limit=3.0)
+    for sensor in (sw.sensor.Ideal(), sw.sensor.FirstOrder(time_constant=1e-3)):
+        drive = flywheel(SLOW, control=law).replace(sensors=sw.Sensors(current=sensor))
+        run = sw.simulate(drive, sw.scenario.constant(1.0, 1e-3), 1e-4, initial={"input_speed": 0.0})
+        assert run["current"] == pytest.approx(1.5, rel=1e-9)

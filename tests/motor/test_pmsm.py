@@ -406,3 +406,27 @@ def test_integrals_that_rest_at_the_limit_of_the_inverter_overshoot_little() -> 
     assert run["input_angle"].max() < 1.35 * RATIO
     assert run["input_angle"][-1] == pytest.approx(RATIO, rel=1e-3)
     assert run["current"].max() <= 10.0 * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("inductance", [1e-4, 1e-3, 1e-2])
+def test_a_run_begins_with_the_currents_at_which_a_saturated_voltage_holds_them(inductance: float) -> None:
+    """At 2000 rad/s u_d takes all of U = 48 V / sqrt(3): R i_d = U + p w L i_q and R i_q = -p w (L i_d + psi)."""
+    both = {"direct_inductance": inductance, "quadrature_inductance": inductance}
+    motor = PMSM(resistance=1.0, flux_linkage=0.02, pole_pairs=4, **both)
+    run = sw.simulate(flywheel(motor), sw.scenario.constant(0.0, 1e-3), 1e-5, initial={"input_speed": 2000.0})
+    turning_fast, reach = 4 * 2000.0, 48.0 / np.sqrt(3.0)
+    equations = np.array([[1.0, turning_fast * inductance], [-turning_fast * inductance, 1.0]])
+    across, along = np.linalg.solve(equations, [-turning_fast * 0.02, reach])
+    assert run["current"][0] == pytest.approx(across, rel=1e-9)
+    assert run["direct_current"][0] == pytest.approx(along, rel=1e-9)
+    assert run["direct_voltage"][0] == pytest.approx(reach, rel=1e-12)
+
+
+def test_a_run_begins_with_the_currents_of_the_warm_winding() -> None:
+    """At 393.15 K: R = 0.4 Ohm x 1.393; i_q = (9 V - p w (L_d i_d0 + psi)) / R, i_d = i_d0."""
+    motor = SALIENT.replace(resistance_rise=0.00393)
+    run = sw.simulate(
+        flywheel(motor), sw.scenario.constant(9.0, 1e-3), 1e-5, temperature=393.15, initial={"input_speed": 120.0}
+    )
+    assert run["current"] == pytest.approx((9.0 - 5 * 120.0 * (6e-4 * -4.0 + 0.012)) / (0.4 * 1.393), rel=1e-9)
+    assert run["direct_current"] == pytest.approx(-4.0, rel=1e-9)
