@@ -9,8 +9,8 @@ class OpenLoop:
 
     .. math:: u = g r
 
-    with r the command, u the voltage [V] of a DC motor, the current [A] of a current source or the torque [N.m] of a
-    torque source, g = gain (an amplifier's). The command has the unit of u.
+    with r the command, u the voltage [V] of a DC, a BrushlessDC or a PMSM, the current [A] of a CurrentSource or the torque
+    [N.m] of a TorqueSource, g = gain (an amplifier's). The command has the unit of u.
 
     >>> from strainwave.control import OpenLoop
     >>> OpenLoop().gain
@@ -69,8 +69,8 @@ class PID:
     with r the commanded output angle [rad], i the signed ratio, k_p = proportional, k_i = integral, k_d = derivative,
     u_max = limit. The error is that of the encoder which feedback names. Where it is the motor's, on the input shaft,
     kinematic error and wind-up of the gear stay outside the loop. Where it is on the output shaft the loop sees them; the
-    error is referred to the input, so that the gains mean the same. The integral rests where it would lead further beyond
-    what limit or motor allow.
+    error is referred to the input, so that the gains mean the same. What leads the integral further beyond what limit or
+    motor allow fades, and is nothing a twentieth of that range beyond.
 
     u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
     read A or N.m in place of V.
@@ -150,8 +150,8 @@ class PI:
               \\epsilon = i r - \\omega_{in} \\text{ or } \\epsilon = i\\,(r - \\omega_{out})
 
     with r the commanded output speed [rad/s], i the signed ratio, k_p = proportional, k_i = integral, u_max = limit. The error
-    is that of the shaft which feedback names, referred to the input. The integral rests where it would lead further beyond
-    what limit or motor allow.
+    is that of the shaft which feedback names, referred to the input. What leads the integral further beyond what limit or
+    motor allow fades, and is nothing a twentieth of that range beyond.
 
     u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
     read A or N.m in place of V.
@@ -229,7 +229,8 @@ class PositionSpeed:
     with r the commanded output angle, i the signed ratio, omega the input speed, epsilon the error of the angle, referred to the
     input: that of the input shaft, i r - theta_in, or of the output shaft, i (r - theta_out), as feedback names it.
     k_p = position_gain, k_s = speed_proportional, k_i = speed_integral, f, b, c = speed_, viscous_ and coulomb_feedforward,
-    omega_max = speed_limit, u_max = limit. The integral rests where it would lead further beyond what limit or motor allow.
+    omega_max = speed_limit, u_max = limit. What leads the integral further beyond what limit or motor allow fades, and is
+    nothing a twentieth of that range beyond.
 
     u is a current, and the units below are those, of a motor that takes one. For a motor that takes a torque or a voltage
     read N.m or V in place of A.
@@ -329,8 +330,8 @@ class Cascade:
 
     with i_r what the loops of PositionSpeed ask for, limited to current_limit, i_m the measured current, omega the measured input
     speed, k_c = current_proportional, k_ci = current_integral, K = back_emf_feedforward, u_max = voltage_limit. The motor
-    hands back what it can follow: where u_max or the motor limits the voltage, neither integral leads further beyond; where
-    the current is limited the integral of the speed does not.
+    hands back what it can follow. Where u_max or the motor limits the voltage, neither integral leads further beyond; where
+    the current is limited the integral of the speed does not. It fades there as that of PI.
 
     A current loop of the bandwidth w [rad/s] around resistance R and inductance L has k_c = L w and k_ci = R w. The motor must
     have an inductance, or the controller must be sampled: else voltage and current would determine each other at once.
@@ -454,7 +455,8 @@ class LeadLag:
     i (r - theta_out); k = gain, a_1, b_1 = lead_numerator, lead_denominator, a_2, b_2 = lag_numerator, lag_denominator,
     u_max = limit. The first leads where a_1 > b_1, the second lags where a_2 < b_2; either may do either. Both sections
     begin at rest. Steps of a fixed length must not be longer than 2.5 times the shorter of b_1 and b_2, unless the controller
-    is sampled: then both sections are exact for what is held over a period.
+    is sampled: then the first section is exact for an error that is held over a period. The second takes what the first gives at
+    the begin of each period as constant over it, of first order in the period.
 
     u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
     read A or N.m in place of V.
@@ -636,7 +638,8 @@ class Sampled:
 
     with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
     t_k, x_k the numbers of the law. An integral has lambda = 0, thus x_{k+1} = x_k + T dx_k/dt. A section of a LeadLag has
-    lambda = 1 / b: over a period it moves as it does under a constant input. Before the first output the actuation is 0.
+    lambda = 1 / b: over a period it moves as it does under a constant input, which its second section does not have: that one is
+    of first order in T, as an integral is. Before the first output the actuation is 0.
     Steps end at each t_k and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not
     sampled itself.
 
@@ -660,7 +663,7 @@ class Sampled:
 
     Source
     ------
-    AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly
+    AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly for a constant input
     """
 
     def __init__(self, *, law: OpenLoop | PID | PI | PositionSpeed | Cascade | LeadLag | StateFeedback = ..., period: float = ..., delay: float = ...) -> None: ...

@@ -54,6 +54,19 @@ struct Measurement {
 enum class Feedback { input, output };
 constexpr Array<const char*, 2> choices(Feedback) { return {{"input", "output"}}; }
 
+/// Commanded minus measured, of the shaft whose encoder the loop closes on, at the input: of angles [rad] and of speeds [rad/s].
+template <class S>
+constexpr S angle_error(Feedback feedback, const Command<S>& command, const Measurement<S>& measured) {
+    const S angle = feedback == Feedback::output ? command.ratio * measured.output_angle : measured.input_angle;
+    return command.ratio * command.value - angle;
+}
+/// `commanded`: the output speed.
+template <class S>
+constexpr S speed_error(Feedback feedback, const S& commanded, const Command<S>& command, const Measurement<S>& measured) {
+    const S speed = feedback == Feedback::output ? command.ratio * measured.output_speed : measured.input_speed;
+    return command.ratio * commanded - speed;
+}
+
 /// When a sampled law acts next [s from now]: at the first instant, and on in periods. A period of 0: it acts all the time.
 template <class S>
 struct Schedule {

@@ -26,7 +26,8 @@ struct LeadLag {
         i (r - theta_out); k = gain, a_1, b_1 = lead_numerator, lead_denominator, a_2, b_2 = lag_numerator, lag_denominator,
         u_max = limit. The first leads where a_1 > b_1, the second lags where a_2 < b_2; either may do either. Both sections
         begin at rest. Steps of a fixed length must not be longer than 2.5 times the shorter of b_1 and b_2, unless the controller
-        is sampled: then both sections are exact for what is held over a period.
+        is sampled: then the first section is exact for an error that is held over a period. The second takes what the first gives at
+        the begin of each period as constant over it, of first order in the period.
 
         u is a voltage, and the units below are those, of a motor that takes one. For a motor that takes a current or a torque
         read A or N.m in place of V.
@@ -73,8 +74,7 @@ private:
         return section(error(command, measured), x.lead, lead_numerator / lead_denominator);
     }
     constexpr S error(const Command<S>& command, const Measurement<S>& measured) const {
-        const S angle = feedback == Feedback::output ? command.ratio * measured.output_angle : measured.input_angle;
-        return command.ratio * command.value - angle;
+        return angle_error(feedback, command, measured);
     }
 };
 

@@ -58,8 +58,7 @@ struct PI {
 
 private:
     constexpr S error(const Command<S>& command, const Measurement<S>& measured) const {
-        const S speed = feedback == Feedback::output ? command.ratio * measured.output_speed : measured.input_speed;
-        return command.ratio * command.value - speed;
+        return speed_error(feedback, command.value, command, measured);
     }
     constexpr S asked(const State& x, const S& error) const { return proportional * error + integral * x.error_integral; }
 };

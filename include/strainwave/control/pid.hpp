@@ -68,10 +68,7 @@ private:
         S angle, speed;
     };
     constexpr Error error(const Command<S>& command, const Measurement<S>& measured) const {
-        const bool on_output = feedback == Feedback::output;
-        const S angle = on_output ? command.ratio * measured.output_angle : measured.input_angle;
-        const S speed = on_output ? command.ratio * measured.output_speed : measured.input_speed;
-        return {command.ratio * command.value - angle, command.ratio * command.rate - speed};
+        return {angle_error(feedback, command, measured), speed_error(feedback, command.rate, command, measured)};
     }
     constexpr S unlimited(const State& x, const Error& now) const {
         return proportional * now.angle + integral * x.error_integral + derivative * now.speed;

@@ -77,8 +77,8 @@ struct PositionSpeed {
                viscous_feedforward * commanded + coulomb_feedforward * sign(commanded);
     }
     constexpr S speed_error(const Command<S>& command, const Measurement<S>& measured) const {
-        const S angle = feedback == Feedback::output ? command.ratio * measured.output_angle : measured.input_angle;
-        const S wanted = position_gain * (command.ratio * command.value - angle) + speed_feedforward * command.ratio * command.rate;
+        const S wanted =
+            position_gain * angle_error(feedback, command, measured) + speed_feedforward * command.ratio * command.rate;
         return clip(wanted, -speed_limit, speed_limit) - measured.input_speed;
     }
 };

@@ -13,7 +13,8 @@ struct Sampled {
 
     static constexpr auto name = "sampled";
     static constexpr auto source =
-        "AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly";
+        "AstromWittenmark1997, chapters 2 and 8: zero-order hold, integrals by forward differences, lags exactly for a constant "
+        "input";
     static constexpr auto doc = R"(
         A controller that runs in a computer: it acts at instants and holds its output between them.
 
@@ -22,7 +23,8 @@ struct Sampled {
 
         with t_k = k T, T = period, d = delay (what computing takes, at most a period), r_k and y_k command and measurement at
         t_k, x_k the numbers of the law. An integral has lambda = 0, thus x_{k+1} = x_k + T dx_k/dt. A section of a LeadLag has
-        lambda = 1 / b: over a period it moves as it does under a constant input. Before the first output the actuation is 0.
+        lambda = 1 / b: over a period it moves as it does under a constant input, which its second section does not have: that one is
+        of first order in T, as an integral is. Before the first output the actuation is 0.
         Steps end at each t_k and each t_k + d, so what happens at an instant happens exactly there. The law is any that is not
         sampled itself.
 
