@@ -62,6 +62,16 @@ def test_its_response_is_that_of_the_block_diagram(integral: float, share: float
         assert response == pytest.approx(RATIO * plant * forward / (1.0 + plant * loop), rel=1e-9)
 
 
+FED_FORWARD = sw.control.PositionSpeed(
+    position_gain=25.0,
+    speed_proportional=0.004,
+    speed_feedforward=1.0,
+    viscous_feedforward=2e-4,
+    coulomb_feedforward=0.03,
+    limit=10.0,
+)
+
+
 def rubbing(law: sw.control.PositionSpeed) -> sw.Drive:
     """A drive that is held back by Coulomb and viscous friction at its input."""
     friction = sw.friction.Coulomb(coulomb=0.03, viscous=2e-4)
@@ -70,17 +80,9 @@ def rubbing(law: sw.control.PositionSpeed) -> sw.Drive:
 
 def test_fed_forward_it_follows_a_ramp_without_any_error() -> None:
     """All that friction takes is given before an error asks for it: the controller has no integral, and stays idle."""
-    law = sw.control.PositionSpeed(
-        position_gain=25.0,
-        speed_proportional=0.004,
-        speed_feedforward=1.0,
-        viscous_feedforward=2e-4,
-        coulomb_feedforward=0.03,
-        limit=10.0,
-    )
     start = {"input_speed": 0.8 * RATIO, "output_speed": 0.8}
     command = sw.scenario.ramp(0.8, 1.0)
-    run = sw.simulate(rubbing(law), command, sample=0.01, initial=start)
+    run = sw.simulate(rubbing(FED_FORWARD), command, sample=0.01, initial=start)
     assert run["output_angle"] == pytest.approx(run["command"], abs=1e-13)
     assert run["motor_torque"][1:] == pytest.approx(0.03 + 2e-4 * 0.8 * RATIO, rel=1e-9)
 
@@ -95,14 +97,7 @@ def test_fed_forward_it_follows_a_ramp_without_any_error() -> None:
 )
 def test_what_is_not_fed_forward_costs_its_error(missing: str, error: float) -> None:
     """Behind a ramp the input stays back by what the loops need to give the same."""
-    law = sw.control.PositionSpeed(
-        position_gain=25.0,
-        speed_proportional=0.004,
-        speed_feedforward=1.0,
-        viscous_feedforward=2e-4,
-        coulomb_feedforward=0.03,
-        limit=10.0,
-    ).replace(**{missing: 0.0})
+    law = FED_FORWARD.replace(**{missing: 0.0})
     run = sw.simulate(rubbing(law), sw.scenario.ramp(0.8, 4.0), sample=0.01)
     assert RATIO * 0.8 * 4.0 - run["input_angle"][-1] == pytest.approx(error, rel=1e-6)
 
