@@ -330,8 +330,7 @@ def _write_run(run: Recording, out: Path | None, plot: Path | None) -> None:
 
     drawn = BytesIO()
     if plot is not None:
-        changing = [name for name in run.names if name != "time" and run[name].min() < run[name].max()]
-        run.plot(changing or None).savefig(drawn, format=plot.suffix[1:], dpi=150)
+        run.plot().savefig(drawn, format=plot.suffix[1:], dpi=150)
     if out is not None:
         (run.to_csv if out.suffix == ".csv" else run.to_parquet)(out)
         written.append(out)

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _FLAT = 20.0  # a curve so many times smaller than another one is flat beside it
+_ROUNDING = 1e-9  # a curve so small beside another one is what rounding left of nothing
 _DRAWABLE = 1e300  # the range of an axis, with its margins, must be a number too
 
 
@@ -278,7 +279,8 @@ class Recording:
         Columns of one unit share a panel, but for those that would be flat beside a curve more than twenty times as large.
 
         Args:
-            names: the columns to draw; without it all but `against`
+            names: the columns to draw; without it all but `against` that change, by more than a billionth of the largest value
+                of their unit, which would be rounding
             against: the column on the x axis
 
         Returns:
@@ -292,7 +294,7 @@ class Recording:
         from matplotlib.figure import Figure
 
         arguments.text("against", against)
-        drawn = [name for name in self.names if name != against] if names is None else arguments.names("names", names)
+        drawn = self._changing(against) if names is None else arguments.names("names", names)
         if not drawn:
             raise ValueError(f"nothing to draw against {quoted(against)}; there are {listed(self.names)}")
         for name in (*drawn, against):
@@ -306,6 +308,15 @@ class Recording:
         axes[-1].set_xlabel(self._label(against))
         figure.align_ylabels()
         return figure
+
+    def _changing(self, against: str) -> list[str]:
+        """The columns worth a look; all, where none changes."""
+        names = [name for name in self.names if name != against]
+        largest = dict.fromkeys(self.units.values(), 0.0)
+        for name in names:
+            largest[self.unit(name)] = max(largest[self.unit(name)], float(np.abs(self[name]).max()))
+        half = {name: 0.5 * float(self[name].max()) - 0.5 * float(self[name].min()) for name in names}
+        return [name for name in names if half[name] > _ROUNDING * largest[self.unit(name)]] or names
 
     def _panels(self, names: Sequence[str]) -> list[list[str]]:
         """Columns that are drawn together, in the order in which the first of each is named."""

@@ -396,6 +396,14 @@ def test_what_a_picture_says_of_names_is_no_mathematics() -> None:
     assert (figure.get_suptitle(), figure.axes[0].get_ylabel()) == (r"\$x^2\$", r"a\$b\$ [1]")
 
 
+def test_a_plot_leaves_out_what_does_not_change_but_for_rounding() -> None:
+    columns = {"time": [0.0, 1.0], "torque": [0.0, 5.0], "rounding": [0.0, 1e-9], "constant": [3.0, 3.0], "power": [0.0, 1e-9]}
+    units = {"time": "s", "torque": "N.m", "rounding": "N.m", "constant": "N.m", "power": "W"}
+    assert [axis.get_ylabel() for axis in Recording(columns, units).plot().axes] == ["torque [N.m]", "power [W]"]
+    still = Recording({"time": [0.0, 1.0], "constant": [3.0, 3.0]}, {"time": "s", "constant": "N.m"})
+    assert [axis.get_ylabel() for axis in still.plot().axes] == ["constant [N.m]"]
+
+
 def test_a_plot_against_another_column() -> None:
     (axis,) = RUN.plot(["torque"], against="speed").axes
     assert axis.get_xlabel() == "speed [rpm]"
