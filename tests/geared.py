@@ -10,6 +10,16 @@ from strainwave.simulation.state import State
 
 K, RATIO = 1e4, 20.0
 MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.12, inertia=1e-4)
+SERVO = sw.motor.PMSM(
+    resistance=0.5,
+    direct_inductance=1e-3,
+    quadrature_inductance=1e-3,
+    flux_linkage=0.1 / 7.5,
+    pole_pairs=5,
+    inertia=1e-4,
+    supply_voltage=24.0 * np.sqrt(3.0),
+    current_limit=10.0,
+)
 ARM = sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0)
 
 

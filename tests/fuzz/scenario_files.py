@@ -10,29 +10,19 @@ from numpy.random import Generator
 
 from tests.fuzz.laws import Case, described
 from tests.fuzz.mutation import encoded, mutated, picked
+from tests.scenarios import RAMP_AND_SINE, TURNED
 
 UNDER_CONTROL = sw.Drive(control=sw.control.PID(proportional=1.0), load=sw.loads.Inertia(inertia=0.05))
 OPEN_LOOP = sw.Drive(load=sw.loads.Prescribed())
 SCENARIOS = (
     (
-        """name = "Ramp and push"
-note = "as on the rig"
-duration = { value = 20, unit = "ms" }
-temperature = { value = 40.0, unit = "degC" }
-[[command]]
-kind = "ramp"
-rate = { value = 30.0, unit = "deg/s" }
-[[command]]
-kind = "sine"
-amplitude = { value = 2.0, unit = "deg" }
-frequency = 3.0
-[load_torque]
+        RAMP_AND_SINE.replace("2000", "20")
+        + """[load_torque]
 kind = "table"
 time = [0.0, 0.01, 0.02]
 value = { value = [0.0, 5.0, 5.0], unit = "N.m" }
-[initial]
-output_angle = { value = 5.0, unit = "deg" }
-""",
+"""
+        + TURNED,
         UNDER_CONTROL,
     ),
     (

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.flywheel import course, flywheel, instant, settled, torque_of, turning
-from tests.geared import RATIO, geared
+from tests.geared import RATIO, SERVO, geared
 
 Array = NDArray[np.float64]
 MOTOR = sw.motor.BrushlessDC(
@@ -200,19 +200,7 @@ CASCADE = sw.control.Cascade(
 )
 @pytest.mark.parametrize(
     "motor",
-    [
-        MOTOR,
-        sw.motor.PMSM(
-            resistance=0.5,
-            direct_inductance=1e-3,
-            quadrature_inductance=1e-3,
-            flux_linkage=0.1 / 7.5,
-            pole_pairs=5,
-            inertia=1e-4,
-            supply_voltage=24.0 * np.sqrt(3.0),
-            current_limit=10.0,
-        ),
-    ],
+    [MOTOR, SERVO],
     ids=["brushless_dc", "pmsm"],
 )
 def test_every_law_lets_its_integrals_rest_while_any_motor_is_at_its_limit(law: Any, integrals: list[str], motor: Any) -> None:

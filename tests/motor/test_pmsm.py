@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from tests.flywheel import course, flywheel, settled, torque_of, turning
-from tests.geared import RATIO, K, geared
+from tests.geared import RATIO, SERVO, K, geared
 
 Array = NDArray[np.float64]
 PMSM = sw.motor.PMSM
@@ -349,16 +349,6 @@ def test_a_current_along_the_magnets_beyond_the_limit_is_refused() -> None:
 # A cascade at the limit of the inverter
 
 INERTIA = 1e-4 + 0.4 / RATIO**2
-SERVO = PMSM(
-    resistance=0.5,
-    direct_inductance=1e-3,
-    quadrature_inductance=1e-3,
-    flux_linkage=0.1 / 7.5,
-    pole_pairs=5,
-    inertia=1e-4,
-    supply_voltage=24.0 * np.sqrt(3.0),
-    current_limit=10.0,
-)
 CASCADE = sw.control.Cascade(
     position_gain=20.0,
     speed_proportional=0.3,

@@ -17,34 +17,22 @@ from hypothesis import strategies as st
 from strainwave import scenario
 from strainwave.simulation.scenario_file import KINDS, ScenarioFile
 
+from tests.scenarios import RAMP_AND_SINE, TURNED
+
 DRIVE = sw.Drive(control=sw.control.PID(proportional=1.0), load=sw.loads.Inertia(inertia=0.05))
 OPEN = DRIVE.replace(control=sw.control.OpenLoop())
 HELD = OPEN.replace(load=sw.loads.Prescribed())
 BRAKED = OPEN.replace(load=sw.loads.Brake(inertia=0.05))
 
-FULL = """
-name = "Ramp and push"
-note = "as on the rig"
-duration = { value = 2000, unit = "ms" }
-temperature = { value = 40.0, unit = "degC" }
-
-[[command]]
-kind = "ramp"
-rate = { value = 30.0, unit = "deg/s" }
-
-[[command]]
-kind = "sine"
-amplitude = { value = 2.0, unit = "deg" }
-frequency = 3.0
-
-[load_torque]
+FULL = (
+    RAMP_AND_SINE
+    + """[load_torque]
 kind = "step"
 amplitude = { value = 500.0, unit = "N.cm" }
 start = 1.0
-
-[initial]
-output_angle = { value = 5.0, unit = "deg" }
 """
+    + TURNED
+)
 
 
 def beginning(message: str) -> str:
