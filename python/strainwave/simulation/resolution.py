@@ -39,17 +39,27 @@ def check_resolution(drive: Drive, dt: float, twist: float, temperature: float =
     """
     fastest = _core.max_rate(drive, twist, temperature)
     if fastest * dt > COARSEST:
-        raise FloatingPointError(too_coarse(dt, twist, fastest))
+        raise FloatingPointError(too_coarse(dt, twist, fastest, _fastest_part(drive, twist, temperature, fastest)))
 
 
-def too_coarse(dt: float, twist: float, fastest: float) -> str:
-    """Says that steps of `dt` [s] cannot follow what a drive does by itself, which would end in numbers that mean nothing.
+def _fastest_part(drive: Drive, twist: float, temperature: float, fastest: float) -> str:
+    """Which part of a drive is as fast as that [rad/s]: the one without which it is slower."""
+    plain = Drive()
+    for name, words in (("sensors", "a sensor"), ("control", "what its controller filters")):
+        without = drive.replace({name: getattr(plain, name)})
+        if _core.max_rate(without, twist, temperature) < fastest:
+            return words
+    return "its own motion"
+
+
+def too_coarse(dt: float, twist: float, fastest: float, part: str = "its own motion") -> str:
+    """Says that steps of `dt` [s] cannot follow what a part does by itself, which would end in numbers that mean nothing.
 
     Of a vibration of angular frequency w the classical scheme diverges beyond dt w = 2.8, and loses a hundredth of the
     amplitude each step at 1.
     """
     return (
-        f"dt = {dt:g} s is too coarse for this drive: its own motion is as fast as a vibration of {fastest:.4g} rad/s "
+        f"dt = {dt:g} s is too coarse for this drive: {part} is as fast as a vibration of {fastest:.4g} rad/s "
         f"at a twist of {twist:.3g} rad; take dt = {COARSEST / fastest:.2g} s or less"
     )
 

@@ -385,6 +385,20 @@ def test_a_step_too_coarse_at_rest_is_refused_before_any_is_taken(monkeypatch: p
         sw.simulate(DRIVE, command(0.1), dt=1.01 / vibration, method="exponential")
 
 
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ({"sensors": sw.Sensors(output_angle=sw.sensor.SecondOrder(natural_frequency=1e5))}, "a sensor is"),
+        ({"control": sw.control.LeadLag(gain=1.0, lead_denominator=1e-6)}, "what its controller filters is"),
+        ({}, "its own motion is"),
+    ],
+    ids=["sensor", "controller", "gear"],
+)
+def test_what_a_step_cannot_follow_is_named(part: dict[str, Any], words: str) -> None:
+    with pytest.raises(FloatingPointError, match=f"^dt = 0.005 s is too coarse for this drive: {words} as fast as"):
+        sw.simulate(DRIVE.replace(**part), command(0.1), dt=5e-3, method="exponential")
+
+
 OPEN = sw.Drive(
     gear=sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), stiffness=sw.stiffness.Linear(k=1e4)),
     motor=sw.motor.DC(resistance=0.5, torque_constant=0.05, back_emf=0.04, inertia=1e-4),
