@@ -1,4 +1,4 @@
-"""The command as its users meet it: results where asked for; bad input in one line, exit code 2, and nothing written."""
+"""The twin by the command, and the command itself: results where asked for; bad input in one line, and nothing written."""
 
 from __future__ import annotations
 
