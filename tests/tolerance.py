@@ -28,6 +28,7 @@ from typing import Any
 
 import numpy as np
 import strainwave as sw
+from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.simulation.signals import actuation, load_input, outputs
 
@@ -42,7 +43,7 @@ MOST_STEPS = 40_000  # of the tightest run
 DURATION = 0.03  # s
 WITHIN = 10.0
 BATCH = 64
-NOTHING = 1e-8  # in any unit: a column that is smaller is 0
+NOTHING = 1e-12  # in any unit: a column that is smaller is 0
 COLUMNS = ("input_angle", "input_speed", "output_angle", "transmission_error", "output_speed", "torque")
 
 
@@ -89,18 +90,40 @@ class Excited:
 
 
 def at_limit(drive: sw.Drive, run: sw.Recording) -> bool:
-    """Whether its controller gives all that it may, so that what it gives can switch."""
+    """Whether controller or motor is seen at a limit of what is given, where that can switch."""
     law = getattr(drive.control, "law", drive.control)
-    if isinstance(drive.motor, sw.motor.BrushlessDC | sw.motor.PMSM):  # whose limits follow the speed
-        return True
+    given = run[actuation(drive).name]
     limit = getattr(law, "limit", getattr(law, "voltage_limit", np.inf))
-    return float(np.abs(run[actuation(drive).name]).max()) >= limit
+    return bool(
+        (np.abs(given) >= limit).any()
+        or any(np.isclose(given, each, rtol=1e-12, atol=1e-12).any() for each in motor_limits(drive.motor, run))
+    )
+
+
+def motor_limits(motor: Any, run: sw.Recording) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The least and the largest voltage [V] that a motor may have at each sample, of what supply and current allow."""
+    unlimited = np.full(run.time.size, np.inf)
+    if not isinstance(motor, sw.motor.BrushlessDC | sw.motor.PMSM):
+        return -unlimited, unlimited
+    warm = run["winding_temperature" if "winding_temperature" in run.names else "temperature"]
+    resistance = motor.resistance * np.maximum(1.0 + motor.resistance_rise * (warm - 293.15), 0.01)
+    if isinstance(motor, sw.motor.BrushlessDC):
+        induced, reach, current = motor.torque_constant * run["input_speed"], motor.supply_voltage, motor.current_limit
+    else:
+        direct = run["direct_current"]
+        induced = motor.pole_pairs * run["input_speed"] * (motor.direct_inductance * direct + motor.flux_linkage)
+        reach = np.sqrt(np.maximum(motor.supply_voltage**2 / 3.0 - run["direct_voltage"] ** 2, 0.0))
+        along = np.maximum(np.abs(direct), abs(motor.direct_current))
+        current = np.sqrt(np.maximum(motor.current_limit**2 - along**2, 0.0))
+    most = resistance * current
+    return np.clip(induced - most, -reach, reach), np.clip(induced + most, -reach, reach)
 
 
 def calm(drive: sw.Drive) -> bool:
     """Whether its gear reduces the speed, makes no energy, and vibrates with its bristles no faster than `FASTEST`."""
-    if any("Encoder" in repr(getattr(drive.sensors, field["name"])) for field in sw.Sensors.fields):
-        return False  # which jumps with each count
+    sensors = [repr(getattr(drive.sensors, field["name"])) for field in sw.Sensors.fields]
+    if any(jumping in sensor for sensor in sensors for jumping in ("Encoder", "Quantised")):
+        return False  # it jumps with each count
     fastest = max(_core.natural_frequency(drive, 1e-3), _core.bristle_frequency(drive))
     return 30.0 <= abs(drive.gear.kinematics.ratio) <= 320.0 and fastest < FASTEST and cannot_create_energy(drive.gear)
 

@@ -156,6 +156,14 @@ def test_the_tolerance_is_kept_with_random_laws_at_all_places(first: int) -> Non
     assert [one for one in verdicts if one.missed] == []
 
 
+@pytest.mark.parametrize("motor", [sw.motor.BrushlessDC(), sw.motor.PMSM()], ids=["brushless", "synchronous"])
+@pytest.mark.parametrize(("voltage", "limited"), [(0.5, False), (-0.5, False), (100.0, True), (-100.0, True)])
+def test_a_motor_counts_as_limited_only_where_it_is(motor: Any, voltage: float, limited: bool) -> None:
+    drive = sw.Drive(motor=motor, control=sw.control.OpenLoop(), load=sw.loads.Inertia(inertia=0.1))
+    run = sw.simulate(drive, sw.scenario.constant(voltage, 0.02), sample=1e-3)
+    assert at_limit(drive, run) == limited
+
+
 @pytest.mark.parametrize("first", range(0, 60, 15))
 def test_what_fixed_steps_of_random_drives_approach_is_what_adaptive_ones_give(first: int) -> None:
     """Another way to the same; where a controller at its limit switches the error is that of when it does, within a step."""
