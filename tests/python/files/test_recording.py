@@ -381,12 +381,12 @@ def test_a_plot_has_one_subplot_for_each_unit() -> None:
 
 
 def test_a_curve_that_would_be_flat_beside_a_larger_one_has_a_panel_of_its_own() -> None:
-    sizes = {"command": 1.0, "input_angle": 100.0, "still": 0.0, "output_angle": 5.0, "twist": 0.04}
+    sizes = {"command": 1.0, "input_angle": 100.0, "output_angle": 5.0, "twist": 0.04}
     columns = {"time": [0.0, 1.0], **{name: [0.0, -size] for name, size in sizes.items()}}
     figure = Recording(columns, dict.fromkeys(sizes, "rad") | {"time": "s"}).plot()
     panels = [[str(line.get_label()) for line in axis.lines] for axis in figure.axes]
-    assert panels == [["command"], ["input angle", "output angle"], ["still", "twist"]]
-    assert [axis.get_ylabel() for axis in figure.axes] == ["command [rad]", "[rad]", "[rad]"]
+    assert panels == [["command"], ["input angle", "output angle"], ["twist"]]
+    assert [axis.get_ylabel() for axis in figure.axes] == ["command [rad]", "[rad]", "twist [rad]"]
 
 
 def test_what_a_picture_says_of_names_is_no_mathematics() -> None:
