@@ -187,7 +187,8 @@ class _Sines:
         """The outputs over each period, both ends included."""
         period = excitation.command.duration
         step = _step(period, self.dt)
-        check_resolution(self.drive, step, 0.0, excitation.first()[TEMPERATURE])
+        temperature = excitation.first()[TEMPERATURE]
+        check_resolution(self.drive, step, 0.0, temperature)
         time_grid = excitation.time_grid(step, None)
         recorded = outputs_of(self.drive)
         channels = [each.channel for each in recorded.values()]
@@ -196,7 +197,7 @@ class _Sines:
             outputs = beginning(self.drive, state, excitation.first(), channels, len(time_grid.times))
             keep, method = time_grid.samples[1:], _core.Method.exponential
             state = _core.simulate(self.drive, state, time_grid.instants, inputs, keep, method, channels, outputs, 1)
-            run = recording(self.drive, time_grid, recorded, outputs)
+            run = recording(self.drive, time_grid, recorded, outputs, temperature)
             yield {name: run[name] for name in run.names if name != "time"}
 
 

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core
 from strainwave.messages import listed
-from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of a drive's own motion
@@ -32,7 +31,7 @@ def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str)
     return f"the simulation diverged{place}; {what_to_do}"
 
 
-def check_resolution(drive: Drive, dt: float, twist: float, temperature: float = ROOM_TEMPERATURE) -> None:
+def check_resolution(drive: Drive, dt: float, twist: float, temperature: float) -> None:
     """Refuses steps too coarse for a drive at the temperature [K] where a run begins.
 
     Before a run at rest, else many a step may be spent on events that mean nothing.

@@ -382,10 +382,11 @@ def differentiate(
     Returns:
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
+    temperature = excitation.first()[TEMPERATURE]
     beginning_numbers(drive, None, initial, excitation.first())  # refuses what is no beginning
     instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
     time_grid = excitation.time_grid(dt, samples, instants)
-    check_resolution(drive, time_grid.longest, 0.0, excitation.first()[TEMPERATURE])
+    check_resolution(drive, time_grid.longest, 0.0, temperature)
     inputs = excitation.over(time_grid)
     recorded = signals.outputs(drive)
     with room_for("samples", len(time_grid.times), 8.0 * len(recorded) * (1 + len(numbers)), "sample less often"):
@@ -393,14 +394,16 @@ def differentiate(
             drive, known(drive, initial), time_grid.instants, inputs, time_grid.samples[1:], list(numbers)
         )
     channels = [each.channel for each in recorded.values()]
-    return recording(drive, time_grid, recorded, outputs[channels]), slopes[:, channels]
+    return recording(drive, time_grid, recorded, outputs[channels], temperature), slopes[:, channels]
 
 
-def recording(drive: Drive, time_grid: TimeGrid, recorded: Mapping[str, Output], outputs: Array) -> Recording:
-    """What a run recorded, shape (recorded, samples), the twist among it, if its numbers mean anything."""
+def recording(
+    drive: Drive, time_grid: TimeGrid, recorded: Mapping[str, Output], outputs: Array, temperature: float
+) -> Recording:
+    """What a run recorded that began at a temperature [K], shape (recorded, samples), the twist among it, if it is sound."""
     time = time_grid.times
     check_meaning(time, recorded, outputs, remedy(time_grid.longest))
-    check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]))
+    check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]), temperature)
     units = signals.units(drive, recorded.values())
     return Recording(columns_of(time, recorded, outputs), units, title="simulation")
 
