@@ -111,10 +111,12 @@ def neighbours(drive: sw.Drive, random: np.random.Generator) -> dict[str, list[f
 
 
 def step(drive: sw.Drive, random: np.random.Generator) -> float:
-    """As users take it [s], or so that it follows the gear's vibration, mostly."""
+    """As users take it [s], or so that it follows the gear's vibration, mostly; with few instants of a sampled controller."""
     if random.random() < 0.5:
         return float(10.0 ** random.uniform(-5.0, -3.5))
-    return float(10.0 ** random.uniform(-2.0, 0.2)) / _core.natural_frequency(drive, 0.0)
+    period = _core.schedule(drive, drive.rest().numbers)[1]
+    longest = 10.0 * period if period > 0.0 else math.inf
+    return min(float(10.0 ** random.uniform(-2.0, 0.2)) / _core.natural_frequency(drive, 0.0), longest)
 
 
 @dataclass(frozen=True)
