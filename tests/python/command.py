@@ -62,8 +62,12 @@ def start(*arguments: object, **others: Any) -> subprocess.Popen[bytes]:
 def interrupted(process: subprocess.Popen[bytes], written: str = "nothing") -> None:
     """Presses Ctrl-C once the process says that it is there: one line, and exit code 130."""
     assert process.stdout is not None
-    assert process.stdout.readline() == b"here\n"
-    process.send_signal(signal.SIGINT)
-    _, wrong = process.communicate(timeout=60.0)
+    with process:
+        assert process.stdout.readline() == b"here\n"
+        process.send_signal(signal.SIGINT)
+        try:
+            _, wrong = process.communicate(timeout=60.0)
+        finally:
+            process.kill()
     assert wrong.decode() == f"strainwave: interrupted; {written} written\n"
     assert process.returncode == 130
