@@ -15,6 +15,11 @@ DRIVES = sw.catalogue("drives")
 AT_REST_IN_THE_COLD = {"space-pointing-joint": 253.15}  # K
 STEP = {"position-drive-printed": 2e-5}  # s; the others take the usual one
 CASCADES = ["robot-joint", "space-pointing-joint"]
+USE = {  # speed [rad/s] and acceleration [rad/s2] that the note of a set names
+    "robot-joint": (2.0, 10.0),
+    "space-pointing-joint": (0.1, 0.1),
+    "tilt-actuator-lumped": (1.0, 3.0),
+}
 every_drive = pytest.mark.parametrize("name", DRIVES)
 
 
@@ -35,6 +40,7 @@ def test_the_drives_are_listed() -> None:
         "position-drive-printed",
         "robot-joint",
         "space-pointing-joint",
+        "tilt-actuator-lumped",
         "two-inertia-gear",
     ]
     assert not set(DRIVES) & set(sw.catalogue())
@@ -72,10 +78,10 @@ def test_a_drive_runs_without_a_warning(name: str) -> None:
     assert all(np.isfinite(run[column]).all() for column in run.names)
 
 
-@pytest.mark.parametrize("name", CASCADES)
+@pytest.mark.parametrize("name", USE)
 def test_normal_use_keeps_the_ratings(name: str) -> None:
     """A movement up to the speed and the acceleration that the note of the set names: (pi f a, 2 pi^2 f^2 a)."""
-    speed, acceleration = {"robot-joint": (2.0, 10.0), "space-pointing-joint": (0.1, 0.1)}[name]
+    speed, acceleration = USE[name]
     frequency = acceleration / (2.0 * math.pi * speed)
     command = smooth(speed / (math.pi * frequency), frequency)
     assert np.abs(command.rate(np.linspace(0.0, 1.0 / frequency, 1001))).max() == pytest.approx(speed, rel=1e-5)
