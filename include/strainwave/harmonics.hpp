@@ -4,10 +4,11 @@
 
 namespace strainwave {
 
-/// sum_h A_h sin(B_h theta + phi_h), arranged for speed: one sine and cosine, then the whole orders by angle addition.
-template <class S, int capacity>
+/// sum_h A_h sin(B_h theta + phi_h), arranged for speed: one sine and cosine, then the whole orders up to `highest` by angle
+/// addition. Of other orders it holds up to `capacity`.
+template <class S, int capacity, int highest_ = 32>
 struct Harmonics {
-    static constexpr int highest = 32;
+    static constexpr int highest = highest_;
     using Waves = Array<S, 4>;  ///< what multiplies the sine and cosine of one order and of the next: four equal lanes
 
     struct Sum {
@@ -18,13 +19,13 @@ struct Harmonics {
     int top = 0;
     Sequence<S, capacity> order{}, amplitude{}, phase{};
 
-    static constexpr Harmonics of(const Sequence<S, capacity>& order, const Sequence<S, capacity>& amplitude,
-                                  const Sequence<S, capacity>& phase) {
+    template <int n>
+    static constexpr Harmonics of(const Sequence<S, n>& order, const Sequence<S, n>& amplitude, const Sequence<S, n>& phase) {
         Harmonics sum{};
         for (int h = 0; h < order.count; ++h) {
-            const int n = whole(order[h], highest);
-            if (n > 0)
-                sum.add_whole(n, order[h], amplitude[h], phase[h]);
+            const int number = whole(order[h], highest);
+            if (number > 0)
+                sum.add_whole(number, order[h], amplitude[h], phase[h]);
             else
                 sum.add(order[h], amplitude[h], phase[h]);
         }

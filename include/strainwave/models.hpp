@@ -26,6 +26,7 @@
 #include <strainwave/kinematic_error/fourier.hpp>
 #include <strainwave/kinematic_error/misalignment.hpp>
 #include <strainwave/kinematic_error/stochastic.hpp>
+#include <strainwave/kinematic_error/tooth_errors.hpp>
 #include <strainwave/kinematics.hpp>
 #include <strainwave/load/aerodynamic.hpp>
 #include <strainwave/load/brake.hpp>
@@ -80,7 +81,7 @@ namespace kinematics {
 using Models = List<StrainWave, PlainRatio>;
 }
 namespace kinematic_error {
-using Models = List<Fourier, Misalignment>;
+using Models = List<Fourier, Misalignment, ToothErrors>;
 using Noises = List<Stochastic>;
 }  // namespace kinematic_error
 namespace friction {

@@ -1,0 +1,180 @@
+#pragma once
+#include <strainwave/harmonics.hpp>
+#include <strainwave/kinematic_error/error.hpp>
+#include <strainwave/kinematics.hpp>
+#include <strainwave/random.hpp>
+
+namespace strainwave::kinematic_error {
+
+template <class S>
+struct ToothErrors {
+    static constexpr int highest = 16;  ///< order of the deviation along a pitch circle
+    using Chart = Sequence<S, highest>;
+
+    int flexspline_teeth{200};
+    int circular_spline_teeth{202};
+    kinematics::Fixed fixed{kinematics::Fixed::circular_spline};
+    S pitch_radius{25e-3};
+    S engaged_share{0.3};
+    S first_lobe{0.5};
+    Chart flexspline_amplitude{};
+    Chart flexspline_phase{};
+    Chart circular_spline_amplitude{};
+    Chart circular_spline_phase{};
+    S flexspline_deviation{0.0};
+    S circular_spline_deviation{0.0};
+    S seed{0.0};
+
+    static constexpr auto name = "tooth_errors";
+    static constexpr auto source =
+        "the cause is named by document A, section Kinematic error, without an equation, and the order 2 z_c / z_f by document R; "
+        "derived here from the geometry; deviations as in ISO2013; random chart: Feller1951, ShinozukaDeodatis1991, "
+        "WichmannHill1982; which teeth are engaged, and how stiff they are, is assumed";
+    static constexpr auto doc = R"(
+        Kinematic error of teeth that do not stand where they should: pitch deviations of both splines.
+
+        .. math:: e(\theta) = \frac{\bar F_{output}(\lambda_{output}) - \bar F_{fixed}(\lambda_{fixed})}{r_g}, \qquad
+                  F(\varphi) = \sum_{n=1}^{16} A_n \sin(n \varphi + \varphi_n)
+
+        .. math:: \bar F(\lambda) = \sum_n s_n \, W\!\left(\frac{\pi n \, \eta \, z_f}{2 z}\right) A_n \sin(n \lambda + \varphi_n),
+                  \qquad W(x) = \frac{\sin x}{x \, (1 - x^2 / \pi^2)}
+
+        with r_g = pitch_radius. F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at
+        the angle phi along the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is
+        closed, so its orders n are whole: A_n = flexspline_amplitude or circular_spline_amplitude, phi_n = the phase of the same
+        place in its list; order 2 alone is ``[0, 4e-6]``. phi counts from the tooth that is under the first lobe at input angle 0.
+
+        *Orders.* lambda is the angle of the first lobe in the spline's own frame: z_f lambda_f = z_c lambda_c, because both
+        splines pass the lobe tooth by tooth. In the frame of the ``fixed`` spline it is the input angle. In that of the other
+        one it is theta z_c / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole
+        orders, and the other one broken orders close to them, such as the review's 2 z_c / z_f. Together they beat, once in a turn
+        of the output.
+
+        *Lobes.* s_n = 1 for even n, and 2 p - 1 for odd n, with p = first_lobe the share of the first lobe in the stiffness of all
+        engaged teeth. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one
+        (n = 2) gives all of its own.
+
+        *Averaging.* eta = engaged_share of the flexspline's teeth is engaged, half of it under each lobe. Without torque the splines
+        stand where the forces of all engaged teeth balance, which is the mean of the deviations, weighted by stiffness. The
+        stiffness is taken to fall from the major axis to zero at the ends of a zone as 1 + cos; the factor W is what that leaves of
+        order n. Torque winds up all pairs alike and does not change e.
+
+        A measured chart of index deviations gives amplitudes and phases by a Fourier series over its teeth. Where only a tolerance
+        class is known, flexspline_deviation and circular_spline_deviation are the total cumulative pitch deviation F_p of a typical
+        part. They add a random chart with amplitudes sqrt(2 / pi) F_p / (pi n) and phases that ``seed`` draws: that of pitches
+        which are cut independently of each other, whose range over the turn is F_p in the mean (Feller1951).
+
+        Leaves out: errors of single teeth as they come and go (orders near z_c and above), deviations of flank and thickness, teeth
+        that lose contact, load and speed, and what a runout of the output itself adds. Stiffness that depends on the load is not
+        described, nor deviations of order above 16, of which the engaged teeth leave little. A gear does not check that the teeth
+        and the fixed member are those of its kinematics; give the same.
+
+        >>> from strainwave.kinematic_error import ToothErrors
+        >>> gear = dict(flexspline_teeth=200, circular_spline_teeth=202, pitch_radius=25e-3, engaged_share=0.3)
+        >>> oval = ToothErrors(**gear, circular_spline_amplitude=[0, 5e-6], circular_spline_phase=[0, 1.5707963267948966])
+        >>> round(oval.error(0.0), 9)
+        -0.000177137
+        >>> eccentric = ToothErrors(**gear, flexspline_amplitude=[5e-6], flexspline_phase=[0])
+        >>> eccentric.error(1.0), round(eccentric.replace(first_lobe=1.0).error(1.0), 9)
+        (0.0, 0.000167)
+        >>> random = ToothErrors(**gear, flexspline_deviation=15e-6, circular_spline_deviation=15e-6, seed=1)
+        >>> random.error(0.3) == random.replace(seed=2).error(0.3)
+        False)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_REQUIRED(m, flexspline_teeth, "1", "Teeth of the flexspline z_f", 2, 100000));
+        visit(SW_REQUIRED(m, circular_spline_teeth, "1", "Teeth of the circular spline z_c", 3, 100000));
+        visit(SW_FIELD(m, fixed, "1", "The member that does not turn; the other spline is the output"));
+        visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest));
+        visit(SW_REQUIRED(m, engaged_share, "1", "Share eta of the flexspline's teeth that is engaged, at both lobes together", 0,
+                          1));
+        visit(SW_FIELD(m, first_lobe, "1", "Share p of the first lobe in the stiffness of all engaged teeth", 0, 1));
+        visit(SW_FIELD(m, flexspline_amplitude, "m", "Amplitudes A_n of the flexspline's deviation, orders 1, 2, ...", 0, 1e-3));
+        visit(SW_FIELD(m, flexspline_phase, "rad", "Phases phi_n of the flexspline's deviation"));
+        visit(SW_FIELD(m, circular_spline_amplitude, "m", "Amplitudes A_n of the circular spline's deviation, orders 1, 2, ...", 0,
+                       1e-3));
+        visit(SW_FIELD(m, circular_spline_phase, "rad", "Phases phi_n of the circular spline's deviation"));
+        visit(SW_FIELD(m, flexspline_deviation, "m", "Total cumulative pitch deviation F_p of a random flexspline", 0, 1e-3));
+        visit(SW_FIELD(m, circular_spline_deviation, "m", "Total cumulative pitch deviation F_p of a random circular spline", 0,
+                       1e-3));
+        visit(SW_FIELD(m, seed, "1", "Whole number that says which of all such random gears it is", 0, 16777215, true));
+    }
+
+    constexpr const char* problem() const {
+        const int more = circular_spline_teeth - flexspline_teeth;
+        if (more <= 0 || more % 2 != 0)
+            return "circular_spline_teeth must exceed flexspline_teeth by an even number, for teeth mesh at two lobes";
+        if (flexspline_amplitude.count != flexspline_phase.count)
+            return "flexspline_amplitude and flexspline_phase must have equally many elements";
+        return circular_spline_amplitude.count == circular_spline_phase.count
+                   ? nullptr
+                   : "circular_spline_amplitude and circular_spline_phase must have equally many elements";
+    }
+
+    struct Compiled {
+        Harmonics<S, 1, highest> of_fixed, of_output;
+        S teeth;  ///< of the output
+        S ahead;  ///< teeth by which the output passes the lobe in a turn of the input, beyond its own
+
+        constexpr Error<S> at(const Angle<S>& angle) const {
+            const S advance = ahead / teeth, passed = clip(ahead * angle.turns, S(-1e18), S(1e18));
+            const S within = angle.within + advance * angle.within, rest = passed - teeth * rint(passed / teeth);
+            const auto [still, still_slope] = of_fixed.at({angle.within, S(0.0)});
+            const auto [turning, turning_slope] = of_output.at({within + S(2.0 * pi) * (rest / teeth), S(0.0)});
+            return {still + turning, still_slope + turning_slope + advance * turning_slope};
+        }
+    };
+
+    constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
+
+    /// The same sum, arranged for speed: every random phase drawn, every average taken.
+    constexpr Compiled compile() const {
+        auto random = WichmannHill<S>::seeded(seed);
+        Array<S, highest> first{}, second{};
+        for (int i = 0; i < highest; ++i) first[i] = S(2.0 * pi) * random.share();
+        for (int i = 0; i < highest; ++i) second[i] = S(2.0 * pi) * random.share();
+        const S turns_forward = S(1.0) / pitch_radius;
+        const bool flexspline_turns = fixed == kinematics::Fixed::circular_spline;
+        const auto flexspline = averaged(flexspline_teeth, flexspline_amplitude, flexspline_phase, flexspline_deviation, first,
+                                         flexspline_turns ? turns_forward : -turns_forward);
+        const auto circular_spline = averaged(circular_spline_teeth, circular_spline_amplitude, circular_spline_phase,
+                                              circular_spline_deviation, second, flexspline_turns ? -turns_forward : turns_forward);
+        const S more(circular_spline_teeth - flexspline_teeth);
+        if (flexspline_turns) return {circular_spline, flexspline, S(flexspline_teeth), more};
+        return {flexspline, circular_spline, S(circular_spline_teeth), -more};
+    }
+
+private:
+    /// What the engaged teeth of a spline make of its deviation, times `scale`.
+    constexpr Harmonics<S, 1, highest> averaged(int teeth, const Chart& amplitude, const Chart& phase, const S& total,
+                                                const Array<S, highest>& drawn, const S& scale) const {
+        Sequence<S, 2 * highest> order{}, size{}, start{};
+        const auto add = [&](int n, const S& deviation, const S& at_zero) {
+            const int i = order.count++;
+            size.count = start.count = order.count;
+            order[i] = S(n);
+            size[i] = scale * left(n, teeth) * deviation;
+            start[i] = at_zero;
+        };
+        for (int i = 0; i < amplitude.count; ++i) add(i + 1, amplitude[i], phase[i]);
+        if (sought(total) || any(total > S(0.0)))
+            for (int i = 0; i < highest; ++i) add(i + 1, S(0.25397454373696393 / (i + 1)) * total, drawn[i]);  // sqrt(2 / pi) / pi
+        return Harmonics<S, 1, highest>::of(order, size, start);
+    }
+
+    /// The share of order n of a deviation that the mean over all engaged teeth leaves.
+    constexpr S left(int n, int teeth) const {
+        const S x = S(0.5 * pi * n) * engaged_share * (S(flexspline_teeth) / S(teeth));
+        const S zone = sine_quotient(x) + S(0.5) * (sine_quotient(x + S(pi)) + sine_quotient(x - S(pi)));
+        return n % 2 == 0 ? zone : (first_lobe + first_lobe - S(1.0)) * zone;
+    }
+
+    /// sin(x) / x.
+    static constexpr S sine_quotient(const S& x) {
+        const auto near = abs(x) < S(1e-3);
+        return select(near, S(1.0) - x * x * S(1.0 / 6.0), sincos(x).sin / select(near, S(1.0), x));
+    }
+};
+
+}  // namespace strainwave::kinematic_error
