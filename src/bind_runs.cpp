@@ -90,6 +90,16 @@ std::string text_of(const StepsSpent& error) {
     return text;
 }
 
+/// Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.
+std::string no_beginning(bool known) {
+    if (known)
+        return "there is no state that has the quantities of initial: motor, spring and load do not balance there; give another "
+               "angle, or the torque";
+    return "a run cannot begin with the motion that the load prescribes at t = 0: some number of its state is not finite there; "
+           "let "
+           "output_angle begin at a smaller angle and speed";
+}
+
 /// Quantities known at the start, one row each with a value for each member; at rest, if None.
 Start start_from(const nb::object& known, std::size_t members) {
     Start start;
@@ -130,6 +140,7 @@ nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Nu
         on_bristles.data()[m] = results[m].bristle_frequency;
         if (results[m].refusal) refusals[nb::int_(m)] = text_of(*results[m].refusal);
         if (!results[m].problem.empty()) refusals[nb::int_(m)] = results[m].problem;
+        if (!results[m].has_beginning) refusals[nb::int_(m)] = no_beginning(!start.quantities.empty());
     }
     return nb::make_tuple(sound, twists, rates, on_bristles, refusals);
 }
@@ -208,6 +219,8 @@ void bind_runs(nb::module_& core) {
         "(numbers, members), takes the place of the numbered parameters. Members that are faster by themselves than `max_rate` at "
         "rest are not run. `initial` has quantities known at the start, and their values, shape (quantities, members); all begin "
         "at rest if there is none.");
+    core.def("no_beginning", &no_beginning, nb::arg("known"),
+             "Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.");
     core.def("instruction_set", &instruction_set, "The instruction set that the loops over time are compiled for.");
     core.def(
         "differentiate", &run_derivatives, nb::arg("drive"), nb::arg("initial").none(), nb::arg("instants"), nb::arg("inputs"),

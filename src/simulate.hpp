@@ -46,7 +46,8 @@ struct MemberResult {
     double bristle_frequency = 0.0;        ///< the fastest of a shaft on its bristles, rad/s
     bool sound = false;                    ///< whether it ran, and all outputs at all samples are numbers up to the largest
     std::optional<OutOfBounds> refusal{};  ///< what ended it, if anything did
-    std::string problem{};                 ///< why it did not begin, if it did not
+    std::string problem{};                 ///< what is wrong with its numbers, if anything is
+    bool has_beginning = true;             ///< whether there is a state that it can begin in
 };
 
 /// How steps are taken.

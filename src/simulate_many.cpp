@@ -132,10 +132,8 @@ private:
     Drive::State beginning(const Drive& drive, std::size_t member) const {
         return start.at_rest ? rest(drive) : started(drive, start.of(member), interval<double>(schedule.inputs).start);
     }
-    /// Why a member cannot begin; empty if it can.
-    static std::string problem_at(const Drive::State& from) {
-        return std::isfinite(from.continuous.transmission_error) ? "" : "there is no state that has the quantities of initial";
-    }
+    /// Whether that is a state.
+    static bool is_state(const Drive::State& from) { return std::isfinite(from.continuous.transmission_error); }
     /// The states of members as those of one drive.
     AnyDrive<Lanes>::State together(const std::vector<std::vector<double>>& numbers, std::size_t first) const {
         return state_of(assembled_from<Lanes>(first, numbers.size()), [&](int i) {
@@ -152,7 +150,7 @@ private:
             const Drive drive = assembled_from<double>(member, 1);
             if (!problem_of(drive).empty()) return false;
             const Drive::State from = beginning(drive, member);
-            if (!problem_at(from).empty()) return false;
+            if (!is_state(from)) return false;
             numbers.push_back(numbers_of(drive, from));
         }
         try {
@@ -185,7 +183,8 @@ private:
                                   lane_of(tally.bristle_frequency, i),
                                   lane_of(tally.sound, i) > 0.0,
                                   {},
-                                  {}};
+                                  {},
+                                  true};
     }
 
     /// Leaves not-a-number in the rows of members.
@@ -202,8 +201,8 @@ private:
         results[member].problem = problem_of(drive);
         if (!results[member].problem.empty()) return;
         const Drive::State from = beginning(drive, member);
-        results[member].problem = problem_at(from);
-        if (!results[member].problem.empty()) return;
+        results[member].has_beginning = is_state(from);
+        if (!results[member].has_beginning) return;
         try {
             run_members<double>(member, 1, from);
         } catch (const OutOfBounds& error) {

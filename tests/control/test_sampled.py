@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import strainwave as sw
@@ -10,6 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.geared import RATIO, geared
+from tests.little_memory import little_memory
 
 Array = NDArray[np.float64]
 LAW = sw.control.PID(proportional=2.0, integral=15.0, derivative=0.05, limit=24.0)
@@ -133,6 +137,27 @@ def test_time_is_no_number_of_a_run(path: str) -> None:
         sw.simulate_many(drive(), COMMAND, {path: [1e-3, 9e-4]})
     with pytest.raises(ValueError, match=f"no derivative by {path}"):
         sw.derivatives(drive(), COMMAND, [path])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
+@pytest.mark.parametrize(
+    "run",
+    [
+        lambda long: sw.simulate(drive(), long, dt=1.0),
+        lambda long: sw.simulate_adaptively(drive(), long, max_steps=10**9, sample=1e3),
+        lambda long: sw.derivatives(drive(), long, ["load.inertia"], dt=1.0),
+        lambda long: sw.simulate_many(drive(), long, {"load.inertia": [0.1]}, dt=1.0),
+        lambda long: sw.simulate_controlled(
+            drive().replace(control=sw.control.OpenLoop()), lambda _: 0.0, long, dt=1.0, period=1e-3, sample=1e3
+        ),
+    ],
+)
+def test_samples_of_a_controller_too_many_for_the_memory_say_how_large_they_are(
+    run: Callable[[sw.scenario.Scenario], object],
+) -> None:
+    words = r"^2e\+07 samples of the controller take 2\.4 GB, .*; take a longer period, or make several runs$"
+    with little_memory(64 << 20), pytest.raises(MemoryError, match=words):
+        run(sw.scenario.constant(0.1, 2e4))
 
 
 def test_what_is_wrong_is_refused() -> None:

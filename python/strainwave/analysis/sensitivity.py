@@ -20,6 +20,14 @@ from strainwave.simulation.run import differentiate
 from strainwave.simulation.scenario import Scenario
 
 Array = NDArray[np.float64]
+# Numbers by which there is no derivative, by their path or its last name, and why.
+NO_MEASURE = {
+    "control.period": (WHEN := "it tells when something happens, not how much of it"),
+    "control.delay": WHEN,
+    "seed": "it tells which noise it is, not how much of it",
+    "counts": (ROUNDING := "a reading that is rounded jumps, and derivatives ignore the rounding"),
+    "resolution": ROUNDING,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +80,8 @@ def derivatives(
     """Runs a drive through a command with the derivatives of all outputs by some of its parameters.
 
     They are those of the run as it is computed, exact to rounding: dual numbers go through steps, events and the memory of
-    hysteresis. At a moment where the run itself is not smooth in a parameter they are those of one side; by a whole number, as
-    a seed, they are 0. Up to four parameters cost some two and a half plain runs, eight some three, the next as much again.
+    hysteresis. At a moment where the run itself is not smooth in a parameter they are those of one side. Up to four parameters
+    cost some two and a half plain runs, eight some three, the next as much again.
 
     Args:
         drive: what is commanded
@@ -83,7 +91,8 @@ def derivatives(
             parameters
 
     Raises:
-        TypeError, ValueError, FloatingPointError, MemoryError: as `simulate`; a path that the drive does not have
+        TypeError, ValueError, FloatingPointError, MemoryError: as `simulate`; a path that the drive does not have, or a number
+            by which there is no derivative: when a controller acts, which noise it is, how finely a reading is rounded
 
     Warns:
         RuntimeWarning: the drive has bristles too stiff for steps of `dt`
@@ -102,9 +111,9 @@ def derivatives(
     if not places:
         raise ValueError("parameters must name at least one number")
     interval = dt if sample is None else arguments.seconds("sample", sample)
-    timed = [each.path for each in places if each.path in ("control.period", "control.delay")]
-    if timed:
-        raise ValueError(f"there is no derivative by {timed[0]}: it tells when something happens, not how much of it")
+    for each in places:
+        if why := NO_MEASURE.get(each.path) or NO_MEASURE.get(each.path.rpartition(".")[2]):
+            raise ValueError(f"there is no derivative by {each.path}: {why}")
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
     run, values = differentiate(drive, excitation, [each.number for each in places], dt, interval, initial)
     warn_of_bristles(drive, min(dt, interval, command.duration))

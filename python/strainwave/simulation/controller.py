@@ -15,7 +15,7 @@ from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers
-from strainwave.simulation.memory import check_instants
+from strainwave.simulation.memory import check_acting
 from strainwave.simulation.resolution import remedy, warn_of_bristles
 from strainwave.simulation.run import Course, Run, check_meaning, progressing, recorded_of
 from strainwave.simulation.scenario import Scenario
@@ -188,7 +188,7 @@ def _commanded(course: Course, given: Array) -> Array:
 
 def _actions(duration: float, period: float, delay: float) -> Array:
     """When the controller is called and when its result arrives, in turns [s]."""
-    check_instants(duration, period, "take a longer period")
+    check_acting(duration, period)
     calls = period * np.arange(int(duration / period) + 1)
     found: Array = np.stack([calls, calls + delay], axis=1).ravel()
     return found[found < duration * (1.0 - 1e-12)]

@@ -20,10 +20,18 @@ from strainwave.files.writing import claiming, making
 from strainwave.messages import listed, one_line, quoted
 from strainwave.parameters import every, unknown
 from strainwave.simulation import signals
-from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
+from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.initial import Known
 from strainwave.simulation.initial import known as initial_of
-from strainwave.simulation.resolution import COARSEST, FASTEST_ON_BRISTLES, diverged, remedy, too_coarse, too_stiff
+from strainwave.simulation.resolution import (
+    COARSEST,
+    FASTEST_ON_BRISTLES,
+    diverged,
+    fastest_part,
+    remedy,
+    too_coarse,
+    too_stiff,
+)
 from strainwave.simulation.run import progressing
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import Output
@@ -204,7 +212,7 @@ class _Plan(ComparedByFields):
             outputs,
             shown,  # type: ignore[arg-type]
         )
-        failures = self.failures(outputs, sound, twists, fastest, refusals)
+        failures = self.failures(first, outputs, sound, twists, fastest, refusals)
         _tell_of_bristles(self.time_grid.longest, on_bristles)
         outputs[:, list(failures), :] = np.nan
         return Ensemble(
@@ -216,9 +224,9 @@ class _Plan(ComparedByFields):
         )
 
     def failures(
-        self, outputs: Array, ran: NDArray[np.bool_], twists: Array, fastest: Array, refusals: dict[int, str]
+        self, first: int, outputs: Array, ran: NDArray[np.bool_], twists: Array, fastest: Array, refusals: dict[int, str]
     ) -> dict[int, str]:
-        """Why members have no result, as `simulate` would say it of each alone."""
+        """Why members from `first` on have no result, as `simulate` would say it of each alone."""
         found = dict(refusals)
         coarse = fastest > COARSEST / self.time_grid.longest
         at_rest = coarse & (twists == 0.0)  # such members are not run
@@ -227,8 +235,14 @@ class _Plan(ComparedByFields):
             if member not in found and not sound[member]:
                 found[member] = diverged(self.time, list(self.recorded), outputs[:, member], remedy(self.time_grid.longest))
             elif member not in found:
-                found[member] = too_coarse(self.time_grid.longest, float(twists[member]), float(fastest[member]))
+                found[member] = self.too_coarse(first + member, float(twists[member]), float(fastest[member]))
         return dict(sorted(found.items()))
+
+    def too_coarse(self, member: int, twist: float, fastest: float) -> str:
+        """Says that steps cannot follow what is as fast as that [rad/s] in a member."""
+        drive = self.drive.replace({path: float(column[member]) for path, column in self.parameters.items()})
+        temperature = float(self.excitation.first()[TEMPERATURE])
+        return too_coarse(self.time_grid.longest, twist, fastest, fastest_part(drive, twist, temperature, fastest))
 
 
 def simulate_many(

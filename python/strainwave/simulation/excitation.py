@@ -12,16 +12,17 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments
 from strainwave.messages import quoted, shortened
-from strainwave.simulation.memory import room_for
+from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import load_input
-from strainwave.simulation.time_grid import INPUTS, LONG_RUN, NEVER, STEP, TimeGrid, grid
+from strainwave.simulation.time_grid import INPUTS, LONG_RUN, LONGER_STEPS, NEVER, STEP, TimeGrid, grid
 
 Array = NDArray[np.float64]
 ROOM_TEMPERATURE = 293.15  # K
 TEMPERATURE = 4  # place among the inputs
 STRETCH = 5e-3  # s, after which an adaptive step ends at the latest
 PER_PERIOD = 5.0  # such steps in a period of an input, at the least
+END = 40.0  # bytes: where an adaptive step must end, found in a few goes
 
 
 @dataclass(frozen=True)
@@ -74,13 +75,26 @@ class Excitation:
         breaks = np.concatenate([*(signal.breaks for signal in self._scenarios), instants])
         return TimeGrid.through(self.command.duration, dt, dt if samples is None else samples, breaks)
 
-    def ends(self, instants: Array) -> Array:
+    def ends(self, instants: Array, most: int) -> Array:
         """Where adaptive steps must end [s]: wherever an input jumps, at `instants`, at which a controller acts, and so often
-        that none is as long as a period of an input."""
+        that none is as long as a period of an input.
+
+        Raises:
+            ValueError: it takes more than `most` steps to come from one to the next
+            MemoryError: they are too many
+        """
         duration = self.command.duration
         waves = [wave for signal in self._scenarios for wave in signal.waves]
         fastest = max((abs(w.frequency + t * w.sweep) for w in waves for t in (0.0, duration)), default=0.0)
-        regular = grid(1.0 / max(1.0 / STRETCH, PER_PERIOD * fastest), duration, 1e-9 * STRETCH)
+        longest = 1.0 / max(1.0 / STRETCH, PER_PERIOD * fastest)
+        if duration > most * longest:
+            raise ValueError(
+                f"max_steps = {most} are too few for {duration:g} s: adaptive steps are {longest:.3g} s long at most, which "
+                f"makes {duration / longest:.3g} steps; allow more, or make several runs, each from the end of the one before"
+            )
+        check_instants(duration, longest, LONGER_STEPS)
+        check_room("steps", duration / longest + len(instants), END, LONG_RUN)
+        regular = grid(longest, duration, 1e-9 * STRETCH)
         ends = np.unique(np.concatenate([regular, instants, *(signal.breaks for signal in self._scenarios)]))
         return ends[np.append(np.diff(ends) > 1e-9 * STRETCH * (duration > STRETCH), True)] if len(instants) else ends
 

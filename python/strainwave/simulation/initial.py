@@ -79,18 +79,5 @@ def beginning_numbers(drive: Drive, start: State | None, initial: Mapping[str, A
         return drive.rest().numbers
     numbers = _core.started(drive, given[0], given[1][:, 0].copy(), inputs)
     if not np.isfinite(numbers).all():
-        raise ValueError(_no_state(initial))
+        raise ValueError(_core.no_beginning(bool(initial)))
     return numbers
-
-
-def _no_state(initial: Mapping[str, ArrayLike] | None) -> str:
-    """Says that a run cannot begin, and what to do about what the caller gave."""
-    if not initial:
-        return (
-            "a run cannot begin with the motion that the load prescribes at t = 0: some number of its state is not finite "
-            "there; let output_angle begin at a smaller angle and speed"
-        )
-    return (
-        "there is no state that has the quantities of initial: motor, spring and load do not balance there; "
-        "give another angle, or the torque"
-    )

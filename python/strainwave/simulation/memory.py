@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 
 MOST_INSTANTS = 1e9  # of a run or a signal: what memory could hold
+ACTION = 120.0  # bytes: a sample of a controller, found in a few goes together with the instant at which its output arrives
 
 
 @contextmanager
@@ -52,3 +53,15 @@ def check_instants(duration: float, step: float, remedy: str) -> None:
     """
     if duration > MOST_INSTANTS * step:
         raise ValueError(f"{duration:g} s are more than {MOST_INSTANTS:g} steps of {step:g} s; {remedy}")
+
+
+def check_acting(duration: float, period: float) -> None:
+    """Refuses so many samples of a controller, one a period [s] over a duration [s], that no memory could hold them.
+
+    >>> check_acting(1e12, 1.0)
+    Traceback (most recent call last):
+    ValueError: 1e+12 s are more than 1e+09 steps of 1 s; take a longer period
+    """
+    remedy = "take a longer period"
+    check_instants(duration, period, remedy)
+    check_room("samples of the controller", duration / period, ACTION, f"{remedy}, or make several runs")

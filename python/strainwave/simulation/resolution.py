@@ -38,10 +38,10 @@ def check_resolution(drive: Drive, dt: float, twist: float, temperature: float) 
     """
     fastest = _core.max_rate(drive, twist, temperature)
     if fastest * dt > COARSEST:
-        raise FloatingPointError(too_coarse(dt, twist, fastest, _fastest_part(drive, twist, temperature, fastest)))
+        raise FloatingPointError(too_coarse(dt, twist, fastest, fastest_part(drive, twist, temperature, fastest)))
 
 
-def _fastest_part(drive: Drive, twist: float, temperature: float, fastest: float) -> str:
+def fastest_part(drive: Drive, twist: float, temperature: float, fastest: float) -> str:
     """Which part of a drive is as fast as that [rad/s]: the one without which it is slower."""
     plain = Drive()
     for name, words in (("sensors", "a sensor"), ("control", "what its controller filters")):
@@ -51,7 +51,7 @@ def _fastest_part(drive: Drive, twist: float, temperature: float, fastest: float
     return "its own motion"
 
 
-def too_coarse(dt: float, twist: float, fastest: float, part: str = "its own motion") -> str:
+def too_coarse(dt: float, twist: float, fastest: float, part: str) -> str:
     """Says that steps of `dt` [s] cannot follow what a part does by itself, which would end in numbers that mean nothing.
 
     Of a vibration of angular frequency w the classical scheme diverges beyond dt w = 2.8, and loses a hundredth of the

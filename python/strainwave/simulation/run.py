@@ -329,7 +329,8 @@ def simulate_adaptively(
 
     Raises:
         TypeError: as `simulate`
-        ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `max_steps` lies below 1, and as `simulate`
+        ValueError: `rtol` lies outside of [1e-11, 1e-2], `atol` is not positive, `max_steps` lies below 1 or below what the
+            duration takes in the longest steps, 5 ms each, and as `simulate`
         FloatingPointError: the trajectory diverged, no step keeps the tolerance, or only more than `max_steps` do; says when
         MemoryError: as `simulate`
 
@@ -349,7 +350,7 @@ def simulate_adaptively(
     state = beginning_numbers(drive, start, initial, excitation.first())
     check_samples(command.duration, sample, len(recorded))
     samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
-    ends = excitation.ends(signals.instants(drive, state, command.duration))
+    ends = excitation.ends(signals.instants(drive, state, command.duration), max_steps)
     excitation.check_temperature(ends)
     channels = [each.channel for each in recorded.values()]
     outputs = beginning(drive, state, excitation.first(), channels, len(samples))

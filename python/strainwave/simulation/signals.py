@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments
 from strainwave.messages import shortened
-from strainwave.simulation.memory import check_instants
+from strainwave.simulation.memory import check_acting
 
 Array = NDArray[np.float64]
 
@@ -115,12 +115,12 @@ def instants(drive: Drive, state: Array, duration: float) -> Array:
     """When a sampled controller acts within `duration` [s], in order; none of one that acts all the time.
 
     Raises:
-        MemoryError: they are too many
+        ValueError, MemoryError: they are too many
     """
     first, period, delay = _core.schedule(drive, state)
     if period == 0.0:
         return np.empty(0)
-    check_instants(duration, period, "take a longer period")
+    check_acting(duration, period)
     # As multiples: a state that has been sampled at its begin acts at the very instants of one that has not.
     samples = period * (np.float64(first) / period + np.arange(int(max(duration - first, 0.0) / period) + 1))
     given = np.concatenate([[first - period + delay], samples + delay])

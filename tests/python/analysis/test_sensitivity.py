@@ -115,3 +115,24 @@ def test_what_there_is_not_is_refused_with_what_there_is() -> None:
         found["torque", "motor.inertia"]
     with pytest.raises(ValueError, match=r"read-only"):
         found["torque", "motor.resistance"][0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("sensor", "name", "why"),
+    [
+        (sw.sensor.Noisy(amplitude=1e-5, seed=3), "seed", "it tells which noise it is, not how much of it"),
+        (sw.sensor.Encoder(counts=4096), "counts", "a reading that is rounded jumps, and derivatives ignore the rounding"),
+        (
+            sw.sensor.Quantised(resolution=1e-3),
+            "resolution",
+            "a reading that is rounded jumps, and derivatives ignore the rounding",
+        ),
+    ],
+)
+def test_there_is_no_derivative_by_what_is_no_measure(sensor: object, name: str, why: str) -> None:
+    """They would come out as 0, though the run does change."""
+    drive = DRIVE.replace(sensors=sw.Sensors(input_angle=sensor))
+    with pytest.raises(ValueError, match=f"^there is no derivative by sensors.input_angle.{name}: {why}$"):
+        sw.derivatives(drive, command(0.01), [f"sensors.input_angle.{name}", "load.inertia"])
+    with pytest.raises(ValueError, match=r"^there is no derivative by gear\.kinematic_noise\.seed: "):
+        sw.derivatives(drive, command(0.01), ["gear.kinematic_noise.seed"])

@@ -301,10 +301,12 @@ def test_a_temperature_that_dips_below_absolute_zero_between_steps_is_refused() 
 
 
 def test_more_steps_than_can_be_are_refused() -> None:
-    for duration, frequency, remedy in ((6e6, 0.0, "sample less often"), (1.0, 3e8, "take longer steps or slower inputs")):
-        voltage = sw.scenario.sine(1.0, frequency, duration)
+    for most, voltage, remedy in (
+        (10_000_000, sw.scenario.sine(1.0, 0.0, 6e6), "sample less often"),
+        (10**12, sw.scenario.sine(1.0, 3e8, 1.0), "take longer steps or slower inputs"),
+    ):
         with pytest.raises(ValueError, match=rf" s are more than 1e\+09 steps of .* s; {remedy}"):
-            sw.simulate_adaptively(DRIVE, voltage)
+            sw.simulate_adaptively(DRIVE, voltage, max_steps=most)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
@@ -397,6 +399,11 @@ def test_a_step_too_coarse_at_rest_is_refused_before_any_is_taken(monkeypatch: p
 def test_what_a_step_cannot_follow_is_named(part: dict[str, Any], words: str) -> None:
     with pytest.raises(FloatingPointError, match=f"^dt = 0.005 s is too coarse for this drive: {words} as fast as"):
         sw.simulate(DRIVE.replace(**part), command(0.1), dt=5e-3, method="exponential")
+    with pytest.warns(sw.EnsembleWarning):
+        runs = sw.simulate_many(DRIVE.replace(**part), command(0.1), {"load.inertia": [0.5, 0.6]}, 5e-3)
+    for said in runs.failures.values():
+        assert re.match(f"dt = 0.005 s is too coarse for this drive: {words} as fast as", said)
+    assert len(runs.failures) == 2
 
 
 OPEN = sw.Drive(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from itertools import count, pairwise
 from typing import Any
 
@@ -14,6 +16,7 @@ from strainwave import _core
 
 from tests.laws.test_gear import DRIVE as EVERYTHING
 from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
+from tests.little_memory import little_memory
 from tests.reference_drive import DRIVE, SMOOTH, STICKING, command
 from tests.strategies import suited
 from tests.tolerance import COLUMNS, Excited, at_limit, difference, until, verdict
@@ -238,6 +241,38 @@ def test_what_cannot_be_a_tolerance_is_refused() -> None:
             sw.simulate_adaptively(DRIVE, command(0.1), rtol=rtol)
     with pytest.raises(ValueError, match=r"^atol = 0\.0 must lie in \(0, inf\)$"):
         sw.simulate_adaptively(DRIVE, command(0.1), atol=0.0)
+
+
+@pytest.mark.parametrize(
+    ("voltage", "steps", "words"),
+    [
+        (
+            sw.scenario.constant(0.1, 1e6),
+            10_000_000,
+            "1e+06 s: adaptive steps are 0.005 s long at most, which makes 2e+08 steps",
+        ),
+        (
+            sw.scenario.constant(0.1, 1e30),
+            10_000_000,
+            "1e+30 s: adaptive steps are 0.005 s long at most, which makes 2e+32 steps",
+        ),
+        (sw.scenario.sine(1.0, 1e3, 1.0), 4999, "1 s: adaptive steps are 0.0002 s long at most, which makes 5e+03 steps"),
+    ],
+)
+def test_a_duration_that_max_steps_cannot_span_is_refused_at_once(
+    voltage: sw.scenario.Scenario, steps: int, words: str
+) -> None:
+    """A run takes a step each 5 ms, and five in a period of an input, at the least; nothing is laid out for them."""
+    said = f"max_steps = {steps} are too few for {words}; allow more, or make several runs, each from the end of the one before"
+    with pytest.raises(ValueError, match=f"^{re.escape(said)}$"):
+        sw.simulate_adaptively(DRIVE, voltage, max_steps=steps, sample=voltage.duration)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
+def test_adaptive_steps_too_many_for_the_memory_say_how_large_they_are() -> None:
+    words = r"^2e\+07 steps take 0\.8 GB, more memory than there is; take longer steps, "
+    with little_memory(64 << 20), pytest.raises(MemoryError, match=words):
+        sw.simulate_adaptively(DRIVE, sw.scenario.constant(0.1, 1e5), max_steps=10**9, sample=1e5)
 
 
 def test_a_run_that_needs_more_steps_than_allowed_says_how_far_they_led_and_what_is_fast() -> None:
