@@ -1,0 +1,275 @@
+"""What document A claims, each in its words, and what the study says of it."""
+
+from __future__ import annotations
+
+from math import degrees, hypot
+from typing import NamedTuple
+
+import numpy as np
+
+from strainwave.files.recording import Recording
+from strainwave.report.typeset import number, quantity
+from strainwave.studies import misalignment as study
+from strainwave.studies.actuator_ramp import INPUT, OUTPUT
+from strainwave.studies.misalignment import MisalignmentStudy, Recovery
+
+ARCMIN = 180.0 * 60.0 / np.pi
+CONFIRMED, IN_PART, CORRECTED = "confirmed", "confirmed in part", "corrected"
+LEVEL = 1  # of the sweep of e_1: 20 um
+
+
+class Claim(NamedTuple):
+    """What document A says, whether it holds, and why."""
+
+    words: str
+    verdict: str
+    answer: str
+
+
+def claims(found: MisalignmentStudy) -> list[Claim]:
+    """All claims, in the order in which document A makes them."""
+    return [
+        _detected(found),
+        _radial(found),
+        _constant(found),
+        _inputs(found),
+        _figure_3a(found),
+        _steady(found),
+        _flap(found),
+        _noisy(found),
+        _figure_3b(found),
+        _level(found),
+        _eccentricity(found),
+        _greater(found),
+    ]
+
+
+def arcmin(angle: float, digits: int = 2) -> str:
+    """An angle [rad] in minutes of arc."""
+    return f"{number(ARCMIN * angle, digits)}′"
+
+
+def microns(length: float, digits: int = 3) -> str:
+    """A length [m] in micrometres."""
+    return f"{number(length / study.MICRON, digits)} µm"
+
+
+def percent(share: float, digits: int = 2) -> str:
+    """A share in per cent."""
+    return f"{number(100.0 * share, digits)} %"
+
+
+def recovery_of(found: MisalignmentStudy, column: str, combine: str) -> Recovery:
+    """What was recovered from a column, with a `combine`."""
+    return next(each for each in found.recoveries if each.column == column and each.law.combine == combine)
+
+
+def share_at(found: MisalignmentStudy, loop: str, order: float = 2.0) -> float:
+    """The share of the error at an order that the output has, with the drive's own gain and the time of the study."""
+    table = found.passing[loop].table
+    chosen = (
+        (table["order"] == order)
+        & np.isclose(table["position_gain"], found.ramp.gain)
+        & np.isclose(table["duration"], found.ramp.duration)
+    )
+    return float(table["share"][chosen][0])
+
+
+def frequency(found: MisalignmentStudy, order: float = 2.0) -> float:
+    """Of an order, in the time of the study [Hz]."""
+    return order * found.ramp.turning / (2.0 * np.pi)
+
+
+def ripple(spectrum: Recording) -> float:
+    """Root mean square of what is faster than the load over the stroke, of a spectrum through a Hann window."""
+    counted = spectrum["order"] > study.SLOW
+    return float(np.sqrt(np.sum(spectrum["amplitude"][counted] ** 2) / 3.0))
+
+
+def speed_swing(found: MisalignmentStudy) -> float:
+    """Half of the swing of the output speed with the shown tilt, over its mean."""
+    speed = found.ramp.settled(found.shown[OUTPUT][study.SHOWN_TILT])["output_speed"]
+    return study.swing(speed) / abs(float(speed.mean()))
+
+
+def same_size(found: MisalignmentStudy, column: str) -> float:
+    """The effect of a tilt over that of an eccentricity of the same size of m."""
+    levels = found.levels[study.USUAL, OUTPUT]
+    sizes = levels.column("e1", "housing_eccentricity")
+    tilted = float(found.law.offset) * np.tan(levels.column("beta", "housing_tilt_x")[LEVEL])
+    there = np.exp(np.interp(np.log(tilted), np.log(sizes), np.log(levels.column("e1", column))))
+    return float(levels.column("beta", column)[LEVEL] / there)
+
+
+def largest_ratio(found: MisalignmentStudy) -> float:
+    """How far the torque with the shown tilt leaves that without, over the torque at that moment, at the most."""
+    runs = [found.ramp.settled(found.shown[OUTPUT][tilt])["torque"] for tilt in (0.0, study.SHOWN_TILT)]
+    return float(np.max(np.abs(runs[1] - runs[0]) / np.maximum(np.abs(runs[0]), 1e-3 * np.abs(runs[0]).max())))
+
+
+def silence(found: MisalignmentStudy, column: str = "current_swing") -> float:
+    """The largest effect of what stands on the shaft alone, over that of as large a misalignment of the housing."""
+    levels = found.levels[study.USUAL, OUTPUT]
+    pairs = zip(study.SILENT, ("e1", "beta"), strict=True)
+    return max(float(np.max(levels.column(quiet, column) / levels.column(loud, column))) for quiet, loud in pairs)
+
+
+# ---- The claims ------------------------------------------------------------------------------------------------------
+
+
+def _detected(found: MisalignmentStudy) -> Claim:
+    recovery = recovery_of(found, "current", study.USUAL)
+    best = recovery.best
+    return Claim(
+        "its presence can be detected and quantified",
+        IN_PART,
+        f"One vector can: from the motor current of one ramp |m| = {microns(best.size)} ± {microns(best.half_widths[0], 2)} "
+        "(95 %), "
+        f"{microns(hypot(*recovery.m))} were put in. m is e₁ plus the tilt β times the offset h: the two cannot be told apart. "
+        "e₂ and α alone leave no trace.",
+    )
+
+
+def _radial(found: MisalignmentStudy) -> Claim:
+    printed = study.BESIDE / float(found.law.pitch_radius)
+    return Claim(
+        "e_WG,mis = θ_e r_g",
+        CORRECTED,
+        "The displacement acts through the flank and against the output: θ_e = −tan α_t e/r_g (E-A4). "
+        f"{microns(study.BESIDE)} are "
+        f"{arcmin(-study.BESIDE * found.per_error(), 3)}, not {arcmin(printed, 3)}.",
+    )
+
+
+def _constant(found: MisalignmentStudy) -> Claim:
+    constant = float(np.mean(found.law.replace(generator_eccentricity=study.BESIDE, combine="max").error(np.zeros(1))))
+    return Claim(
+        "a constant component, related to clearance, and a variable one, related to misalignment",
+        IN_PART,
+        f"Misalignment has a constant part, too: e₂ = {microns(study.BESIDE)} alone shifts the output by "
+        f"{arcmin(abs(constant))} "
+        "for good, and nothing that repeats. The setting of zero takes it away.",
+    )
+
+
+def _inputs(found: MisalignmentStudy) -> Claim:
+    return Claim(
+        "the input parameters are the eccentricity (e₁ and e₂) and the angular deviations (β and α)",
+        CORRECTED,
+        "h is missing: without an offset from the centre of tilt, β acts in second order only (E-A8). e₂ and α turn with the "
+        "shaft, "
+        f"so that alone they leave a constant: at most {percent(silence(found), 1)} of the current that e₁ or β of the same "
+        "size "
+        "takes, from the start of the ramp (E-A9).",
+    )
+
+
+def _figure_3a(found: MisalignmentStudy) -> Claim:
+    pure = found.pure
+    best = pure.fits[pure.best]
+    curve = "the curve" if pure.source else "the assumed curve"
+    return Claim(
+        "proper modelling of the other kinematic error sources, such as clearance and tooth machining error, is necessary",
+        CONFIRMED,
+        f"Fitted to {curve}, misalignment explains {percent(best.explained)} of its variance with |m| = {microns(best.size)}. "
+        f"{arcmin(best.rms)} rms are left, which clearance and tooth errors would have to explain.",
+    )
+
+
+def _steady(found: MisalignmentStudy) -> Claim:
+    straight, tilted = (ripple(each) for each in found.spectra["torque"])
+    return Claim(
+        "the speed of the actuator is constant, and the torque oscillations are primarily linked to the control logic",
+        CORRECTED if tilted > straight else CONFIRMED,
+        f"With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° the output speed swings by ±{percent(speed_swing(found))}. "
+        "The torque "
+        f"oscillates by {quantity(tilted, 'N.m', 2)} rms, without misalignment by {quantity(straight, 'N.m', 2)}: the wave "
+        "generator "
+        "sets the oscillation, the controller only how large it becomes.",
+    )
+
+
+def _flap(found: MisalignmentStudy) -> Claim:
+    levels = found.levels[study.USUAL, OUTPUT]
+    moved = float(levels.column("e1", "output_swing")[LEVEL])
+    gain = found.ramp.gain
+    ideal = float(study.share_by_ideal_loop(frequency(found), gain))
+    return Claim(
+        "because the position control loop operates to minimize the relative error the effect on the flap surface angular "
+        "position is "
+        "negligible",
+        IN_PART,
+        f"It is small: ±{arcmin(moved)} of {number(degrees(found.ramp.stroke), 3)}° at e₁ = {microns(study.BESIDE)}. The "
+        "loop is not the "
+        f"reason: order 2 comes at {number(frequency(found), 3)} Hz, the loop reaches {number(gain / (2.0 * np.pi), 2)} Hz, "
+        "and by "
+        f"itself would let {percent(ideal)} pass. {percent(share_at(found, OUTPUT))} pass, {percent(share_at(found, INPUT))} "
+        "with the "
+        "loop on the motor encoder: inertias, friction, the spring and the reaction of the error on the motor decide. Slow "
+        "ramps with "
+        "the loop on the output are corrected; on the motor encoder the whole error shows.",
+    )
+
+
+def _noisy(found: MisalignmentStudy) -> Claim:
+    share = study.share_of_whole_orders(found.ramp, found.shown[OUTPUT], "torque")
+    return Claim(
+        "the presence of the kinematic error caused a noisy signal with several oscillations",
+        CORRECTED,
+        f"It is no noise: {percent(share, 4)} of the power of the difference lies at whole orders of the wave generator, the "
+        "same in "
+        "each turn but for the load. Over time it looks irregular, over the input angle it does not.",
+    )
+
+
+def _figure_3b(found: MisalignmentStudy) -> Claim:
+    levels = found.levels[study.USUAL, OUTPUT]
+    torque, error = (float(levels.column("beta", name)[LEVEL]) for name in ("torque_swing", "error_swing"))
+    return Claim(
+        "Figure 3.b: differences of the torque (text); misalignment kinematic error (caption)",
+        CORRECTED,
+        f"The two are not the same quantity, so both are drawn. With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° the "
+        "error swings "
+        f"by ±{arcmin(error)}, the torque by ±{quantity(torque, 'N.m', 2)}.",
+    )
+
+
+def _level(found: MisalignmentStudy) -> Claim:
+    def power(combine: str) -> str:
+        return number(study.power_of_level(found.levels[combine, OUTPUT], "e1", "torque_swing"), 2)
+
+    return Claim(
+        "the effect of the kinematic error increases together with the misalignment level",
+        IN_PART,
+        f"In proportion where one lobe carries (swing of torque ~ level to the power {power('single')}) or the outer one "
+        f"({power('max')}); with its square where both share ({power('mean')}). Not at all with h = 0 in first order, nor "
+        "with e₂ and α.",
+    )
+
+
+def _eccentricity(found: MisalignmentStudy) -> Claim:
+    return Claim(
+        "a similar effect can be found in presence of misalignments",
+        CONFIRMED,
+        f"More than similar: a tilt β and an eccentricity of h tan β swing the torque alike, to a ratio of "
+        f"{number(same_size(found, 'torque_swing'), 3)}.",
+    )
+
+
+def _greater(found: MisalignmentStudy) -> Claim:
+    levels = found.levels[study.USUAL, OUTPUT]
+    sizes = levels.column("e1", "housing_eccentricity")
+    torque, current = (levels.column("e1", name) for name in ("torque_peak", "current_peak"))
+    half = found.passing[OUTPUT].table
+    fast = (half["duration"] == half["duration"].min()) & np.isclose(half["position_gain"], found.ramp.gain)
+    quick = float(half["torque_swing"][fast][0] / levels.column("e1", "torque_swing")[LEVEL])
+    return Claim(
+        "oscillating torques which are instantaneously significantly greater than the nominal ones",
+        CORRECTED if torque[-1] < 1.5 else CONFIRMED,
+        f"Not at such sizes: the peak is {percent(torque[LEVEL] - 1.0)} above the nominal one in torque and "
+        f"{percent(current[LEVEL] - 1.0)} in current at e₁ = {microns(sizes[LEVEL])}, {percent(torque[-1] - 1.0)} and "
+        f"{percent(current[-1] - 1.0)} at {microns(sizes[-1])}. At a single moment the torque is up to "
+        f"{percent(largest_ratio(found))} off with a tilt of {number(degrees(study.SHOWN_TILT), 2)}°. In half the time the "
+        "swing is "
+        f"{number(quick, 2)} times as large.",
+    )

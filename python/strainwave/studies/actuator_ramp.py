@@ -1,0 +1,172 @@
+"""An actuator that turns its output through its stroke at constant speed, as document A has it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, arguments, kinematic_error
+from strainwave.files.described import parameters, parts
+from strainwave.files.recording import Recording
+from strainwave.messages import listed, quoted
+from strainwave.parameters import every
+from strainwave.simulation.ensemble import Ensemble, simulate_many
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
+from strainwave.simulation.resolution import COARSEST
+from strainwave.simulation.run import simulate
+from strainwave.simulation.scenario import Scenario, ramp
+
+Array = NDArray[np.float64]
+
+OUTPUT, INPUT = "output", "input"
+LOOPS = {OUTPUT: "output sensor", INPUT: "motor encoder"}
+ERROR = "gear.kinematic_error"
+RUN_IN = 0.1  # share of the ramp that is left out, until the speed is even
+LONGEST = 2e-4  # s, of a step
+STIFFER = 0.7  # a twisted gear may be stiffer than one at rest: steps are shorter by this factor
+SAMPLE = 1e-3  # s
+CHANNELS = ("torque", "current", "output_angle", "input_angle")
+# Document A prints no dimensions. Assumed where the drive has none: those of E-R2, 0.6 mm of difference between the half axes.
+ASSUMED = kinematic_error.Misalignment(
+    major_radius=25.3e-3, minor_radius=24.7e-3, pitch_radius=25e-3, pressure_angle=np.radians(20.0)
+)
+OFFSET = 4e-3  # m: how far the section lies from the centre of tilt, assumed where the drive does not say
+
+
+@dataclass(frozen=True)
+class ActuatorRamp:
+    """A drive, a stroke and the time that it takes.
+
+    Attributes:
+        drive: whose position loop closes on either side
+        stroke: of the output [rad]
+        duration: of the ramp [s]
+        dt: largest step [s]
+    """
+
+    drive: Drive
+    stroke: float
+    duration: float
+    dt: float
+
+    @classmethod
+    def of(cls, drive: Drive, stroke: float, duration: float) -> ActuatorRamp:
+        """Whose steps are as short as the drive asks for.
+
+        Raises:
+            ValueError: the stroke or the time is not positive, the ramp is less than three turns of the input, or the drive has
+                no position loop that closes on both sides
+        """
+        arguments.number("stroke", float(np.degrees(stroke)), "deg", low=0.0)
+        duration = arguments.seconds("time", duration)
+        turns = stroke * abs(drive.gear.kinematics.ratio) / (2.0 * np.pi)
+        if turns * (1.0 - RUN_IN) < 3.0:
+            needed = np.degrees(stroke * 3.0 / (turns * (1.0 - RUN_IN)))
+            raise ValueError(
+                f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {needed:.3g} deg or more"
+            )
+        for name in ("feedback", "position_gain"):
+            _control_path(drive, name)
+        fastest = _core.max_rate(drive, 0.0, ROOM_TEMPERATURE)
+        return cls(drive, stroke, duration, min(LONGEST, STIFFER * COARSEST / fastest))
+
+    @property
+    def command(self) -> Scenario:
+        """The output angle asked for [rad]."""
+        return ramp(self.stroke / self.duration, duration=self.duration)
+
+    @property
+    def turning(self) -> float:
+        """How fast the input turns [rad/s], as a size."""
+        return self.stroke / self.duration * abs(float(self.drive.gear.kinematics.ratio))
+
+    @property
+    def gain_path(self) -> str:
+        """The path of the gain of the position loop [1/s]."""
+        return _control_path(self.drive, "position_gain")
+
+    @property
+    def gain(self) -> float:
+        """The gain of the position loop [1/s], which is the bandwidth in rad/s that it would have with an ideal speed loop."""
+        return every(self.drive)[self.gain_path].value
+
+    def closed_on(self, side: str) -> ActuatorRamp:
+        """The same with the position loop closed on "output" or "input"."""
+        return replace(self, drive=self.drive.replace({_control_path(self.drive, "feedback"): side}))
+
+    def with_error(self, law: Any) -> ActuatorRamp:
+        """The same with another kinematic error."""
+        return replace(self, drive=self.drive.replace({ERROR: law}))
+
+    def lasting(self, duration: float) -> ActuatorRamp:
+        """The same stroke in another time [s]."""
+        return replace(self, duration=duration)
+
+    def without_noise(self) -> ActuatorRamp:
+        """The same, measured by sensors without noise."""
+        return replace(self, drive=self.drive.replace(dict.fromkeys(noises(self.drive, "amplitude"), 0.0)))
+
+    def run(self) -> Recording:
+        """One run, all channels."""
+        return simulate(self.drive, self.command, self.dt, sample=SAMPLE)
+
+    def many(self, members: Sequence[Mapping[str, float]], record: Sequence[str]) -> Ensemble:
+        """Runs that differ in the numbers given; each takes what it does not name from the drive.
+
+        Raises:
+            ValueError: one of them cannot be run to its end
+        """
+        own = every(self.drive)
+        paths = dict.fromkeys(path for member in members for path in member)
+        columns = {path: [member.get(path, own[path].value) for member in members] for path in paths}
+        runs = simulate_many(self.drive, self.command, columns, dt=self.dt, sample=SAMPLE, record=record)
+        if runs.failures:
+            member, reason = next(iter(runs.failures.items()))
+            raise ValueError(f"the ramp cannot be run with {dict(members[member])}: {reason}")
+        return runs
+
+    def settled(self, recording: Recording) -> Recording:
+        """What follows the run-in."""
+        return recording.between(RUN_IN * self.duration, self.duration)
+
+
+def geometry(drive: Drive) -> tuple[Any, bool]:
+    """The drive's own `Misalignment`, set straight, and whether it is assumed because the drive has none."""
+    own = next(_laws(drive.gear.kinematic_error), None)
+    law: Any = ASSUMED if own is None else own
+    straight: dict[str, Any] = {
+        name: 0.0 for name, kind, _ in parameters(law) if name.startswith(("housing_", "generator_")) and kind == "number"
+    }
+    return law.replace(**straight, offset=law.offset or OFFSET), own is None
+
+
+def noises(drive: Drive, name: str) -> list[str]:
+    """The paths of a number ("amplitude", "seed") of all noises that the drive's sensors have."""
+    return [path for path in every(drive) if path.startswith("sensors.") and path.endswith(f".{name}")]
+
+
+def _laws(law: Any) -> Iterator[Any]:
+    """Every law of misalignment in another law, or it itself."""
+    if isinstance(law, kinematic_error.Misalignment):
+        yield law
+    for part in parts(law):
+        yield from _laws(getattr(law, part.name))
+
+
+def _control_path(drive: Drive, name: str) -> str:
+    """The path of a parameter of the controller, which may be inside of a sampled one."""
+    place, control = "control", drive.control
+    while name not in (known := [each.name for each in parameters(control)]):
+        inner = parts(control)
+        if not inner:
+            raise ValueError(
+                f"the controller {quoted(control.name)} of the drive has no {name}, but {listed(known)}; the study needs a "
+                "position "
+                "loop around a speed loop, as cascade and position_speed are"
+            )
+        place, control = f"{place}.{inner[0].name}", getattr(control, inner[0].name)
+    return f"{place}.{name}"

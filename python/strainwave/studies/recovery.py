@@ -1,0 +1,237 @@
+"""A misalignment from a record of a ramp: order analysis, and what the model of the drive makes of an error at each order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import kinematic_error
+from strainwave.analysis.orders import orders
+from strainwave.files.recording import Recording
+from strainwave.studies.actuator_ramp import ActuatorRamp
+from strainwave.studies.pure_error import COMBINE, MICRON, placed
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+ORDERS = (1.0, 2.0, 3.0, 4.0)
+NEIGHBOURS = 6  # lines on each side of an order, whose size tells the noise
+PROBE = 2e-5  # rad: amplitude of each order by which the model of the drive is probed
+CORRECTIONS = 3
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class Model:
+    """A drive whose answer to a kinematic error is known at each order, from two runs without noise of its sensors.
+
+    Attributes:
+        ramp: what was run
+        straight: recording without any error, after the run-in
+        probed: the same with an error of every order
+    """
+
+    ramp: ActuatorRamp
+    straight: Recording
+    probed: Recording
+
+    @classmethod
+    def of(cls, ramp: ActuatorRamp) -> Model:
+        """Runs a drive with an error of a few orders, small and of equal size, and without."""
+        quiet = ramp.without_noise()
+        none, probe = (quiet.settled(quiet.with_error(_orders_of(size)).run()) for size in (0.0, PROBE))
+        return cls(quiet, none, probe)
+
+    def gain(self, column: str) -> Complex:
+        """Answer over error at each order [unit of the column / rad], shape (4,)."""
+        none, probe = (orders(run, column, ORDERS) for run in (self.straight, self.probed))
+        answers: Complex = _sines(probe.amplitude, probe.phase) - _sines(none.amplitude, none.phase)
+        return answers / PROBE
+
+    def run(self, law: Any) -> Recording:
+        """A run with some error, after the run-in."""
+        return self.ramp.settled(self.ramp.with_error(law).run())
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Orders of a record.
+
+    Attributes:
+        at: amplitude and phase of each order as a sine of the input angle [unit], shape (4,)
+        noise: standard deviation of the real and of the imaginary part of each [unit], shape (4,)
+        degrees: of freedom of the noise of an order
+    """
+
+    at: Complex
+    noise: Array
+    degrees: int
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """What a column tells of the misalignment.
+
+    Attributes:
+        column: in which it was looked for
+        combine: how the lobes share, as assumed
+        m: found [m]; where the lobe further out carries, and where two carry alike, m and -m are the same
+        covariance: of m [m^2], shape (2, 2)
+        degrees: of freedom of the noise
+        misfit: mean square of what is left over the noise; about 1 where `combine` is right
+    """
+
+    column: str
+    combine: str
+    m: tuple[float, float]
+    covariance: Array
+    degrees: int
+    misfit: float
+
+    @property
+    def size(self) -> float:
+        """How large m is [m]."""
+        return float(np.hypot(*self.m))
+
+    @property
+    def direction(self) -> float:
+        """Where m points [rad]."""
+        return float(np.arctan2(self.m[1], self.m[0]))
+
+    @property
+    def reach(self) -> float:
+        """Half axes of the ellipse of 95 % confidence over standard deviations."""
+        from scipy.stats import f
+
+        return float(np.sqrt(2.0 * f.ppf(CONFIDENCE, 2, self.degrees)))
+
+    @property
+    def half_widths(self) -> tuple[float, float]:
+        """Half of the intervals of 95 % of the size [m] and of the direction [rad], each by itself."""
+        from scipy.stats import t
+
+        along = np.array(self.m) / max(self.size, 1e-12)
+        across = np.array([-along[1], along[0]])
+        factor = float(t.ppf(0.5 + 0.5 * CONFIDENCE, self.degrees))
+        deviations = [float(np.sqrt(way @ self.covariance @ way)) for way in (along, across)]
+        return factor * deviations[0], factor * deviations[1] / max(self.size, 1e-12)
+
+    def contains(self, m: tuple[float, float]) -> bool:
+        """Whether a vector lies in the ellipse of 95 % confidence, or its opposite does where the two are the same."""
+        signs = (1.0,) if self.combine == "single" else (1.0, -1.0)
+        gaps = [np.array(self.m) - sign * np.array(m) for sign in signs]
+        return bool(min(float(gap @ np.linalg.solve(self.covariance, gap)) for gap in gaps) <= self.reach**2)
+
+
+def recover(recording: Recording, column: str, model: Model, law: Any) -> dict[str, Recovered]:
+    """The misalignment that a record tells, for each way in which the lobes may share.
+
+    Args:
+        recording: with input_angle and the column, after the run-in
+        column: in which to look
+        model: of the drive
+        law: `Misalignment`, whose dimensions are kept
+
+    Returns:
+        What was found, by `combine`.
+    """
+    gain = model.gain(column)
+    seen = look(beside(recording, model.straight, column), column)
+    return {each: _solved(seen.at / gain, seen, gain, column, law.replace(combine=each)) for each in COMBINE}
+
+
+def refined(found: Recovered, recording: Recording, model: Model, law: Any) -> Recovered:
+    """The same, for drives whose answer depends on the size of the error: what was found is run, and corrected by the rest.
+
+    Hysteresis and friction answer a small error otherwise than a large one. The corrections shrink by how far the answer to the
+    probe is from that to the error itself, some per cent. What is left between the orders is noise alone.
+    """
+    for _ in range(CORRECTIONS):
+        found = corrected(found, recording, model.run(placed(law.replace(combine=found.combine), found.m)), model, law)
+    return found
+
+
+def corrected(found: Recovered, recording: Recording, run: Recording, model: Model, law: Any) -> Recovered:
+    """What was found, corrected by how far the record is from a run with it."""
+    gain, own = model.gain(found.column), placed(law.replace(combine=found.combine), found.m)
+    seen = look(beside(recording, run, found.column), found.column)
+    return _solved(harmonics(own) + seen.at / gain, seen, gain, found.column, own, found.m)
+
+
+def chosen(found: Mapping[str, Recovered]) -> Recovered:
+    """The one that leaves least beside the noise."""
+    return min(found.values(), key=lambda each: each.misfit)
+
+
+def beside(recording: Recording, run: Recording, column: str) -> Recording:
+    """How far a column of a record is from that of a run at the same input angle."""
+    angle = recording.values("input_angle", "rad")
+    turned, there = run["input_angle"], run[column]
+    sense = np.sign(turned[-1] - turned[0])
+    difference = recording.values(column, run.unit(column)) - np.interp(sense * angle, sense * turned, there)
+    return Recording({"input_angle": angle, column: difference}, {"input_angle": "rad", column: run.unit(column)})
+
+
+def look(recording: Recording, column: str) -> Seen:
+    """The orders of a column, and its noise.
+
+    Lines between the orders have noise alone; those next to an order tell how much of it the order has.
+    """
+    turned = np.ptp(recording.values("input_angle", "rad")) / (2.0 * np.pi)
+    lines = int(turned * (1.0 + 1e-9))
+    reach = min(NEIGHBOURS, (lines - 1) // 2)
+    apart = [step / lines for step in range(-reach, reach + 1) if step]
+    asked = np.array([order + each for order in ORDERS for each in (0.0, *apart)])
+    there = orders(recording, column, asked)
+    amplitude, phase = (values.reshape(len(ORDERS), -1) for values in (there.amplitude, there.phase))
+    noise = np.sqrt(0.5 * np.mean(amplitude[:, 1:] ** 2, axis=1))
+    return Seen(_sines(amplitude[:, 0], phase[:, 0]), np.maximum(noise, np.finfo(float).tiny), 4 * reach)
+
+
+def harmonics(law: Any) -> Complex:
+    """The orders of a law over a turn [rad], shape (4,)."""
+    there = law.harmonics(int(ORDERS[-1]))
+    return _sines(np.array(there.amplitude), np.array(there.phase))
+
+
+def _sines(amplitude: Array, phase: Array) -> Complex:
+    values: Complex = amplitude * np.exp(1j * phase)
+    return values
+
+
+def _orders_of(amplitude: float) -> Any:
+    return kinematic_error.Fourier(order=ORDERS, amplitude=[amplitude] * len(ORDERS), phase=[0.0] * len(ORDERS))
+
+
+def _solved(
+    asked: Complex, seen: Seen, gain: Complex, column: str, law: Any, start: tuple[float, float] | None = None
+) -> Recovered:
+    """m by least squares from an error at each order [rad], each weighed by its noise."""
+    from scipy.optimize import least_squares
+
+    sigma = seen.noise / np.abs(gain)
+
+    def gap(point: Array) -> Array:
+        rest = (harmonics(placed(law, (MICRON * float(point[0]), MICRON * float(point[1])))) - asked) / sigma
+        return np.concatenate([rest.real, rest.imag])
+
+    far = 0.4 * float(law.minor_radius) / MICRON
+    begin = np.clip(np.array(_start(asked, law) if start is None else start) / MICRON, -0.9 * far, 0.9 * far)
+    best: Any = least_squares(gap, begin, bounds=(-far, far), x_scale=max(float(np.abs(begin).max()), 1.0))
+    covariance: Array = MICRON**2 * np.linalg.pinv(best.jac.T @ best.jac)
+    m = (MICRON * float(best.x[0]), MICRON * float(best.x[1]))
+    return Recovered(column, law.combine, m, covariance, seen.degrees, 2.0 * float(best.cost) / (2 * len(ORDERS) - 2))
+
+
+def _start(asked: Complex, law: Any) -> tuple[float, float]:
+    """m by the first order that the law has, whose size grows with m, or with its square, and whose phase turns with it."""
+    place = 0 if law.combine == "single" else 1
+    unit = harmonics(placed(law, (MICRON, 0.0)))[place]
+    ratio = asked[place] / unit
+    size = MICRON * float(np.sqrt(abs(ratio)) if law.combine == "mean" else abs(ratio))
+    way = -float(np.angle(ratio)) / ORDERS[place]
+    return size * float(np.cos(way)), size * float(np.sin(way))
