@@ -43,7 +43,9 @@ def made(model: Any, **changed: Any) -> Any:
 
 
 def suited(part: Any, kinematics: Any) -> Any:
-    """A part of a gear as the gear takes it: with its ratio, if the part asks for one."""
+    """A part of a gear as the gear takes it: with its ratio, if the part, or the spring behind its play, asks for one."""
+    if type(part) is sw.stiffness.Backlash:
+        return part.replace(law=suited(part.law, kinematics))
     return part.replace(reduction=max(1.0, abs(kinematics.ratio))) if type(part) is sw.stiffness.MultiCompliance else part
 
 

@@ -93,7 +93,13 @@ ELSEWHERE = {
     "Linear": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
     "Piecewise": {"specialised.hpp": USUAL},
     "ThreeSegment": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
-    "Cubic": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
+    "Cubic": {
+        "specialised.hpp": USUAL,
+        "stiffness/backlash.hpp": "the spring behind its play by default",
+        "identify/torsion.py": TORSION_CURVE,
+    },
+    "MultiCompliance": {"hysteresis/frictional_windup.hpp": "the two springs that it has friction between"},
+    "Backlash": {"any.hpp": BOUND_TO_ANY},
     "MaxwellSlip": {"specialised.hpp": USUAL, "identify/torsion.py": "the hysteresis of a measured torsion loop"},
 }
 

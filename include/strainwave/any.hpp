@@ -412,6 +412,10 @@ template <class S, class Law>
 struct AtRunTime<S, sensor::Quantised<S, Law>> {
     using type = sensor::Quantised<S, AnyOf<S, sensor::Loud>>;
 };
+template <class S, class Law>
+struct AtRunTime<S, stiffness::Backlash<S, Law>> {
+    using type = stiffness::Backlash<S, AnyOf<S, stiffness::Plain>>;
+};
 template <class S, class Density>
 struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
     using type = hysteresis::Preisach<S, AnyOf<S, hysteresis::Densities>>;

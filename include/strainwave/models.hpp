@@ -20,6 +20,7 @@
 #include <strainwave/friction/viscous.hpp>
 #include <strainwave/hysteresis/bouc_wen.hpp>
 #include <strainwave/hysteresis/fading_memory.hpp>
+#include <strainwave/hysteresis/frictional_windup.hpp>
 #include <strainwave/hysteresis/maxwell_slip.hpp>
 #include <strainwave/hysteresis/preisach.hpp>
 #include <strainwave/hysteresis/regimes.hpp>
@@ -51,6 +52,7 @@
 #include <strainwave/sensor/quantised.hpp>
 #include <strainwave/sensor/second_order.hpp>
 #include <strainwave/softening/thermal_softening.hpp>
+#include <strainwave/stiffness/backlash.hpp>
 #include <strainwave/stiffness/cubic.hpp>
 #include <strainwave/stiffness/linear.hpp>
 #include <strainwave/stiffness/multi_compliance.hpp>
@@ -91,10 +93,11 @@ using Varying = Extended<Plain, Cyclic>;
 using Models = Extended<Varying, Thermal>;
 }  // namespace friction
 namespace stiffness {
-using Models = List<Linear, Piecewise, ThreeSegment, Cubic, MultiCompliance>;
-}
+using Plain = List<Linear, Piecewise, ThreeSegment, Cubic, MultiCompliance>;
+using Models = Extended<Plain, Backlash>;
+}  // namespace stiffness
 namespace hysteresis {
-using Models = List<MaxwellSlip, FadingMemory, BoucWen, Preisach, Regimes>;
+using Models = List<MaxwellSlip, FadingMemory, BoucWen, Preisach, Regimes, FrictionalWindup>;
 using Densities = List<PowerDensity, GridDensity>;
 }  // namespace hysteresis
 namespace motor {

@@ -6,6 +6,8 @@ from typing import Any
 import numpy
 import numpy.typing
 
+import strainwave.stiffness
+
 
 class PrandtlIshlinskii:
     """
@@ -991,6 +993,160 @@ class Regimes:
         """
 
     odd: bool = False
+
+    return_point_memory: bool = True
+
+    congruent: bool = False
+
+    masing: bool = False
+
+class FrictionalWindup:
+    """
+    Flexspline and wave generator in series, with dry friction that holds the wind-up of the wave generator.
+
+    .. math:: \\delta = \\delta_f(T) + x(T_w), \\qquad |T - T_w| \\le F, \\qquad T = T_w + F \\; (dx > 0), \\quad
+              T = T_w - F \\; (dx < 0)
+
+    with delta the twist, delta_f and x the shares of flexspline and wave generator, as MultiCompliance has them = springs,
+    T the torque, T_w that of the wave generator's spring, F = friction, at the output. While the wave generator sticks, the
+    gear is as stiff as its flexspline; once it slips, as both in series. A cycle loses the integral of F |dx|, 4 F x(T_m - F)
+    between +-T_m, and leaves the twist x(F) without torque. Exact over any monotone step; minor loops close. Virgin is no
+    twist and no torque.
+
+    Document R takes the friction at the input, or divides it by N (E-R13), and lets it follow the speed of the input: with the
+    input held, as in a torsion test, there would be no hysteresis, and elsewhere energy out of nothing (E-R14).
+
+    It is a whole spring: in a gear, the ``stiffness`` acts in parallel, and is what is stiff beside it (Linear with a
+    negligible stiffness if nothing is). The reduction of the springs is to be that of the gear. Where both springs harden,
+    there is no torque beyond a twist (E-R16); the law is valid as far as MultiCompliance is, and keeps its greatest torque
+    from there on.
+
+    >>> from strainwave.hysteresis import FrictionalWindup
+    >>> from strainwave.stiffness import MultiCompliance
+    >>> springs = MultiCompliance(flexspline_stiffness=8000.0, flexspline_hardening=0.02, wave_generator_stiffness=2.0,
+    ...                           wave_generator_hardening=1.5, reduction=100.0)
+    >>> law = FrictionalWindup(springs=springs, friction=5.0)
+    >>> law.trace([0.0, 0.003, 0.002, -0.003, 0.003]).round(6)
+    array([  0.      ,  19.663744,  10.902808, -19.663744,  19.663744])
+
+    Parameters
+    ----------
+    springs: Flexspline and wave generator; default MultiCompliance(flexspline_stiffness=8000.0, flexspline_hardening=0.02, wave_generator_stiffness=2.0, wave_generator_hardening=1.5, reduction=100.0)
+    friction: Friction F against the wind-up, at the output's scale [N.m], in [0, inf); required
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document R, section 4c, with T_fr; errata E-R13, E-R14; play: Visintin1994
+    """
+
+    def __init__(self, *, springs: strainwave.stiffness.MultiCompliance = ..., friction: float) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, springs: strainwave.stiffness.MultiCompliance = ..., friction: float = ...) -> FrictionalWindup:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def springs(self) -> strainwave.stiffness.MultiCompliance:
+        """Flexspline and wave generator"""
+
+    @property
+    def friction(self) -> float:
+        """Friction F against the wind-up, at the output's scale [N.m]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'frictional_windup'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    class State:
+        """
+        Parameters
+        ----------
+        twist: Twist since the springs were virgin [rad]; default 0.0
+        torque: Torque T [N.m]; default 0.0
+        windup_torque: Torque T_w of the wave generator's spring, at the output [N.m]; default 0.0
+
+        Raises
+        ------
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, twist: float = ..., torque: float = ..., windup_torque: float = ...) -> None: ...
+
+        def replace(self, changes: dict[str, Any] = ..., /, *, twist: float = ..., torque: float = ..., windup_torque: float = ...) -> FrictionalWindup.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
+
+        @property
+        def twist(self) -> float:
+            """Twist since the springs were virgin [rad]"""
+
+        @property
+        def torque(self) -> float:
+            """Torque T [N.m]"""
+
+        @property
+        def windup_torque(self) -> float:
+            """Torque T_w of the wave generator's spring, at the output [N.m]"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
+
+        name: str = 'frictional_windup.state'
+
+        fields: tuple[dict[str, Any], ...]
+
+    def trace(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64], state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `twist` [rad], shape (n,), monotone between its points.
+
+        The history starts with `state`, which stands at the first point; without it the model is virgin.
+        """
+
+    def work(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64], state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Work [J] put in so far, shape (n,), along a path of `twist` [rad]; exact, as `trace` is.
+        """
+
+    def advance(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64], state: State = ...) -> State:
+        """The state at the end of a path of `twist` [rad]."""
+
+    def stored(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64], state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Elastic energy [J] held, shape (n,), along a path of `twist` [rad]; work less stored is dissipated.
+        """
+
+    odd: bool = True
 
     return_point_memory: bool = True
 

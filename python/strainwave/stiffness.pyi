@@ -499,3 +499,99 @@ class MultiCompliance:
     @overload
     def energy(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """Elastic energy [J] at `twist` [rad]."""
+
+class Backlash:
+    """
+    A spring behind play: within the clearance nothing is transmitted, beyond it the spring is twisted from where the play ends.
+
+    .. math:: T = T_{law}(\\delta - p), \\qquad p = \\min(\\max(\\delta, -c/2), c/2)
+
+    with delta the twist, p the play taken up, c = clearance, law any spring without play. Torque, stiffness and energy are 0
+    within the play; the two flanks are c apart at zero torque, which is what a lost-motion test adds to the twist of the
+    spring. The stiffness jumps at the flanks, where it is that of the spring; a torque of exactly 0 has the twist 0. With c =
+    0 it is the spring itself.
+
+    Without loss: flanks meet elastically, and what a blow loses is for ``damping`` and friction of the gear. The damping of a
+    gear acts within the play, too. A strain wave gear has next to no play as long as it is sound: its teeth are preloaded.
+    Worn or badly fitted ones have; for a backlash that grows with the torque take a ``hysteresis``.
+
+    >>> from strainwave.stiffness import Backlash, Linear
+    >>> spring = Backlash(law=Linear(k=1e4), clearance=2e-4)
+    >>> spring.torque([0.0, 1e-4, 3e-4]).round(9), round(spring.twist(2.0), 9)
+    (array([0., 0., 2.]), 0.0003)
+
+    Parameters
+    ----------
+    law: The spring behind the play; default Linear(k=10000.0)
+    clearance: Play c at the output, from flank to flank [rad], in [0, inf); required
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document A, kinematic error: "a constant component, related to clearance\"
+    """
+
+    def __init__(self, *, law: Linear | Piecewise | ThreeSegment | Cubic | MultiCompliance = ..., clearance: float) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Linear | Piecewise | ThreeSegment | Cubic | MultiCompliance = ..., clearance: float = ...) -> Backlash:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def law(self) -> Linear | Piecewise | ThreeSegment | Cubic | MultiCompliance:
+        """The spring behind the play"""
+
+    @property
+    def clearance(self) -> float:
+        """Play c at the output, from flank to flank [rad]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'backlash'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def torque(self, twist: float) -> float: ...
+
+    @overload
+    def torque(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Torque [N.m] at `twist` [rad]."""
+
+    @overload
+    def twist(self, torque: float) -> float: ...
+
+    @overload
+    def twist(self, torque: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Twist [rad] at `torque` [N.m], the inverse of `torque`."""
+
+    @overload
+    def tangent(self, twist: float) -> float: ...
+
+    @overload
+    def tangent(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Stiffness dT/d(twist) [N.m/rad] at `twist` [rad]."""
+
+    @overload
+    def energy(self, twist: float) -> float: ...
+
+    @overload
+    def energy(self, twist: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Elastic energy [J] at `twist` [rad]."""

@@ -1,4 +1,7 @@
-"""What every spring obeys: odd, strictly rising, invertible, and its energy and tangent belong to its torque."""
+"""What every spring obeys: odd, strictly rising, invertible, and its energy and tangent belong to its torque.
+
+Of one with play all this holds beyond the play: a torque that is not zero has its twist there.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +19,9 @@ STEP = 1e-4  # of the twist: what the difference quotients reach over
 
 
 def mean_lies_between_the_ends(steps: tuple[float, float], values: tuple[float, float], slopes: tuple[float, float]) -> bool:
-    """Mean value theorem, give or take the rounding of the values whose difference is taken."""
+    """Mean value theorem, give or take the rounding of the places and of the values whose difference is taken."""
     (a, b), (at_a, at_b) = steps, values
-    rounding = 2e-15 * max(map(abs, values)) / abs(b - a) + 1e-12 * max(map(abs, slopes))
+    rounding = (2e-15 * max(map(abs, values)) + 1e-15 * max(map(abs, steps)) * max(map(abs, slopes))) / abs(b - a)
     return min(slopes) - rounding <= (at_b - at_a) / (b - a) <= max(slopes) + rounding
 
 

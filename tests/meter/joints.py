@@ -57,6 +57,7 @@ GEAR_PARTS: dict[str, list[Any]] = {
     "kinematic_error": [
         FOURIER,
         made(sw.kinematic_error.Misalignment, offset=4e-3, housing_tilt_x=2e-3, generator_tilt_y=2e-3),
+        made(sw.kinematic_error.ToothErrors, flexspline_deviation=1.5e-5, circular_spline_deviation=1.5e-5, seed=1),
     ],
     "kinematic_noise": [NOISE],
     "stiffness": [
@@ -71,6 +72,7 @@ GEAR_PARTS: dict[str, list[Any]] = {
             wave_generator_hardening=0.5,
             reduction=100.0,
         ),
+        sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=5e-5),
     ],
     "hysteresis": [
         sw.hysteresis.MaxwellSlip(stiffness=[2e3, 1e3], breakaway=[0.3, 0.6]),
@@ -84,6 +86,16 @@ GEAR_PARTS: dict[str, list[Any]] = {
             positive_loading=1.5e3,
             onset=0.05,
             lost_motion=1e-4,
+        ),
+        sw.hysteresis.FrictionalWindup(
+            springs=sw.stiffness.MultiCompliance(
+                flexspline_stiffness=8e3,
+                flexspline_hardening=0.02,
+                wave_generator_stiffness=1.0,
+                wave_generator_hardening=1.5,
+                reduction=100.0,
+            ),
+            friction=0.3,
         ),
     ],
     "friction_input": FRICTIONS,

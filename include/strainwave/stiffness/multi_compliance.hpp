@@ -58,6 +58,12 @@ struct ArctanSpring {
         const S near = torque * torque / (S(2.0) + u) * reciprocals<1, 3, 5, 7, 9, 11, 13, 15, 17>(v * v);
         return softness * select(u < S(0.25), near, S(0.5) * log(S(1.0) + u) / c / c);
     }
+    /// tan(c twist / softness) / c, for twist >= 0; beyond the bound a torque that is too large for any use.
+    constexpr S torque(const S& twist) const {
+        const S linear = min(twist / softness, S(unbounded)), angle = min(hardening * linear, S(0.5 * pi));
+        const auto [sine, cosine] = sincos(angle);
+        return select(angle < S(1e-8), linear, sine / max(cosine, S(1e-17)) / or_one(hardening));
+    }
     constexpr S bound() const { return reach(softness, hardening, S(0.5 * pi)); }
 };
 
@@ -120,12 +126,13 @@ struct InSeries {
         return level;
     }
 
-private:
+    /// Without derivatives.
     constexpr InSeries constant() const {
         return {{detached(flexspline.softness), detached(flexspline.hardening)},
                 {detached(wave_generator.softness), detached(wave_generator.hardening)}};
     }
 
+private:
     /// Below the torque sought, and near it: no part gives way more than its linear self, nor beyond its bound; and with that
     /// as x and y, arctan x <= x (1 + 4 x^2 / 15) / (1 + 3 x^2 / 5) and 1 - exp(-y) <= y / (1 + y / 2).
     constexpr S start(const S& d) const {
@@ -224,26 +231,26 @@ struct MultiCompliance {
         visit(SW_REQUIRED(m, reduction, "1", "Ratio N of the gear, without its sign", 1));
     }
 
-    constexpr S torque(const S& twist) const { return along(twist, springs().torque(abs(twist))); }
-    constexpr S twist(const S& torque) const { return along(torque, springs().at(abs(torque)).twist); }
+    constexpr S torque(const S& twist) const { return along(twist, in_series().torque(abs(twist))); }
+    constexpr S twist(const S& torque) const { return along(torque, in_series().at(abs(torque)).twist); }
     constexpr S tangent(const S& twist) const {
-        const auto both = springs();
+        const auto both = in_series();
         const S level = both.torque(abs(twist));
         return select(level < both.largest(), S(1.0) / both.at(level).compliance, S(0.0));
     }
     constexpr S energy(const S& twist) const {
-        const auto both = springs();
+        const auto both = in_series();
         const S d = abs(twist), level = both.torque(d);
         return both.energy(level) + level * both.missing(d, both.at(level));
     }
 
     constexpr Domain<S> domain(const S& twist) const {
-        const S bound = springs().bound();
+        const S bound = in_series().bound();
         return {"twist", twist, -bound, bound, "rad", "a hardening of 0 leaves the twist unbounded"};
     }
 
-private:
-    constexpr detail::InSeries<S> springs() const {
+    /// Both, as the output sees them.
+    constexpr detail::InSeries<S> in_series() const {
         return {{S(1.0) / flexspline_stiffness, flexspline_hardening},
                 {S(1.0) / (reduction * reduction * wave_generator_stiffness), wave_generator_hardening / reduction}};
     }

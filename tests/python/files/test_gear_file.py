@@ -152,7 +152,7 @@ def test_a_byte_order_mark_and_windows_line_ends_are_no_matter(folder: Path) -> 
 
 # What is refused
 
-SPRINGS = '"linear" or "piecewise" or "three_segment" or "cubic" or "multi_compliance"'
+SPRINGS = '"linear" or "piecewise" or "three_segment" or "cubic" or "multi_compliance" or "backlash"'
 STIFFNESS = f"write model = {SPRINGS}"
 LAWS = (
     '"viscous" or "coulomb" or "stribeck" or "position_dependent" or "lugre" or "maxwell_slip_friction" or "load_dependent" '

@@ -1,0 +1,77 @@
+#pragma once
+#include <strainwave/compiled.hpp>
+#include <strainwave/condition.hpp>
+#include <strainwave/stiffness/cubic.hpp>
+
+namespace strainwave {
+
+template <class S, class Spring>
+constexpr S reduction_of(const Spring& spring);
+
+namespace stiffness {
+
+template <class S, class Law_ = Cubic<S>>
+struct Backlash {
+    using Law = Law_;
+
+    Law law{};
+    S clearance{0.0};
+
+    static constexpr auto name = "backlash";
+    static constexpr auto source = "document A, kinematic error: \"a constant component, related to clearance\"";
+    static constexpr auto doc = R"(
+        A spring behind play: within the clearance nothing is transmitted, beyond it the spring is twisted from where the play ends.
+
+        .. math:: T = T_{law}(\delta - p), \qquad p = \min(\max(\delta, -c/2), c/2)
+
+        with delta the twist, p the play taken up, c = clearance, law any spring without play. Torque, stiffness and energy are 0
+        within the play; the two flanks are c apart at zero torque, which is what a lost-motion test adds to the twist of the
+        spring. The stiffness jumps at the flanks, where it is that of the spring; a torque of exactly 0 has the twist 0. With c =
+        0 it is the spring itself.
+
+        Without loss: flanks meet elastically, and what a blow loses is for ``damping`` and friction of the gear. The damping of a
+        gear acts within the play, too. A strain wave gear has next to no play as long as it is sound: its teeth are preloaded.
+        Worn or badly fitted ones have; for a backlash that grows with the torque take a ``hysteresis``.
+
+        >>> from strainwave.stiffness import Backlash, Linear
+        >>> spring = Backlash(law=Linear(k=1e4), clearance=2e-4)
+        >>> spring.torque([0.0, 1e-4, 3e-4]).round(9), round(spring.twist(2.0), 9)
+        (array([0., 0., 2.]), 0.0003))";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, law, "The spring behind the play"));
+        visit(SW_REQUIRED(m, clearance, "rad", "Play c at the output, from flank to flank", 0));
+    }
+
+    constexpr auto compile() const { return Backlash<S, decltype(compiled(law))>{compiled(law), clearance}; }
+
+    constexpr S torque(const S& twist) const { return law.torque(sprung(twist)); }
+    constexpr S twist(const S& torque) const { return law.twist(torque) + sign(torque) * half(); }
+    constexpr S tangent(const S& twist) const { return select(abs(twist) < half(), S(0.0), law.tangent(sprung(twist))); }
+    constexpr S energy(const S& twist) const { return law.energy(sprung(twist)); }
+
+    template <class Where>
+    constexpr bool bounded() const {
+        return strainwave::bounded<Where>(law);
+    }
+    /// Where its spring is valid, as twists of the gear.
+    constexpr Domain<S> domain(const S& twist) const {
+        Domain<S> valid = strainwave::domain<S>(law, sprung(twist));
+        if (!strainwave::bounded<S>(law)) return valid;
+        return {valid.name, twist, valid.low - half(), valid.high + half(), valid.unit, valid.remedy};
+    }
+
+    template <class T>
+    friend constexpr T reduction_of(const Backlash& spring) {
+        return reduction_of<T>(spring.law);
+    }
+
+private:
+    constexpr S half() const { return S(0.5) * clearance; }
+    /// What of a twist is the spring's.
+    constexpr S sprung(const S& twist) const { return twist - clip(twist, -half(), half()); }
+};
+
+}  // namespace stiffness
+}  // namespace strainwave
