@@ -215,6 +215,17 @@ def test_the_poles_are_those_of_the_loops() -> None:
     assert linear.poles.real.max() < -5.0
 
 
+def test_it_rests_on_the_stream_where_nothing_pulls() -> None:
+    """Commanded to 0 its gear is out by its error: the wave generator turns by i e, and no current flows but for rounding."""
+    drive = without_noise(sw.load("tilt-actuator-lumped"))
+    free = sw.friction.Viscous(viscous=drive.gear.friction_output.viscous)
+    found = sw.equilibrium(drive.replace({"gear.friction_output": free}), command=0.0)
+    error = drive.gear.kinematic_error.error(found.input_angle)
+    assert found.transmission_error == pytest.approx(error, rel=1e-12)
+    assert found.input_angle == pytest.approx(RATIO * error, rel=1e-12)
+    assert abs(found["motor.current"]) < 1e-12
+
+
 def test_gains_follow_from_motor_gear_and_load() -> None:
     """As their sources say."""
     drive = sw.load("tilt-actuator-lumped")

@@ -122,8 +122,13 @@ class Rates(ComparedByFields):
         count = len(values) - _core.output_count
         by_numbers, by_inputs = np.split(slopes.T, [count], axis=1)
         size = np.abs(by_numbers[:count]) @ np.abs(state[:count]) + np.abs(by_inputs[:count]) @ np.abs(inputs)
-        places = Layout(drive).places
-        # Current and torque may be small because what they balance cancels: then they are as exact as that is large.
+        layout = Layout(drive)
+        places, sensing = layout.places, _sensing(layout)
+        # A reading may be small because what it adds up cancels: then it is as exact as that is large.
+        following = by_numbers[sensing][:, sensing]
+        if sensing and np.isfinite(following).all():
+            size += np.abs(by_numbers[:count, sensing]) @ np.abs(np.linalg.pinv(following)) @ size[sensing]
+        # So may current and torque.
         for rows, columns in ((places["motor"], places["motor"]), (places["input_speed"], places["transmission_error"])):
             each = size[rows] / _positive(np.abs(np.diag(by_numbers[rows, columns])))
             size += np.abs(by_numbers[:count, columns]) @ each
