@@ -59,6 +59,7 @@ def harmonics(n: int) -> dict[str, Any]:
 SUITED: dict[str, list[dict[str, Any]]] = {
     "fourier": [harmonics(1), harmonics(4), harmonics(16)],
     "misalignment": [{"housing_eccentricity": 2e-5, "combine": "max"}],
+    "tooth_errors": [{"flexspline_deviation": 1.5e-5, "circular_spline_deviation": 1.5e-5}],
     "stochastic": [{"amplitude": 2e-5}],
     "viscous": [{"viscous": 5e-5}],
     "coulomb": [{"coulomb": 0.03, "breakaway": 0.045, "viscous": 5e-5}],

@@ -220,6 +220,18 @@ SHOWN: dict[str, dict[str, Any]] = {
         )
         for name in ("single", "max", "mean")
     },
+    "tooth_errors": {
+        f"{share:.0%} engaged:": sw.kinematic_error.ToothErrors(
+            flexspline_teeth=200,
+            circular_spline_teeth=202,
+            pitch_radius=25e-3,
+            engaged_share=share,
+            flexspline_deviation=15e-6,
+            circular_spline_deviation=15e-6,
+            seed=1,
+        )
+        for share in (0.1, 0.3)
+    },
     "load_dependent": {
         "": sw.friction.LoadDependent(
             driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.3
@@ -316,7 +328,7 @@ def error(models: Shown) -> list[Draw]:
     return [together(some) for some in (large, small) if some]
 
 
-@having("error", "seed")
+@having("error", "highest_order")
 def spectrum(models: Shown) -> list[Draw]:
     """Over 512 turns, after which the default band repeats."""
 

@@ -290,44 +290,45 @@ class ToothErrors:
     .. math:: \\bar F(\\lambda) = \\sum_n s_n \\, W\\!\\left(\\frac{\\pi n \\, \\eta \\, z_f}{2 z}\\right) A_n \\sin(n \\lambda + \\varphi_n),
               \\qquad W(x) = \\frac{\\sin x}{x \\, (1 - x^2 / \\pi^2)}
 
-    with r_g = pitch_radius. F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at
-    the angle phi along the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is
-    closed, so its orders n are whole: A_n = flexspline_amplitude or circular_spline_amplitude, phi_n = the phase of the same
-    place in its list; order 2 alone is ``[0, 4e-6]``. phi counts from the tooth that is under the first lobe at input angle 0.
+    with theta the input angle, r_g = pitch_radius, z_f and z_c the teeth, and z, in W, those of the spline whose mean it is.
+    F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at the angle phi along
+    the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is closed, so its orders n
+    are whole. A_n is the n-th number of flexspline_amplitude or circular_spline_amplitude, phi_n of the phases; ``[0, 4e-6]``
+    has order 2 alone. phi counts from the tooth that is under the first lobe at input angle 0.
 
-    *Orders.* lambda is the angle of the first lobe in the spline's own frame: z_f lambda_f = z_c lambda_c, because both
-    splines pass the lobe tooth by tooth. In the frame of the ``fixed`` spline it is the input angle. In that of the other
-    one it is theta z_c / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole
-    orders, and the other one broken orders close to them, such as the review's 2 z_c / z_f. Together they beat, once in a turn
-    of the output.
+    In the frame of each spline the first lobe stands at an angle lambda. Both splines pass the lobe tooth by tooth, so that
+    z_f lambda_f = z_c lambda_c. In the frame of the ``fixed`` spline lambda is theta. In that of the output it is
+    theta z_c / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole orders, and
+    the output gives broken orders close to them, such as the review's 2 z_c / z_f. Order n of both beats n times in a turn of
+    the output.
 
-    *Lobes.* s_n = 1 for even n, and 2 p - 1 for odd n, with p = first_lobe the share of the first lobe in the stiffness of all
-    engaged teeth. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one
-    (n = 2) gives all of its own.
+    Without torque the output stands where the forces of all engaged teeth balance. Then e is the mean of their deviations,
+    weighted by stiffness. Of the flexspline's teeth the share eta = engaged_share is engaged, half of it under each lobe. The
+    stiffness is taken to fall as 1 + cos from the major axis to zero at the ends of a zone; W is what this mean leaves of
+    order n. The first lobe has the share p = first_lobe of the stiffness of all engaged teeth: s_n = 1 for even n, 2 p - 1 for
+    odd n. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one (n = 2)
+    gives all of its own. Torque winds up all pairs alike and does not change e.
 
-    *Averaging.* eta = engaged_share of the flexspline's teeth is engaged, half of it under each lobe. Without torque the splines
-    stand where the forces of all engaged teeth balance, which is the mean of the deviations, weighted by stiffness. The
-    stiffness is taken to fall from the major axis to zero at the ends of a zone as 1 + cos; the factor W is what that leaves of
-    order n. Torque winds up all pairs alike and does not change e.
+    A Fourier series over the teeth turns a measured chart of index deviations into amplitudes and phases. Where only a
+    tolerance class is known, give flexspline_deviation and circular_spline_deviation, the total cumulative pitch deviation F_p
+    of a typical part; the class states the largest one allowed. They add a random chart with amplitudes
+    sqrt(2 / pi) F_p / (pi n) and phases that ``seed`` draws: the mean spectrum of pitches that are cut independently of each
+    other and whose range over the turn is F_p in the mean (Feller1951). The 16 orders kept have nine tenths of that range.
 
-    A measured chart of index deviations gives amplitudes and phases by a Fourier series over its teeth. Where only a tolerance
-    class is known, flexspline_deviation and circular_spline_deviation are the total cumulative pitch deviation F_p of a typical
-    part. They add a random chart with amplitudes sqrt(2 / pi) F_p / (pi n) and phases that ``seed`` draws: that of pitches
-    which are cut independently of each other, whose range over the turn is F_p in the mean (Feller1951).
-
-    Leaves out: errors of single teeth as they come and go (orders near z_c and above), deviations of flank and thickness, teeth
-    that lose contact, load and speed, and what a runout of the output itself adds. Stiffness that depends on the load is not
-    described, nor deviations of order above 16, of which the engaged teeth leave little. A gear does not check that the teeth
-    and the fixed member are those of its kinematics; give the same.
+    Assumed are: a linear stiffness of each pair, which teeth are engaged, how their stiffness falls, and one pitch radius for
+    both splines. Leaves out single teeth as they come and go (orders near the number of teeth), deviations of flank and of
+    thickness, teeth that lose contact, load and speed, the radial part of an eccentricity (see Misalignment), runout of the
+    output shaft, and deviations of order above 16, of which the engaged teeth leave little. A gear does not check that the
+    teeth and the fixed member are those of its kinematics: give the same.
 
     >>> from strainwave.kinematic_error import ToothErrors
     >>> gear = dict(flexspline_teeth=200, circular_spline_teeth=202, pitch_radius=25e-3, engaged_share=0.3)
     >>> oval = ToothErrors(**gear, circular_spline_amplitude=[0, 5e-6], circular_spline_phase=[0, 1.5707963267948966])
     >>> round(oval.error(0.0), 9)
-    -0.000177137
+    -0.000188876
     >>> eccentric = ToothErrors(**gear, flexspline_amplitude=[5e-6], flexspline_phase=[0])
     >>> eccentric.error(1.0), round(eccentric.replace(first_lobe=1.0).error(1.0), 9)
-    (0.0, 0.000167)
+    (0.0, 0.000166923)
     >>> random = ToothErrors(**gear, flexspline_deviation=15e-6, circular_spline_deviation=15e-6, seed=1)
     >>> random.error(0.3) == random.replace(seed=2).error(0.3)
     False
@@ -355,7 +356,7 @@ class ToothErrors:
 
     Source
     ------
-    the cause is named by document A, section Kinematic error, without an equation, and the order 2 z_c / z_f by document R; derived here from the geometry; deviations as in ISO2013; random chart: Feller1951, ShinozukaDeodatis1991, WichmannHill1982; which teeth are engaged, and how stiff they are, is assumed
+    the cause is named by document A, section Kinematic error, without an equation, and the order 2 z_c / z_f by document R; derived here from the geometry; terms of ISO2013; random chart: Feller1951, ShinozukaDeodatis1991, WichmannHill1982; which teeth are engaged, and how stiff they are, is assumed
     """
 
     def __init__(self, *, flexspline_teeth: int, circular_spline_teeth: int, fixed: str = ..., pitch_radius: float, engaged_share: float, first_lobe: float = ..., flexspline_amplitude: float | Sequence[float] = ..., flexspline_phase: float | Sequence[float] = ..., circular_spline_amplitude: float | Sequence[float] = ..., circular_spline_phase: float | Sequence[float] = ..., flexspline_deviation: float = ..., circular_spline_deviation: float = ..., seed: float = ...) -> None: ...

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.friction import LuGre, MixedLubrication, PositionDependent
-from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
+from strainwave.kinematic_error import Fourier, Misalignment, Stochastic, ToothErrors
 from strainwave.simulation.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
@@ -291,9 +291,17 @@ SMOOTH_ERRORS = (
     Fourier(order=[1.0, 2.02], amplitude=[3e-4, 0.8e-4], phase=[0.3, -1.1]),
     ASSEMBLY.replace(combine="single"),
     ASSEMBLY.replace(combine="mean"),
+    made(
+        ToothErrors,
+        first_lobe=0.7,
+        flexspline_amplitude=[4e-6, 8e-6],
+        flexspline_phase=[0.3, -1.1],
+        circular_spline_amplitude=[2e-6, 8e-6],
+        circular_spline_phase=[0.8, 0.0],
+    ),
 )
 smooth_errors = pytest.mark.parametrize(
-    "error", SMOOTH_ERRORS, ids=["whole orders", "broken order", "one lobe", "mean of lobes"]
+    "error", SMOOTH_ERRORS, ids=["whole orders", "broken order", "one lobe", "mean of lobes", "teeth"]
 )
 
 
