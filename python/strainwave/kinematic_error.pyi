@@ -280,6 +280,184 @@ class Misalignment:
     def eccentricity(self) -> tuple[float, float]:
         """What harmonics can tell: the vector m, x and y [m]."""
 
+class ToothErrors:
+    """
+    Kinematic error of teeth that do not stand where they should: pitch deviations of both splines.
+
+    .. math:: e(\\theta) = \\frac{\\bar F_{output}(\\lambda_{output}) - \\bar F_{fixed}(\\lambda_{fixed})}{r_g}, \\qquad
+              F(\\varphi) = \\sum_{n=1}^{16} A_n \\sin(n \\varphi + \\varphi_n)
+
+    .. math:: \\bar F(\\lambda) = \\sum_n s_n \\, W\\!\\left(\\frac{\\pi n \\, \\eta \\, z_f}{2 z}\\right) A_n \\sin(n \\lambda + \\varphi_n),
+              \\qquad W(x) = \\frac{\\sin x}{x \\, (1 - x^2 / \\pi^2)}
+
+    with r_g = pitch_radius. F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at
+    the angle phi along the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is
+    closed, so its orders n are whole: A_n = flexspline_amplitude or circular_spline_amplitude, phi_n = the phase of the same
+    place in its list; order 2 alone is ``[0, 4e-6]``. phi counts from the tooth that is under the first lobe at input angle 0.
+
+    *Orders.* lambda is the angle of the first lobe in the spline's own frame: z_f lambda_f = z_c lambda_c, because both
+    splines pass the lobe tooth by tooth. In the frame of the ``fixed`` spline it is the input angle. In that of the other
+    one it is theta z_c / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole
+    orders, and the other one broken orders close to them, such as the review's 2 z_c / z_f. Together they beat, once in a turn
+    of the output.
+
+    *Lobes.* s_n = 1 for even n, and 2 p - 1 for odd n, with p = first_lobe the share of the first lobe in the stiffness of all
+    engaged teeth. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one
+    (n = 2) gives all of its own.
+
+    *Averaging.* eta = engaged_share of the flexspline's teeth is engaged, half of it under each lobe. Without torque the splines
+    stand where the forces of all engaged teeth balance, which is the mean of the deviations, weighted by stiffness. The
+    stiffness is taken to fall from the major axis to zero at the ends of a zone as 1 + cos; the factor W is what that leaves of
+    order n. Torque winds up all pairs alike and does not change e.
+
+    A measured chart of index deviations gives amplitudes and phases by a Fourier series over its teeth. Where only a tolerance
+    class is known, flexspline_deviation and circular_spline_deviation are the total cumulative pitch deviation F_p of a typical
+    part. They add a random chart with amplitudes sqrt(2 / pi) F_p / (pi n) and phases that ``seed`` draws: that of pitches
+    which are cut independently of each other, whose range over the turn is F_p in the mean (Feller1951).
+
+    Leaves out: errors of single teeth as they come and go (orders near z_c and above), deviations of flank and thickness, teeth
+    that lose contact, load and speed, and what a runout of the output itself adds. Stiffness that depends on the load is not
+    described, nor deviations of order above 16, of which the engaged teeth leave little. A gear does not check that the teeth
+    and the fixed member are those of its kinematics; give the same.
+
+    >>> from strainwave.kinematic_error import ToothErrors
+    >>> gear = dict(flexspline_teeth=200, circular_spline_teeth=202, pitch_radius=25e-3, engaged_share=0.3)
+    >>> oval = ToothErrors(**gear, circular_spline_amplitude=[0, 5e-6], circular_spline_phase=[0, 1.5707963267948966])
+    >>> round(oval.error(0.0), 9)
+    -0.000177137
+    >>> eccentric = ToothErrors(**gear, flexspline_amplitude=[5e-6], flexspline_phase=[0])
+    >>> eccentric.error(1.0), round(eccentric.replace(first_lobe=1.0).error(1.0), 9)
+    (0.0, 0.000167)
+    >>> random = ToothErrors(**gear, flexspline_deviation=15e-6, circular_spline_deviation=15e-6, seed=1)
+    >>> random.error(0.3) == random.replace(seed=2).error(0.3)
+    False
+
+    Parameters
+    ----------
+    flexspline_teeth: Teeth of the flexspline z_f, in [2, 100000]; required
+    circular_spline_teeth: Teeth of the circular spline z_c, in [3, 100000]; required
+    fixed: The member that does not turn; the other spline is the output, one of ('circular_spline', 'flexspline'); default 'circular_spline'
+    pitch_radius: Pitch radius r_g [m], in (0, inf); required
+    engaged_share: Share eta of the flexspline's teeth that is engaged, at both lobes together, in [0, 1]; required
+    first_lobe: Share p of the first lobe in the stiffness of all engaged teeth, in [0, 1]; default 0.5
+    flexspline_amplitude: Amplitudes A_n of the flexspline's deviation, orders 1, 2, ... [m], in [0, 0.001]; default ()
+    flexspline_phase: Phases phi_n of the flexspline's deviation [rad]; default ()
+    circular_spline_amplitude: Amplitudes A_n of the circular spline's deviation, orders 1, 2, ... [m], in [0, 0.001]; default ()
+    circular_spline_phase: Phases phi_n of the circular spline's deviation [rad]; default ()
+    flexspline_deviation: Total cumulative pitch deviation F_p of a random flexspline [m], in [0, 0.001]; default 0.0
+    circular_spline_deviation: Total cumulative pitch deviation F_p of a random circular spline [m], in [0, 0.001]; default 0.0
+    seed: Whole number that says which of all such random gears it is, in [0, 16777215]; default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    the cause is named by document A, section Kinematic error, without an equation, and the order 2 z_c / z_f by document R; derived here from the geometry; deviations as in ISO2013; random chart: Feller1951, ShinozukaDeodatis1991, WichmannHill1982; which teeth are engaged, and how stiff they are, is assumed
+    """
+
+    def __init__(self, *, flexspline_teeth: int, circular_spline_teeth: int, fixed: str = ..., pitch_radius: float, engaged_share: float, first_lobe: float = ..., flexspline_amplitude: float | Sequence[float] = ..., flexspline_phase: float | Sequence[float] = ..., circular_spline_amplitude: float | Sequence[float] = ..., circular_spline_phase: float | Sequence[float] = ..., flexspline_deviation: float = ..., circular_spline_deviation: float = ..., seed: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, flexspline_teeth: int = ..., circular_spline_teeth: int = ..., fixed: str = ..., pitch_radius: float = ..., engaged_share: float = ..., first_lobe: float = ..., flexspline_amplitude: float | Sequence[float] = ..., flexspline_phase: float | Sequence[float] = ..., circular_spline_amplitude: float | Sequence[float] = ..., circular_spline_phase: float | Sequence[float] = ..., flexspline_deviation: float = ..., circular_spline_deviation: float = ..., seed: float = ...) -> ToothErrors:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def flexspline_teeth(self) -> int:
+        """Teeth of the flexspline z_f"""
+
+    @property
+    def circular_spline_teeth(self) -> int:
+        """Teeth of the circular spline z_c"""
+
+    @property
+    def fixed(self) -> str:
+        """The member that does not turn; the other spline is the output"""
+
+    @property
+    def pitch_radius(self) -> float:
+        """Pitch radius r_g [m]"""
+
+    @property
+    def engaged_share(self) -> float:
+        """
+        Share eta of the flexspline's teeth that is engaged, at both lobes together
+        """
+
+    @property
+    def first_lobe(self) -> float:
+        """Share p of the first lobe in the stiffness of all engaged teeth"""
+
+    @property
+    def flexspline_amplitude(self) -> tuple[float, ...]:
+        """Amplitudes A_n of the flexspline's deviation, orders 1, 2, ... [m]"""
+
+    @property
+    def flexspline_phase(self) -> tuple[float, ...]:
+        """Phases phi_n of the flexspline's deviation [rad]"""
+
+    @property
+    def circular_spline_amplitude(self) -> tuple[float, ...]:
+        """
+        Amplitudes A_n of the circular spline's deviation, orders 1, 2, ... [m]
+        """
+
+    @property
+    def circular_spline_phase(self) -> tuple[float, ...]:
+        """Phases phi_n of the circular spline's deviation [rad]"""
+
+    @property
+    def flexspline_deviation(self) -> float:
+        """Total cumulative pitch deviation F_p of a random flexspline [m]"""
+
+    @property
+    def circular_spline_deviation(self) -> float:
+        """Total cumulative pitch deviation F_p of a random circular spline [m]"""
+
+    @property
+    def seed(self) -> float:
+        """Whole number that says which of all such random gears it is"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'tooth_errors'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def error(self, angle: float) -> float: ...
+
+    @overload
+    def error(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Kinematic error [rad] at input `angle` [rad]."""
+
+    @overload
+    def slope(self, angle: float) -> float: ...
+
+    @overload
+    def slope(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Its derivative [rad/rad] by the input angle."""
+
+    def harmonics(self, highest: int = 8) -> Fourier:
+        """
+        Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.
+        """
+
 class Scaled:
     """
     A kinematic error that is smaller under load, and where the wave generator is inserted deeper.
@@ -314,15 +492,15 @@ class Scaled:
     document R, section 1b, which scales its random part so (E-R4): here the deterministic error, with a reaction that keeps the energy
     """
 
-    def __init__(self, *, law: Fourier | Misalignment = ..., load_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> None: ...
+    def __init__(self, *, law: Fourier | Misalignment | ToothErrors = ..., load_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: Fourier | Misalignment = ..., load_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> Scaled:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Fourier | Misalignment | ToothErrors = ..., load_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> Scaled:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def law(self) -> Fourier | Misalignment:
+    def law(self) -> Fourier | Misalignment | ToothErrors:
         """The error without load, at insertion depth 0"""
 
     @property
