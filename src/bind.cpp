@@ -65,6 +65,8 @@ NB_MODULE(_core, core) {
     bind_family(core, "control", "What turns the command into the motor's voltage, current or torque.", control::Models{});
     bind_family(core, "loads", "What the output shaft carries.", load::Models{});
     bind_family(core, "sensor", "What a controller sees a quantity by.", sensor::Models{});
+    bind_family(core, "variation", "How a stiffness varies as the wave generator turns.", variation::Models{});
+    bind_family(core, "structure", "What moves within a gear by itself.", structure::Models{});
     bind_family(core, "softening", "How a gear gives way as it warms up.", softening::Models{});
     bind_family(core, "thermal", "Temperatures of a drive.", thermal::Models{});
     bind_family(core, "meter", "Powers and energies of a drive.", meter::Models{});

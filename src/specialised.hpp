@@ -39,17 +39,17 @@ struct Short<most, Layers<Pack<n>, Law, Modulator...>> : Short<most, Law> {};
 template <class Drive>
 struct ShortDriveOf;
 template <class S, class Control, class Motor, class Kinematics, class Error, class Noise, class Stiffness, class Hysteresis,
-          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Load, class Sensors_,
-          class ThermalModel, class Meter>
-struct ShortDriveOf<
-    Drive<S, Control, Motor,
-          Gear<S, Kinematics, Error, Noise, Stiffness, Hysteresis, FrictionInput, FrictionMesh, FrictionOutput, Softening>, Load,
-          Sensors_, ThermalModel, Meter>> {
-    using type = Drive<
-        S, Control, Motor,
-        Gear<S, Kinematics, Error, Noise, Stiffness, typename Short<16, Hysteresis>::type, typename Short<1, FrictionInput>::type,
-             typename Short<1, FrictionMesh>::type, typename Short<1, FrictionOutput>::type, Softening>,
-        Load, Sensors<S, sensor::Ideal<S>>, ThermalModel, Meter>;
+          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Structure, class Variation,
+          class Load, class Sensors_, class ThermalModel, class Meter>
+struct ShortDriveOf<Drive<S, Control, Motor,
+                          Gear<S, Kinematics, Error, Noise, Stiffness, Hysteresis, FrictionInput, FrictionMesh, FrictionOutput,
+                               Softening, Structure, Variation>,
+                          Load, Sensors_, ThermalModel, Meter>> {
+    using type = Drive<S, Control, Motor,
+                       Gear<S, Kinematics, Error, Noise, Stiffness, typename Short<16, Hysteresis>::type,
+                            typename Short<1, FrictionInput>::type, typename Short<1, FrictionMesh>::type,
+                            typename Short<1, FrictionOutput>::type, Softening, structure::Lumped<S>, Variation>,
+                       Load, Sensors<S, sensor::Ideal<S>>, ThermalModel, Meter>;
 };
 
 /// One of a list of models: a choice only if there are several.
@@ -140,6 +140,8 @@ bool specialise(Special& special, const CompiledDrive<S>& drive) {
            detail::specialise(gear.friction_output, from.friction_output) && detail::specialise(special.motor, drive.motor) &&
            detail::specialise(special.control, drive.control) && detail::specialise(special.load, drive.load) &&
            detail::specialise(special.sensors, drive.sensors) && detail::specialise(gear.softening, from.softening) &&
+           detail::specialise(gear.structure, from.structure) &&
+           detail::specialise(gear.stiffness_variation, from.stiffness_variation) &&
            detail::specialise(special.thermal, drive.thermal) && detail::specialise(special.meter, drive.meter);
 }
 
@@ -173,6 +175,7 @@ To converted(To to, const From& from) {
     motion.input_speed = from.continuous.input_speed;
     motion.transmission_error = from.continuous.transmission_error;
     motion.output_speed = from.continuous.output_speed;
+    detail::convert<S>(motion.structure, from.continuous.structure);
     detail::convert<S>(motion.motor, from.continuous.motor);
     detail::convert<S>(motion.control, from.continuous.control);
     detail::convert<S>(motion.sensors, from.continuous.sensors);

@@ -131,7 +131,7 @@ kinematic_error::Fourier<double> harmonics_of(const M& m, int highest) {
 
 template <class M>
 void error_verbs(const Bound<M>& c) {
-    if constexpr (requires(const M& m) { m.at(strainwave::Angle<double>{}); }) {
+    if constexpr (requires(const M& m, kinematic_error::Error<double> e) { e = m.at(strainwave::Angle<double>{}); }) {
         function(c, "error", "angle", "Kinematic error [rad] at input `angle` [rad].",
                  [](const auto& m, double x) { return m.at(turned(x)).value; });
         function(c, "slope", "angle", "Its derivative [rad/rad] by the input angle.",
@@ -161,6 +161,13 @@ void error_verbs(const Bound<M>& c) {
         property(c, "eccentricity", "tuple[float, float]", "What harmonics can tell: the vector m, x and y [m].",
                  [](const M& m) { return nb::make_tuple(m.eccentricity().x, m.eccentricity().y); });
     }
+}
+
+template <class M>
+void variation_verbs(const Bound<M>& c) {
+    if constexpr (requires(const M& m, variation::Factor<double> f) { f = m.at(strainwave::Angle<double>{}); })
+        function(c, "factor", "angle", "What the stiffness is multiplied by [1] at an `angle` [rad] of the wave generator.",
+                 [](const auto& m, double x) { return m.at(turned(x)).value; });
 }
 
 /// What is taken of a random error, for an angle or an array of any shape.
@@ -491,6 +498,7 @@ void bind_model(nb::handle scope, const char* python_name) {
     }
     error_verbs(c);
     noise_verbs(c);
+    variation_verbs(c);
     activity(c);
     claims(c);
 }

@@ -200,6 +200,16 @@ struct Choice {
     SW_VERB(dissipation_rate)
     SW_VERB(gear_rate)
     SW_VERB(growth)
+    SW_VERB(largest)
+    SW_VERB(generator)
+    SW_VERB(generator_acceleration)
+    SW_VERB(gap)
+    SW_VERB(spring_twist)
+    SW_VERB(spring_twist_rate)
+    SW_VERB(deformation_rate)
+    SW_VERB(energies)
+    SW_VERB(compliance)
+    SW_VERB(max_rate)
 #undef SW_VERB
 
     constexpr S fastest() const {
@@ -256,6 +266,35 @@ struct Choice {
     }
     constexpr Limits<S> limits(const State& x, const motor::Rotor<S>& rotor) const {
         return visit([&](const auto& law) { return motor::limits(law, own(law, x), rotor); });
+    }
+
+    // Structures of a gear.
+    constexpr bool rigid() const {
+        return visit([](const auto& law) { return law.rigid(); });
+    }
+    template <class Mesh>
+    constexpr structure::Reaction<S, State> reaction(const State& inner, const structure::Shafts<S>& at, const Mesh& mesh,
+                                                     const structure::Load<S>& load) const {
+        return visit([&](const auto& law) {
+            const auto found = law.reaction(own(law, inner), at, mesh, load);
+            return structure::Reaction<S, State>{found.torque, found.input_torque, stored(law, found.rate)};
+        });
+    }
+    template <class Mesh>
+    constexpr structure::Settled<S, State> settled(const State& inner, const structure::Shafts<S>& at, const Mesh& mesh,
+                                                   const structure::Load<S>& load) const {
+        return visit([&](const auto& law) {
+            const auto found = law.settled(own(law, inner), at, mesh, load);
+            return structure::Settled<S, State>{stored(law, found.state), found.transmission_error};
+        });
+    }
+
+    // Kinematic errors.
+    constexpr bool follows_load() const {
+        return visit([](const auto& law) { return kinematic_error::follows_load(law); });
+    }
+    constexpr kinematic_error::Relief<S> relief(const S& torque) const {
+        return visit([&](const auto& law) { return kinematic_error::relief(law, torque); });
     }
 
     // Loads.
@@ -416,6 +455,14 @@ template <class S, class Law>
 struct AtRunTime<S, stiffness::Backlash<S, Law>> {
     using type = stiffness::Backlash<S, AnyOf<S, stiffness::Plain>>;
 };
+template <class S, class Law>
+struct AtRunTime<S, kinematic_error::Scaled<S, Law>> {
+    using type = kinematic_error::Scaled<S, AnyOf<S, kinematic_error::Pure>>;
+};
+template <class S, class Variation>
+struct AtRunTime<S, structure::Staged<S, Variation>> {
+    using type = structure::Staged<S, AnyOf<S, variation::Models>>;
+};
 template <class S, class Density>
 struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
     using type = hysteresis::Preisach<S, AnyOf<S, hysteresis::Densities>>;
@@ -453,9 +500,10 @@ constexpr S reduction_of(const Choice<S, Spring...>& spring) {
 }
 
 template <class S>
-using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
-                     AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>,
-                     AnyOf<S, friction::Models>, AnyOf<S, friction::Models>, AnyOf<S, softening::Models>>;
+using AnyGear =
+    Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
+         AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>, AnyOf<S, friction::Models>,
+         AnyOf<S, friction::Models>, AnyOf<S, softening::Models>, AnyOf<S, structure::Models>, AnyOf<S, variation::Models>>;
 
 template <class S>
 using AnySensors = Sensors<S, AnyOf<S, sensor::Models>>;

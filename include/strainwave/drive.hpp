@@ -61,7 +61,9 @@ struct Drive {
 
     constexpr const char* problem() const {
         if (!all(input_inertia() > S(0.0)))
-            return "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input";
+            return gear.structure.rigid()
+                       ? "motor.inertia and gear.input_inertia cannot both be 0: something must turn at the input"
+                       : "motor.inertia must exceed 0 with this structure of the gear: the input shaft turns by itself";
         const char* given = control::given_by(control);
         if (*given != 0 && !same(given, motor::taken_by(motor)))
             return "control gives a voltage, and the motor takes none; a PositionSpeed suits one that takes a current or a torque";
@@ -83,14 +85,17 @@ struct Drive {
     using FrictionMesh = decltype(Gear{}.friction_mesh);
     using FrictionOutput = decltype(Gear{}.friction_output);
     using Hysteresis = decltype(Gear{}.hysteresis);
+    using Structure = decltype(Gear{}.structure);
 
-    using Continuous = strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
-                                              typename FrictionInput::State, typename FrictionMesh::State,
-                                              typename FrictionOutput::State, typename ThermalModel::State, typename Meter::State>;
+    using Continuous =
+        strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
+                               typename FrictionInput::State, typename FrictionMesh::State, typename FrictionOutput::State,
+                               typename Structure::State, typename ThermalModel::State, typename Meter::State>;
     using Discrete = strainwave::Discrete<S, control::DiscreteOf<S, Control>>;
     using State = strainwave::State<S, Continuous, Discrete, typename Hysteresis::State>;
     using Input = strainwave::Input<S>;
-    using Output = strainwave::Output<S, typename Motor::Output, typename ThermalModel::Output, typename Meter::Output>;
+    using Output = strainwave::Output<S, typename Motor::Output, typename ThermalModel::Output, typename Meter::Output,
+                                      typename Structure::Output>;
     using Rotor = motor::Rotor<S>;
     using Measurement = control::Measurement<S>;
     using Shaft = strainwave::Shaft<S>;
@@ -136,6 +141,7 @@ struct Drive {
         visit("friction_input", gear.friction_input);
         visit("friction_mesh", gear.friction_mesh);
         visit("friction_output", gear.friction_output);
+        visit("structure", gear.structure);
         visit("thermal", thermal);
         visit("meter", meter);
     }
@@ -151,6 +157,7 @@ struct Drive {
         x.continuous.friction_input = strainwave::initial_state(gear.friction_input);
         x.continuous.friction_mesh = strainwave::initial_state(gear.friction_mesh);
         x.continuous.friction_output = strainwave::initial_state(gear.friction_output);
+        x.continuous.structure = strainwave::initial_state(gear.structure);
         x.continuous.thermal = strainwave::initial_state(thermal);
         x.continuous.meter = strainwave::initial_state(meter);
         return x;
@@ -160,12 +167,19 @@ struct Drive {
     constexpr State rest() const {
         State x = initial_state();
         // Once is enough without noise; with noise, whose amplitude follows the torque, a few rounds bring the twist to zero.
-        for (int i = 0; i < 8; ++i)
-            x.continuous.transmission_error = gear.geometry({}, S(0.0), x.continuous.transmission_error, S(0.0)).error;
+        for (int i = 0; i < 8; ++i) settle_gear(x, geometry(x, x.continuous), S(0.0), S(0.0), S(0.0));
         x.input_slip_direction = S(input_sticks() ? 0.0 : 1.0);
         x.output_slip_direction = S(output_sticks() ? 0.0 : 1.0);
         x.continuous.sensors = sensors.settled(measurable(x, x.continuous, Input{}, S(0.0)));
         return x;
+    }
+
+    /// The gear comes to rest where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
+    constexpr void settle_gear(State& x, const typename Gear::Mesh& mesh, const S& twist, const S& torque,
+                               const S& temperature) const {
+        const auto found = gear.settled(x.continuous.structure, gear_shafts(x, x.continuous), mesh, twist, torque, temperature);
+        x.continuous.structure = found.state;
+        x.continuous.transmission_error = found.transmission_error;
     }
 
     constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u) const {
@@ -188,8 +202,7 @@ struct Drive {
         }
         const auto geometry = this->geometry(x, x.continuous);
         commit(x, geometry);
-        return {x, derivatives(x, x.continuous, u,
-                               gear.loaded(geometry, x.hysteresis, x.held_twist, temperatures(x.continuous, u).gear))};
+        return {x, derivatives(x, x.continuous, u, loaded(geometry, x, x.continuous, u))};
     }
 
     constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const typename Gear::Mesh& mesh) const {
@@ -208,7 +221,7 @@ struct Drive {
                                                : strainwave::load_torque<S>(load, output_angle(x, y), y.output_speed, u.load);
         const Braking<S> braking = this->braking(u);
         const S brake = x.output_slip_direction * braking.slip;
-        const S input_driving_torque = motor_torque - (mesh.torque + meshing.always) * mesh.per_input - input.always;
+        const S input_driving_torque = motor_torque - mesh.input_torque - meshing.always * mesh.per_input - input.always;
         const S output_driving_torque = mesh.torque - load_torque - output.always;
         rate.motor = motor.rate(y.motor, actuation, rotor);
         rate.control = control.rate(y.control, asked, measured);
@@ -216,6 +229,7 @@ struct Drive {
         rate.input_angle = y.input_speed;
         rate.input_speed =
             moving(at.input, input_driving_torque - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
+        rate.structure = mesh.rate;
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
         rate.output_speed = moving(at.output, output_driving_torque - output.sliding - brake) / output_inertia();
         Derivatives now{rate,
@@ -322,6 +336,9 @@ struct Drive {
         const S inverse = gear.kinematics.inverse_ratio(), by_input = inverse * inverse / input_inertia();
         const S stiffness = gear.steepest(twist, thermal.at(strainwave::initial_state(thermal), temperature).gear);
         const S of_gear = stiffness * (S(1.0) / output_inertia() + by_input);
+        if (!gear.structure.rigid())
+            return gear.structure.max_rate(structure::Bodies<S>{input_inertia(), gear.input_inertia, output_inertia(), inverse,
+                                                                stiffness, gear.damping, load_stiffness<S>(load)});
         const S of_load = load_stiffness<S>(load) / output_inertia();
         const S mean = S(0.5) * (of_gear + of_load), share = stiffness * by_input / max(mean, S(smallest));
         return sqrt(mean * (S(1.0) + sqrt(max(S(1.0) - share * (of_load / max(mean, S(smallest))), S(0.0)))));
@@ -435,15 +452,22 @@ struct Drive {
     }
 
     constexpr typename Gear::Mesh geometry(const State& x, const Continuous& y) const {
-        return gear.geometry({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
+        return gear.geometry(y.structure, gear_shafts(x, y));
+    }
+    constexpr typename Gear::Shafts gear_shafts(const State& x, const Continuous& y) const {
+        return gear.shafts({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
     }
     constexpr typename Gear::Mesh mesh(const State& x, const Continuous& y, const Input& u) const {
-        return gear.loaded(geometry(x, y), x.hysteresis, x.held_twist, temperatures(y, u).gear);
+        return loaded(geometry(x, y), x, y, u);
+    }
+    constexpr typename Gear::Mesh loaded(const typename Gear::Mesh& geometry, const State& x, const Continuous& y,
+                                         const Input& u) const {
+        return gear.loaded(geometry, y.structure, gear_shafts(x, y), x.hysteresis, x.held_twist, temperatures(y, u).gear);
     }
     constexpr thermal::Temperatures<S> temperatures(const Continuous& y, const Input& u) const {
         return thermal.at(y.thermal, u.temperature);
     }
-    constexpr S input_inertia() const { return inertia_of<S>(motor) + gear.input_inertia; }
+    constexpr S input_inertia() const { return inertia_of<S>(motor) + gear.shaft_inertia(); }
     constexpr S output_inertia() const { return inertia_of<S>(load); }
     constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u) const {
         return {{y.input_angle, x.turns}, y.input_speed, temperatures(y, u).winding};
@@ -475,6 +499,7 @@ struct Drive {
         const Continuous& y = x.continuous;
         const S of_input = input_shaft(x, now).share_of_hold(), of_output = output_shaft(x, now).share_of_hold();
         const S braked = select(now.contacts.output.sliding == S(0.0), of_output * now.braking.hold, S(0.0));
+        const S friction_output = friction::reported(gear.friction_output, now.contacts.output, now.friction_output, of_output);
         return {u.command,
                 input_angle(x, y),
                 y.input_speed,
@@ -486,12 +511,13 @@ struct Drive {
                 now.mesh.torque,
                 friction::reported(gear.friction_input, now.contacts.input, now.friction_input, of_input),
                 friction::reported(gear.friction_mesh, now.contacts.mesh, now.friction_mesh, along(now.mesh.per_input, of_input)),
-                friction::reported(gear.friction_output, now.contacts.output, now.friction_output, of_output),
+                friction_output,
                 now.load_torque + braked,
                 temperatures(y, u).gear,
                 motor.output(y.motor, now.actuation, rotor(x, y, u)),
                 thermal.output(y.thermal, u.temperature),
-                measured(x, y, u, now)};
+                measured(x, y, u, now),
+                gear.output(y.structure, gear_shafts(x, y), now.mesh, friction_output)};
     }
 
 private:
@@ -545,7 +571,7 @@ private:
     constexpr Contacts contacts(const State& x, const Continuous& y, const typename Gear::Mesh& mesh, const Input& u) const {
         const S inverse = gear.kinematics.inverse_ratio(), turned = x.turns * inverse, turns = rint(turned);
         const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse, temperature = temperatures(y, u).gear;
-        return {{y.input_speed, x.input_slip_direction, {y.input_angle, x.turns}, mesh.torque * mesh.per_input, temperature},
+        return {{y.input_speed, x.input_slip_direction, {y.input_angle, x.turns}, mesh.input_torque, temperature},
                 {y.input_speed * mesh.per_input,
                  along(mesh.per_input, x.input_slip_direction),
                  {rigid, turns},

@@ -3,6 +3,8 @@
 #include <strainwave/field.hpp>
 #include <strainwave/kinematic_error/error.hpp>
 #include <strainwave/math.hpp>
+#include <strainwave/structure/lumped.hpp>
+#include <strainwave/variation/constant.hpp>
 
 namespace strainwave {
 
@@ -16,7 +18,8 @@ constexpr S reduction_of(const Spring& spring) {
 }
 
 template <class S, class Kinematics, class KinematicError, class KinematicNoise, class Stiffness, class Hysteresis,
-          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening>
+          class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Structure = structure::Lumped<S>,
+          class Variation = variation::Constant<S>>
 struct Gear {
     Kinematics kinematics{};
     KinematicError kinematic_error{};
@@ -29,10 +32,13 @@ struct Gear {
     FrictionOutput friction_output{};
     S input_inertia{0.0};
     Softening softening{};
+    Variation stiffness_variation{};
+    Structure structure{};
 
     static constexpr auto name = "gear";
     static constexpr auto source =
-        "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)";
+        "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5); for the bodies within "
+        "it, document A";
     static constexpr auto doc = R"(
         One strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
 
@@ -47,6 +53,9 @@ struct Gear {
         kinematics and the spring: it moves with (1/i - e') times the input speed, at the output's scale, transmits T, and
         what it takes weighs on the input. Every law of friction may stand at every place, each under the load that its place
         transmits, the angle it stands at and the temperature.
+
+        Where the stiffness varies with the angle of the wave generator, the energy in the spring turns the wave generator, too.
+        A ``structure`` says whether the bodies within the gear move by themselves, between input shaft and output shaft.
 
         Every part is a law of its own, from the ideal gear to one with all effects over the whole envelope of speed, load and
         temperature; change one with ``gear.replace(hysteresis=...)``.
@@ -69,73 +78,142 @@ struct Gear {
         visit(SW_PART(m, friction_output, "Friction at the output, over the output speed"));
         visit(SW_FIELD(m, input_inertia, "kg.m2", "Inertia of the wave generator", 0));
         visit(SW_PART(m, softening, "How stiffness and hysteresis give way as the gear warms up"));
+        visit(SW_PART(m, stiffness_variation, "How the stiffness varies as the wave generator turns"));
+        visit(SW_PART(m, structure, "What moves within the gear by itself"));
     }
 
     constexpr const char* problem() const {
         const S told = reduction_of<S>(stiffness), ratio = abs(kinematics.ratio()), rounding(1e-9);
-        return all((told == S(0.0)) | (abs(told - ratio) <= rounding * ratio))
+        if (!all((told == S(0.0)) | (abs(told - ratio) <= rounding * ratio)))
+            return "stiffness.reduction must be the ratio of kinematics, without its sign; give both";
+        return structure.rigid() || all(input_inertia > S(0.0))
                    ? nullptr
-                   : "stiffness.reduction must be the ratio of kinematics, without its sign; give both";
+                   : "input_inertia must exceed 0 with this structure: the wave generator turns by itself";
     }
 
     /// Every part as the integrator wants it.
     constexpr auto compile() const {
         return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), decltype(compiled(kinematic_noise)),
                     decltype(compiled(stiffness)), decltype(compiled(hysteresis)), decltype(compiled(friction_input)),
-                    decltype(compiled(friction_mesh)), decltype(compiled(friction_output)), decltype(compiled(softening))>{
+                    decltype(compiled(friction_mesh)), decltype(compiled(friction_output)), decltype(compiled(softening)),
+                    decltype(compiled(structure)), decltype(compiled(stiffness_variation))>{
             compiled(kinematics),      compiled(kinematic_error),
             compiled(kinematic_noise), compiled(stiffness),
             compiled(hysteresis),      damping,
             compiled(friction_input),  compiled(friction_mesh),
             compiled(friction_output), input_inertia,
-            compiled(softening)};
+            compiled(softening),       compiled(stiffness_variation),
+            compiled(structure)};
     }
 
-    /// How the two shafts stand to each other.
+    using Shafts = structure::Shafts<S>;
+    using Inner = typename Structure::State;
+
+    /// How the gear stands between its two shafts.
     struct Mesh {
-        S error;       ///< Kinematic error e, rad
-        S per_input;   ///< Twist per input angle: 1/i - e', rad/rad
-        S twist;       ///< rad
-        S twist_rate;  ///< rad/s
-        S torque;      ///< Transmitted torque T at the output, N.m
+        S error;             ///< Kinematic error e, rad
+        S per_input;         ///< Deformation per angle of the wave generator: 1/i - e', rad/rad
+        S per_output;        ///< and per output angle, without its sign; not 1 where the error follows the load
+        S per_twist;         ///< How the error follows the twist of a spring that is a state of its own, rad/rad
+        S deformation;       ///< What is left of the gap, rad
+        S deformation_rate;  ///< rad/s
+        S twist;             ///< of the spring, rad
+        S twist_rate;        ///< rad/s
+        S spring;            ///< Torque of the spring, its hysteresis and damping, N.m
+        S turning;           ///< with which a spring that varies holds the wave generator back, N.m
+        S torque;            ///< on the output shaft, N.m
+        S input_torque;      ///< that holds the input shaft back, N.m
+        Inner rate;          ///< of the bodies within the gear
     };
 
-    /// All of it but the torque. `transmission_error` is theta_in / i - theta_out.
-    constexpr Mesh geometry(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
+    constexpr Shafts shafts(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
                             const S& output_speed) const {
-        const kinematic_error::Error<S> error = this->error(input_angle, input_speed, transmission_error);
-        const S per_input = kinematics.inverse_ratio() - error.slope;
-        return {error.value, per_input, transmission_error - error.value, per_input * input_speed - output_speed, S(0.0)};
+        return {input_angle, input_speed, transmission_error, output_speed, kinematics.inverse_ratio()};
     }
-    /// How fast the random error changes [rad/s] because its amplitude does so; what the angle does is in the twist rate.
-    /// `transmission_rate` is that of the transmission error [rad/s].
-    constexpr S noise_rate(const Angle<S>& input_angle, const S& input_speed, const S& acceleration, const S& transmission_error,
-                           const S& transmission_rate) const {
-        if (!kinematic_noise.active()) return S(0.0);
-        const kinematic_error::Error<S> error = kinematic_error.at(input_angle);
-        const S twist = transmission_error - error.value, twist_rate = transmission_rate - error.slope * input_speed;
-        const S torque = stiffness.torque(twist), torque_rate = stiffness.tangent(twist) * twist_rate;
-        return kinematic_noise.at(input_angle, torque, input_speed).value *
-               kinematic_noise.growth(torque, torque_rate, input_speed, acceleration);
-    }
-    /// The torque of a gear that stands so at a temperature [K], its hysteresis last brought up to date at `held_twist`.
-    constexpr Mesh loaded(Mesh mesh, const typename Hysteresis::State& held, const S& held_twist, const S& temperature) const {
-        mesh.torque = held_torque(mesh.twist, held, mesh.twist - held_twist, temperature) + damping * mesh.twist_rate;
+
+    /// All of it but the torques.
+    constexpr Mesh geometry(const Inner& inner, const Shafts& at) const {
+        const auto generator = structure.generator(inner, at);
+        const Engaged is = engaged(inner, at, generator);
+        Mesh mesh{};
+        mesh.error = is.error.value;
+        mesh.per_input = is.per_output * at.inverse_ratio - is.error.slope;
+        mesh.per_output = is.per_output;
+        mesh.per_twist = is.per_twist;
+        mesh.deformation = is.deformation;
+        if (structure.rigid()) {
+            mesh.twist = mesh.deformation;
+            mesh.twist_rate = mesh.deformation_rate = structure.deformation_rate(inner, at, mesh);
+        } else {
+            mesh.twist = structure.spring_twist(inner, at);
+            mesh.twist_rate = structure.spring_twist_rate(inner, at);
+            mesh.deformation_rate = structure.deformation_rate(inner, at, mesh);
+        }
         return mesh;
     }
-    /// What spring and hysteresis hold at a twist [rad], `moved` [rad] from where the hysteresis was last brought up to date, N.m.
-    constexpr S held_torque(const S& twist, const typename Hysteresis::State& held, const S& moved, const S& temperature) const {
-        const S elastic = stiffness.torque(twist), remembered = hysteresis.torque(held, moved);
+    /// How fast the random error changes [rad/s] because its amplitude does so, where the input shaft accelerates at
+    /// `acceleration` [rad/s2]; what the angle does is in the rate of the deformation.
+    constexpr S noise_rate(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& acceleration) const {
+        if (!kinematic_noise.active()) return S(0.0);
+        const auto generator = structure.generator(inner, at);
+        const Engaged without = engaged_without_noise(inner, at, generator);
+        const S rate = structure.rigid() ? without.per_output * (at.inverse_ratio * at.input_speed - at.output_speed) -
+                                               without.error.slope * at.input_speed
+                                         : mesh.twist_rate;
+        const S torque = stiffness.torque(without.twist), torque_rate = stiffness.tangent(without.twist) * rate;
+        return kinematic_noise.at(generator.angle, torque, generator.speed).value *
+               kinematic_noise.growth(torque, torque_rate, generator.speed,
+                                      structure.generator_acceleration(mesh.rate, acceleration));
+    }
+    /// The torques of a gear that stands so at a temperature [K], its hysteresis last brought up to date at `held_twist`.
+    constexpr Mesh loaded(Mesh mesh, const Inner& inner, const Shafts& at, const typename Hysteresis::State& held,
+                          const S& held_twist, const S& temperature) const {
+        const variation::Factor<S> factor = stiffness_factor(inner, at);
+        mesh.spring = held_torque(mesh.twist, held, mesh.twist - held_twist, temperature, factor.value) + damping * mesh.twist_rate;
+        mesh.turning = turning(factor, mesh.twist, temperature);
+        const auto reaction = structure.reaction(inner, at, mesh, load(mesh));
+        mesh.torque = reaction.torque;
+        mesh.input_torque = reaction.input_torque;
+        mesh.rate = reaction.rate;
+        return mesh;
+    }
+    /// What spring and hysteresis hold at a twist [rad], `moved` [rad] from where the hysteresis was last brought up to date, N.m;
+    /// the stiffness is `factor` times its mean.
+    constexpr S held_torque(const S& twist, const typename Hysteresis::State& held, const S& moved, const S& temperature,
+                            const S& factor = S(1.0)) const {
+        const S elastic = factor * stiffness.torque(twist), remembered = hysteresis.torque(held, moved);
         if (!softening.active()) return elastic + remembered;
         return softening.of_stiffness(temperature) * elastic + softening.of_hysteresis(temperature) * remembered;
     }
-    /// What the spring alone holds, N.m, and the energy in it, J.
-    constexpr S spring_torque(const S& twist, const S& temperature) const {
-        return spring_factor(temperature) * stiffness.torque(twist);
+    /// What the spring alone holds, N.m.
+    constexpr S spring_torque(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& temperature) const {
+        return stiffness_factor(inner, at).value * softness(temperature) * stiffness.torque(mesh.twist);
     }
-    constexpr S spring_energy(const S& twist, const S& temperature) const {
-        return spring_factor(temperature) * stiffness.energy(twist);
+    /// The energy in it, J.
+    constexpr S spring_energy(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& temperature) const {
+        return stiffness_factor(inner, at).value * softness(temperature) * stiffness.energy(mesh.twist);
     }
+    /// Of the bodies within the gear.
+    constexpr auto energies(const Inner& inner, const Shafts& at, const Mesh& mesh) const {
+        return structure.energies(inner, at, mesh, load(mesh));
+    }
+    constexpr auto output(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& friction) const {
+        return structure.output(inner, at, mesh, load(mesh), friction);
+    }
+
+    /// How the gear rests where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
+    constexpr auto settled(const Inner& inner, const Shafts& at, Mesh mesh, const S& twist, const S& torque,
+                           const S& temperature) const {
+        mesh.twist = twist;
+        mesh.spring = torque;
+        mesh.turning = turning(stiffness_factor(inner, at), twist, temperature);
+        return structure.settled(inner, at, mesh, load(mesh));
+    }
+    /// Of the gear beside its spring, rad/(N.m).
+    constexpr S compliance(const Shafts& at, const Mesh& mesh) const { return structure.compliance(at, mesh); }
+
+    /// What of the wave generator turns with the input shaft, kg.m2.
+    constexpr S shaft_inertia() const { return structure.rigid() ? input_inertia : S(0.0); }
 
     /// The largest stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign, and with it that of the
     /// hysteresis where it is first loaded, at a temperature [K]; on turning back some are up to twice as stiff.
@@ -143,6 +221,7 @@ struct Gear {
         constexpr int parts = 64;
         S largest = stiffness.tangent(S(0.0));
         for (int i = -parts; i <= parts; ++i) largest = max(largest, stiffness.tangent(twist * S(double(i) / parts)));
+        largest = stiffness_variation.largest() * largest;
         const S little(1e-12);  // rad: within any loop's first slope, and more than rounding
         const S remembered = hysteresis.torque(typename Hysteresis::State{}, little) / little;
         if (!softening.active()) return largest + remembered;
@@ -150,20 +229,61 @@ struct Gear {
     }
 
 private:
-    constexpr S spring_factor(const S& temperature) const {
-        return softening.active() ? softening.of_stiffness(temperature) : S(1.0);
-    }
+    /// The error where the gear stands, and what it leaves of the gap.
+    struct Engaged {
+        kinematic_error::Error<S> error;
+        S deformation;
+        S twist;  ///< at which the amplitude of the noise is told
+        S per_output{1.0}, per_twist{0.0};
+    };
+
     /// The noise follows the elastic torque that there is without it, so that neither waits for the other.
-    constexpr kinematic_error::Error<S> error(const Angle<S>& input_angle, const S& input_speed,
-                                              const S& transmission_error) const {
-        kinematic_error::Error<S> error = kinematic_error.at(input_angle);
+    constexpr Engaged engaged(const Inner& inner, const Shafts& at, const structure::Generator<S>& generator) const {
+        Engaged is = engaged_without_noise(inner, at, generator);
         if (kinematic_noise.active()) {
-            const S torque = stiffness.torque(transmission_error - error.value);
-            const kinematic_error::Error<S> noise = kinematic_noise.at(input_angle, torque, input_speed);
-            error = {error.value + noise.value, error.slope + noise.slope};
+            const kinematic_error::Error<S> noise =
+                kinematic_noise.at(generator.angle, stiffness.torque(is.twist), generator.speed);
+            is.error = {is.error.value + noise.value, is.error.slope + noise.slope};
+            is.deformation = structure.gap(inner, at) - is.error.value;
         }
-        return error;
+        return is;
     }
+    constexpr Engaged engaged_without_noise(const Inner& inner, const Shafts& at, const structure::Generator<S>& generator) const {
+        const kinematic_error::Error<S> full = kinematic_error.at(generator.angle);
+        const S gap = structure.gap(inner, at), left = gap - full.value;
+        if (!kinematic_error::follows_load(kinematic_error))
+            return {full, left, structure.rigid() ? left : structure.spring_twist(inner, at)};
+        const S twist = structure.rigid() ? relieved_twist(full.value, gap) : structure.spring_twist(inner, at);
+        const kinematic_error::Relief<S> relief = kinematic_error::relief(kinematic_error, S(stiffness.torque(twist)));
+        const S error = relief.factor * full.value, slope = relief.factor * full.slope;
+        const S per_twist = full.value * relief.slope * stiffness.tangent(twist);
+        if (!structure.rigid()) return {{error, slope}, gap - error, twist, S(1.0), per_twist};
+        const S per_output = S(1.0) / (S(1.0) + per_twist);
+        return {{error, per_output * slope}, gap - error, twist, per_output};
+    }
+    /// The twist that is left of a gap by an error that its own torque relieves, rad: Newton's iteration, from the error's full
+    /// size on. What is left to find is the square of what was left before.
+    constexpr S relieved_twist(const S& error, const S& gap) const {
+        constexpr int rounds = 6;
+        S twist = gap - error;
+        for (int i = 0; i < rounds; ++i) {
+            const kinematic_error::Relief<S> relief = kinematic_error::relief(kinematic_error, S(stiffness.torque(twist)));
+            const S per_twist = error * relief.slope * stiffness.tangent(twist);
+            twist = twist - (twist + relief.factor * error - gap) / (S(1.0) + per_twist);
+        }
+        return twist;
+    }
+
+    constexpr variation::Factor<S> stiffness_factor(const Inner& inner, const Shafts& at) const {
+        if (!stiffness_variation.active()) return {};
+        return stiffness_variation.at(structure.generator(inner, at).angle);
+    }
+    constexpr S turning(const variation::Factor<S>& factor, const S& twist, const S& temperature) const {
+        if (!stiffness_variation.active()) return S(0.0);
+        return factor.slope * softness(temperature) * stiffness.energy(twist);
+    }
+    constexpr structure::Load<S> load(const Mesh& mesh) const { return {mesh.spring, mesh.turning, input_inertia}; }
+    constexpr S softness(const S& temperature) const { return softening.active() ? softening.of_stiffness(temperature) : S(1.0); }
 };
 
 }  // namespace strainwave

@@ -84,16 +84,25 @@ private:
         const auto mesh = drive.geometry(x, y);
         move(mesh.per_input);
         const S total_input = y.input_angle + S(2.0 * pi) * x.turns;
-        if (known.knows(input_angle) && known.knows(output_angle)) {
-            place(known[input_angle], known[input_angle] * inverse - known[output_angle]);
-        } else {
-            const S error = mesh.error + wanted_twist(mesh);
-            const S input = known.knows(input_angle)    ? known[input_angle]
-                            : known.knows(output_angle) ? (known[output_angle] + error) / inverse
-                                                        : total_input;
-            place(input, error);
-        }
+        const bool both = known.knows(input_angle) && known.knows(output_angle);
+        const S between = both ? known[input_angle] * inverse - known[output_angle] : S(0.0);
+        settle_gear(mesh, both ? twist_between(mesh, between) : wanted_twist(mesh));
+        const S error = both ? between : y.transmission_error;
+        const S input = known.knows(input_angle)    ? known[input_angle]
+                        : known.knows(output_angle) ? (known[output_angle] + error) / inverse
+                                                    : total_input;
+        place(input, error);
         return drive.geometry(x, y).twist;
+    }
+    /// The twist of the spring where the shafts stand so far from each other [rad].
+    constexpr S twist_between(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& between) const {
+        const S left = between - mesh.error;
+        if (drive.gear.structure.rigid()) return left;
+        return spring.twist_within(left, drive.gear.compliance(drive.gear_shafts(x, x.continuous), mesh));
+    }
+    constexpr void settle_gear(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& twist) {
+        const S temperature = drive.temperatures(x.continuous, u).gear;
+        drive.settle_gear(x, mesh, twist, drive.gear.structure.rigid() ? S(0.0) : spring.torque(twist), temperature);
     }
     constexpr void place(const S& input, const S& transmission_error) {
         x.turns = rint(input * S(0.5 / pi));
@@ -113,7 +122,7 @@ private:
         if (!known.knows(torque) && prescribes(drive.load)) return S(0.0);
         const S transmitted = known.knows(torque) ? known[torque] : balancing_torque();
         const S rate = mesh.per_input * x.continuous.input_speed - x.continuous.output_speed;
-        return spring.twist(transmitted - drive.gear.damping * rate);
+        return spring.twist(drive.gear.structure.rigid() ? transmitted - drive.gear.damping * rate : transmitted);
     }
     /// What the gear must transmit so that load and friction do not accelerate the output.
     constexpr S balancing_torque() {

@@ -26,6 +26,7 @@
 #include <strainwave/hysteresis/regimes.hpp>
 #include <strainwave/kinematic_error/fourier.hpp>
 #include <strainwave/kinematic_error/misalignment.hpp>
+#include <strainwave/kinematic_error/scaled.hpp>
 #include <strainwave/kinematic_error/stochastic.hpp>
 #include <strainwave/kinematic_error/tooth_errors.hpp>
 #include <strainwave/kinematics.hpp>
@@ -58,8 +59,12 @@
 #include <strainwave/stiffness/multi_compliance.hpp>
 #include <strainwave/stiffness/piecewise.hpp>
 #include <strainwave/stiffness/three_segment.hpp>
+#include <strainwave/structure/lumped.hpp>
+#include <strainwave/structure/staged.hpp>
 #include <strainwave/thermal/heating.hpp>
 #include <strainwave/thermal/isothermal.hpp>
+#include <strainwave/variation/constant.hpp>
+#include <strainwave/variation/periodic.hpp>
 
 /// The closed lists of models. A new model is one header, and here its include and its name. The first of a family is its default.
 namespace strainwave {
@@ -83,7 +88,8 @@ namespace kinematics {
 using Models = List<StrainWave, PlainRatio>;
 }
 namespace kinematic_error {
-using Models = List<Fourier, Misalignment, ToothErrors>;
+using Pure = List<Fourier, Misalignment, ToothErrors>;
+using Models = Extended<Pure, Scaled>;
 using Noises = List<Stochastic>;
 }  // namespace kinematic_error
 namespace friction {
@@ -116,6 +122,12 @@ using Late = Extended<Plain, Delayed>;
 using Loud = Extended<Late, Noisy>;
 using Models = Extended<Loud, Quantised>;
 }  // namespace sensor
+namespace variation {
+using Models = List<Constant, Periodic>;
+}
+namespace structure {
+using Models = List<Lumped, Staged>;
+}
 namespace softening {
 using Models = List<ThermalSoftening>;
 }

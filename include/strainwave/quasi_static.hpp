@@ -23,12 +23,22 @@ public:
         at = twist;
     }
 
-    /// The twist at which `wanted` [N.m] is reached without turning back on the way; not a finite number if there is none. The
-    /// torque rises with the twist, so that a bracket closes.
+    /// The twist at which `wanted` [N.m] is reached without turning back on the way; not a finite number if there is none.
     constexpr S twist(const S& wanted) const {
-        const S away = wanted < torque(at) ? S(-1.0) : S(1.0);
+        return reached([&](const S& x) { return torque(x); }, wanted);
+    }
+    /// The twist of the spring where it shares a `whole` [rad] with a `compliance` [rad/(N.m)] in series.
+    constexpr S twist_within(const S& whole, const S& compliance) const {
+        return reached([&](const S& x) { return x + compliance * torque(x); }, whole);
+    }
+
+private:
+    /// Where a function that rises with the twist reaches what is wanted, so that a bracket closes.
+    template <class F>
+    constexpr S reached(const F& f, const S& wanted) const {
+        const S away = wanted < f(at) ? S(-1.0) : S(1.0);
         S low = at, high = at, reach = max(abs(at), S(1e-9)) * away;
-        while (away * (torque(high) - wanted) < S(0.0)) {
+        while (away * (f(high) - wanted) < S(0.0)) {
             low = high;
             reach = reach * S(2.0);
             high = at + reach;
@@ -37,11 +47,11 @@ public:
         for (int i = 0; i < 2000; ++i) {
             const S middle = low + S(0.5) * (high - low);
             if (middle == low || middle == high) break;
-            (away * (torque(middle) - wanted) < S(0.0) ? low : high) = middle;
+            (away * (f(middle) - wanted) < S(0.0) ? low : high) = middle;
         }
-        const S root = abs(torque(low) - wanted) < abs(torque(high) - wanted) ? low : high;
+        const S root = abs(f(low) - wanted) < abs(f(high) - wanted) ? low : high;
         if constexpr (differentiates<S>)
-            return moving_root([&](const S& x) { return torque(x) - wanted; }, root);
+            return moving_root([&](const S& x) { return f(x) - wanted; }, root);
         else
             return root;
     }

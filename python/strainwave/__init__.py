@@ -28,7 +28,9 @@ from strainwave._core import (
     sensor,
     softening,
     stiffness,
+    structure,
     thermal,
+    variation,
 )
 
 if TYPE_CHECKING:
@@ -157,8 +159,10 @@ __all__ = [
     "simulate_to",
     "softening",
     "stiffness",
+    "structure",
     "thermal",
     "twin",
+    "variation",
 ]
 
 

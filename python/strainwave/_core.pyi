@@ -20,7 +20,9 @@ from strainwave import (
     sensor as sensor,
     softening as softening,
     stiffness as stiffness,
-    thermal as thermal
+    structure as structure,
+    thermal as thermal,
+    variation as variation
 )
 import strainwave.control
 import strainwave.friction
@@ -34,7 +36,9 @@ import strainwave.sensor
 import strainwave.simulation.state
 import strainwave.softening
 import strainwave.stiffness
+import strainwave.structure
 import strainwave.thermal
+import strainwave.variation
 
 
 families: dict[str, dict[str, type[Any]]]
@@ -86,6 +90,9 @@ class Gear:
     what it takes weighs on the input. Every law of friction may stand at every place, each under the load that its place
     transmits, the angle it stands at and the temperature.
 
+    Where the stiffness varies with the angle of the wave generator, the energy in the spring turns the wave generator, too.
+    A ``structure`` says whether the bodies within the gear move by themselves, between input shaft and output shaft.
+
     Every part is a law of its own, from the ideal gear to one with all effects over the whole envelope of speed, load and
     temperature; change one with ``gear.replace(hysteresis=...)``.
 
@@ -107,6 +114,8 @@ class Gear:
     friction_output: Friction at the output, over the output speed; default Viscous(viscous=0.0)
     input_inertia: Inertia of the wave generator [kg.m2], in [0, inf); default 0.0
     softening: How stiffness and hysteresis give way as the gear warms up; default ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15)
+    stiffness_variation: How the stiffness varies as the wave generator turns; default Constant()
+    structure: What moves within the gear by itself; default Lumped()
 
     Raises
     ------
@@ -115,12 +124,12 @@ class Gear:
 
     Source
     ------
-    physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5)
+    physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5); for the bodies within it, document A
     """
 
-    def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment | strainwave.kinematic_error.ToothErrors = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance | strainwave.stiffness.Backlash = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes | strainwave.hysteresis.FrictionalWindup = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ..., softening: strainwave.softening.ThermalSoftening = ...) -> None: ...
+    def __init__(self, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment | strainwave.kinematic_error.ToothErrors | strainwave.kinematic_error.Scaled = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance | strainwave.stiffness.Backlash = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes | strainwave.hysteresis.FrictionalWindup = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ..., softening: strainwave.softening.ThermalSoftening = ..., stiffness_variation: strainwave.variation.Constant | strainwave.variation.Periodic = ..., structure: strainwave.structure.Lumped | strainwave.structure.Staged = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment | strainwave.kinematic_error.ToothErrors = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance | strainwave.stiffness.Backlash = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes | strainwave.hysteresis.FrictionalWindup = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ..., softening: strainwave.softening.ThermalSoftening = ...) -> Gear:
+    def replace(self, changes: dict[str, Any] = ..., /, *, kinematics: strainwave.kinematics.StrainWave | strainwave.kinematics.PlainRatio = ..., kinematic_error: strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment | strainwave.kinematic_error.ToothErrors | strainwave.kinematic_error.Scaled = ..., kinematic_noise: strainwave.kinematic_error.Stochastic = ..., stiffness: strainwave.stiffness.Linear | strainwave.stiffness.Piecewise | strainwave.stiffness.ThreeSegment | strainwave.stiffness.Cubic | strainwave.stiffness.MultiCompliance | strainwave.stiffness.Backlash = ..., hysteresis: strainwave.hysteresis.MaxwellSlip | strainwave.hysteresis.FadingMemory | strainwave.hysteresis.BoucWen | strainwave.hysteresis.Preisach | strainwave.hysteresis.Regimes | strainwave.hysteresis.FrictionalWindup = ..., damping: float = ..., friction_input: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_mesh: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., friction_output: strainwave.friction.Viscous | strainwave.friction.Coulomb | strainwave.friction.Stribeck | strainwave.friction.PositionDependent | strainwave.friction.LuGre | strainwave.friction.MaxwellSlipFriction | strainwave.friction.LoadDependent | strainwave.friction.TorqueEfficiency | strainwave.friction.MixedLubrication | strainwave.friction.Cyclic | strainwave.friction.Thermal = ..., input_inertia: float = ..., softening: strainwave.softening.ThermalSoftening = ..., stiffness_variation: strainwave.variation.Constant | strainwave.variation.Periodic = ..., structure: strainwave.structure.Lumped | strainwave.structure.Staged = ...) -> Gear:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -130,7 +139,7 @@ class Gear:
         """Rigid motion: teeth and fixed member"""
 
     @property
-    def kinematic_error(self) -> strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment | strainwave.kinematic_error.ToothErrors:
+    def kinematic_error(self) -> strainwave.kinematic_error.Fourier | strainwave.kinematic_error.Misalignment | strainwave.kinematic_error.ToothErrors | strainwave.kinematic_error.Scaled:
         """Pure kinematic error at the output, over the input angle"""
 
     @property
@@ -170,6 +179,14 @@ class Gear:
     @property
     def softening(self) -> strainwave.softening.ThermalSoftening:
         """How stiffness and hysteresis give way as the gear warms up"""
+
+    @property
+    def stiffness_variation(self) -> strainwave.variation.Constant | strainwave.variation.Periodic:
+        """How the stiffness varies as the wave generator turns"""
+
+    @property
+    def structure(self) -> strainwave.structure.Lumped | strainwave.structure.Staged:
+        """What moves within the gear by itself"""
 
     def __repr__(self) -> str: ...
 
@@ -302,7 +319,7 @@ class Drive:
 
     Parameters
     ----------
-    gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15))
+    gear: The gear; default Gear(kinematics=StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed='circular_spline'), kinematic_error=Fourier(order=(), amplitude=(), phase=()), kinematic_noise=Stochastic(amplitude=0.0, lowest_order=8.0, highest_order=40.0, seed=0.0, load_sensitivity=0.0, speed_sensitivity=0.0, insertion_depth=0.0, depth_sensitivity=0.0), stiffness=Linear(k=10000.0), hysteresis=MaxwellSlip(stiffness=(), breakaway=()), damping=0.0, friction_input=Viscous(viscous=0.0), friction_mesh=Viscous(viscous=0.0), friction_output=Viscous(viscous=0.0), input_inertia=0.0, softening=ThermalSoftening(stiffness_fall=0.0, hysteresis_fall=0.0, reference_temperature=293.15), stiffness_variation=Constant(), structure=Lumped())
     motor: The motor on the input shaft; default DC(resistance=1.0, inductance=0.0, torque_constant=0.05, back_emf=0.05, inertia=1e-05, brush_drop=0.0, resistance_rise=0.0)
     control: What turns the command into the motor's voltage, current or torque; default OpenLoop(gain=1.0)
     load: What the output shaft carries; default Inertia(inertia=0.01)
@@ -381,7 +398,7 @@ class Drive:
         The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
         """
 
-output_count: int = 43
+output_count: int = 53
 
 def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]:
     """

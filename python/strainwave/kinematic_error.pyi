@@ -459,6 +459,102 @@ class ToothErrors:
         Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.
         """
 
+class Scaled:
+    """
+    A kinematic error that is smaller under load, and where the wave generator is inserted deeper.
+
+    .. math:: e(\\theta, T) = e_0(\\theta)\\, \\frac{e^{-\\kappa_d d}}{1 + \\kappa_T |T|}
+
+    with e_0 the law, T the elastic torque of the gear's spring, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
+    depth_sensitivity. The twist is what solves delta + e(theta, T(delta)) = theta_in / i - theta_out, and both shafts feel
+    the torque through how it changes with their angles: what the error does under load neither takes energy nor gives any.
+    The sensitivities are the user's: no catalogue gives them. The product of load_sensitivity, error and stiffness must stay
+    well below 1. ``error`` and ``slope`` are those without load.
+
+    >>> from strainwave.kinematic_error import Fourier, Scaled
+    >>> law = Scaled(law=Fourier(order=[2], amplitude=[3e-4], phase=[0.0]), load_sensitivity=0.01)
+    >>> law.slope(0.0)
+    0.0006
+
+    Parameters
+    ----------
+    law: The error without load, at insertion depth 0; default Fourier(order=(), amplitude=(), phase=())
+    load_sensitivity: How fast the error falls with the torque transmitted [1/(N.m)], in [0, inf); default 0.0
+    insertion_depth: Depth d to which the wave generator is inserted into the flexspline [m], in [0, inf); default 0.0
+    depth_sensitivity: How fast the error falls with the insertion depth [1/m], in [0, inf); default 0.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    document R, section 1b, which scales its random part so (E-R4): here the deterministic error, with a reaction that keeps the energy
+    """
+
+    def __init__(self, *, law: Fourier | Misalignment | ToothErrors = ..., load_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Fourier | Misalignment | ToothErrors = ..., load_sensitivity: float = ..., insertion_depth: float = ..., depth_sensitivity: float = ...) -> Scaled:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def law(self) -> Fourier | Misalignment | ToothErrors:
+        """The error without load, at insertion depth 0"""
+
+    @property
+    def load_sensitivity(self) -> float:
+        """How fast the error falls with the torque transmitted [1/(N.m)]"""
+
+    @property
+    def insertion_depth(self) -> float:
+        """
+        Depth d to which the wave generator is inserted into the flexspline [m]
+        """
+
+    @property
+    def depth_sensitivity(self) -> float:
+        """How fast the error falls with the insertion depth [1/m]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'scaled'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def error(self, angle: float) -> float: ...
+
+    @overload
+    def error(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Kinematic error [rad] at input `angle` [rad]."""
+
+    @overload
+    def slope(self, angle: float) -> float: ...
+
+    @overload
+    def slope(self, angle: Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """Its derivative [rad/rad] by the input angle."""
+
+    def harmonics(self, highest: int = 8) -> Fourier:
+        """
+        Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.
+        """
+
 class Stochastic:
     """
     Random kinematic error of a given band of orders: smooth, the same for the same seed.

@@ -4,13 +4,14 @@
 namespace strainwave {
 
 /// Everything worth recording, at one instant.
-template <class S, class MotorOutput, class ThermalOutput, class MeterOutput>
+template <class S, class MotorOutput, class ThermalOutput, class MeterOutput, class StructureOutput>
 struct Output {
     S command, input_angle, input_speed, output_angle, output_speed, twist, kinematic_error, transmission_error, torque;
     S friction_input, friction_mesh, friction_output, load_torque, temperature;
     MotorOutput motor;
     ThermalOutput thermal;
     MeterOutput meter;
+    StructureOutput structure;  ///< last: a drive of a type whose gear has none counts no places for it
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -31,6 +32,7 @@ struct Output {
         visit(SW_PART(m, motor, "What the motor shows of itself"));
         visit(SW_PART(m, thermal, "What the thermal model shows of itself"));
         visit(SW_PART(m, meter, "What the meter shows"));
+        visit(SW_PART(m, structure, "What the gear shows of the bodies within it"));
     }
 };
 

@@ -6,7 +6,7 @@ namespace strainwave {
 
 /// What changes continuously. The transmission error theta_in / i - theta_out replaces the output angle.
 template <class S, class MotorState, class ControlState, class SensorsState, class FrictionInputState, class FrictionMeshState,
-          class FrictionOutputState, class ThermalState, class MeterState>
+          class FrictionOutputState, class StructureState, class ThermalState, class MeterState>
 struct Continuous {
     MotorState motor{};
     ControlState control{};
@@ -18,6 +18,7 @@ struct Continuous {
     FrictionInputState friction_input{};
     FrictionMeshState friction_mesh{};
     FrictionOutputState friction_output{};
+    StructureState structure{};
     ThermalState thermal{};
     MeterState meter{};
 
@@ -33,6 +34,7 @@ struct Continuous {
         visit(SW_PART(m, friction_input, "State of the friction at the input"));
         visit(SW_PART(m, friction_mesh, "State of the friction of the mesh"));
         visit(SW_PART(m, friction_output, "State of the friction at the output"));
+        visit(SW_PART(m, structure, "State of the bodies within the gear"));
         visit(SW_PART(m, thermal, "Temperatures"));
         visit(SW_PART(m, meter, "Energies measured"));
     }

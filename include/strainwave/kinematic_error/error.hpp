@@ -10,4 +10,27 @@ struct Error {
     S slope{0.0};  ///< rad/rad
 };
 
+/// What is left of an error under load, as a factor, and how that changes with the torque [1/(N.m)].
+template <class S>
+struct Relief {
+    S factor{1.0};
+    S slope{0.0};
+};
+
+/// Whether an error shrinks or grows with the torque that the gear transmits.
+template <class Law>
+constexpr bool follows_load(const Law& law) {
+    if constexpr (requires { law.follows_load(); })
+        return law.follows_load();
+    else
+        return false;
+}
+template <class S, class Law>
+constexpr Relief<S> relief(const Law& law, const S& torque) {
+    if constexpr (requires { law.relief(torque); })
+        return law.relief(torque);
+    else
+        return {};
+}
+
 }  // namespace strainwave::kinematic_error

@@ -33,13 +33,14 @@ struct Powers {
 /// What a drive holds by its motion and its position, J.
 template <class S>
 struct Stored {
-    S input{0.0}, output{0.0}, spring{0.0}, motor{0.0};
+    S input{0.0}, output{0.0}, spring{0.0}, gear{0.0}, motor{0.0};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, input, "J", "Kinetic energy of the input"));
         visit(SW_FIELD(m, output, "J", "Kinetic energy of the output"));
         visit(SW_FIELD(m, spring, "J", "Elastic energy of the gear"));
+        visit(SW_FIELD(m, gear, "J", "Kinetic energy of the bodies within the gear that move by themselves"));
         visit(SW_FIELD(m, motor, "J", "Energy that the motor holds, magnetic and of cogging"));
     }
 };

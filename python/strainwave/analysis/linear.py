@@ -225,7 +225,7 @@ def modes(drive: Drive) -> dict[str, Array]:
     {'free': [173.241161], 'input held': [173.205081]}
     """
     arguments.drive(drive)
-    same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening")
+    same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening", "structure", "stiffness_variation")
     gear = Gear(**{name: getattr(drive.gear, name) for name in same})
     bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
     held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HELD, breakaway=HELD)))

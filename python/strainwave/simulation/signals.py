@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, Gear, _core, arguments
 from strainwave.messages import shortened
 from strainwave.simulation.memory import check_acting
 
@@ -41,15 +41,16 @@ def outputs(drive: Drive) -> Mapping[str, Output]:
     >>> "voltage" in outputs(Drive()), "voltage" in outputs(Drive(motor=motor.CurrentSource()))
     (True, False)
     """
-    return _outputs_with(drive.motor.name, drive.thermal.name, drive.meter.name)
+    return _outputs_with(drive.motor.name, drive.gear.structure.name, drive.thermal.name, drive.meter.name)
 
 
 @cache
-def _outputs_with(motor: str, thermal: str, meter: str) -> Mapping[str, Output]:
+def _outputs_with(motor: str, structure: str, thermal: str, meter: str) -> Mapping[str, Output]:
     """Drives differ in what these parts show; whatever its numbers, a part shows the same."""
-    parts = {"motor": motor, "thermal": thermal, "meter": meter}
+    parts = {"motor": motor, "structure": structure, "thermal": thermal, "meter": meter}
     models = {family: any_of(_core.families[family][name]) for family, name in parts.items()}
-    found = [Output(*each) for each in _core.outputs(Drive(**models))]
+    gear = Gear(structure=models.pop("structure"), input_inertia=1.0)
+    found = [Output(*each) for each in _core.outputs(Drive(gear=gear, **models))]
     return MappingProxyType({each.name: each for each in found})
 
 

@@ -1,0 +1,69 @@
+#pragma once
+#include <strainwave/compiled.hpp>
+#include <strainwave/kinematic_error/fourier.hpp>
+
+namespace strainwave::kinematic_error {
+
+template <class S, class Law = Fourier<S>>
+struct Scaled {
+    Law law{};
+    S load_sensitivity{0.0};
+    S insertion_depth{0.0};
+    S depth_sensitivity{0.0};
+
+    static constexpr auto name = "scaled";
+    static constexpr auto source =
+        "document R, section 1b, which scales its random part so (E-R4): here the deterministic error, with a reaction that keeps "
+        "the energy";
+    static constexpr auto doc = R"(
+        A kinematic error that is smaller under load, and where the wave generator is inserted deeper.
+
+        .. math:: e(\theta, T) = e_0(\theta)\, \frac{e^{-\kappa_d d}}{1 + \kappa_T |T|}
+
+        with e_0 the law, T the elastic torque of the gear's spring, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
+        depth_sensitivity. The twist is what solves delta + e(theta, T(delta)) = theta_in / i - theta_out, and both shafts feel
+        the torque through how it changes with their angles: what the error does under load neither takes energy nor gives any.
+        The sensitivities are the user's: no catalogue gives them. The product of load_sensitivity, error and stiffness must stay
+        well below 1. ``error`` and ``slope`` are those without load.
+
+        >>> from strainwave.kinematic_error import Fourier, Scaled
+        >>> law = Scaled(law=Fourier(order=[2], amplitude=[3e-4], phase=[0.0]), load_sensitivity=0.01)
+        >>> law.slope(0.0)
+        0.0006)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_PART(m, law, "The error without load, at insertion depth 0"));
+        visit(SW_FIELD(m, load_sensitivity, "1/(N.m)", "How fast the error falls with the torque transmitted", 0));
+        visit(SW_FIELD(m, insertion_depth, "m", "Depth d to which the wave generator is inserted into the flexspline", 0));
+        visit(SW_FIELD(m, depth_sensitivity, "1/m", "How fast the error falls with the insertion depth", 0));
+    }
+
+    template <class Inner>
+    struct Compiled {
+        Inner law;
+        S scale, load_sensitivity;
+        bool eased;
+
+        constexpr bool follows_load() const { return eased; }
+        constexpr Relief<S> relief(const S& torque) const {
+            const S factor = S(1.0) / (S(1.0) + min(load_sensitivity * abs(torque), S(1e30)));
+            return {factor, -load_sensitivity * sign(torque) * factor * factor};
+        }
+        constexpr Error<S> at(const Angle<S>& angle) const {
+            const Error<S> full = law.at(angle);
+            return {scale * full.value, scale * full.slope};
+        }
+    };
+
+    constexpr auto compile() const {
+        return Compiled<decltype(compiled(law))>{compiled(law), exp(-min(depth_sensitivity * insertion_depth, S(beyond_digits))),
+                                                 load_sensitivity, follows_load()};
+    }
+
+    constexpr bool follows_load() const { return sought(load_sensitivity) || any(load_sensitivity > S(0.0)); }
+    constexpr Relief<S> relief(const S& torque) const { return compile().relief(torque); }
+    constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
+};
+
+}  // namespace strainwave::kinematic_error

@@ -1,0 +1,62 @@
+#pragma once
+#include <strainwave/structure/structure.hpp>
+
+namespace strainwave::structure {
+
+template <class S>
+struct Lumped {
+    static constexpr auto name = "lumped";
+    static constexpr auto source = "document R, sections 1-4";
+    static constexpr auto doc = R"(
+        A gear of one spring: nothing within it moves by itself.
+
+        .. math:: T_{out} = T, \qquad T_{in} = T\,(1/i - e'(\theta_{in}))
+
+        with T the torque of the spring, its hysteresis and damping. The wave generator turns with the input shaft, the mesh and
+        the bearings are as stiff as ``stiffness`` says for all together. Valid where the bodies within the gear vibrate much
+        faster than what is looked at.
+
+        >>> import strainwave as sw
+        >>> sw.Gear().structure
+        Lumped())";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    using State = Stateless<S>;
+    using Output = Stateless<S>;
+
+    static constexpr bool rigid() { return true; }
+    constexpr Generator<S> generator(const State&, const Shafts<S>& at) const { return {at.input_angle, at.input_speed}; }
+    constexpr S generator_acceleration(const State&, const S& input_acceleration) const { return input_acceleration; }
+    constexpr S gap(const State&, const Shafts<S>& at) const { return at.transmission_error; }
+    constexpr S spring_twist(const State&, const Shafts<S>&) const { return S(0.0); }
+    constexpr S spring_twist_rate(const State&, const Shafts<S>&) const { return S(0.0); }
+    template <class Mesh>
+    constexpr S deformation_rate(const State&, const Shafts<S>& at, const Mesh& mesh) const {
+        return mesh.per_input * at.input_speed - mesh.per_output * at.output_speed;
+    }
+    template <class Mesh>
+    constexpr Reaction<S, State> reaction(const State&, const Shafts<S>&, const Mesh& mesh, const Load<S>& load) const {
+        return {load.spring * mesh.per_output, load.spring * mesh.per_input + load.turning, {}};
+    }
+    template <class Mesh>
+    constexpr Energies<S> energies(const State&, const Shafts<S>&, const Mesh&, const Load<S>&) const {
+        return {};
+    }
+    template <class Mesh>
+    constexpr Output output(const State&, const Shafts<S>&, const Mesh&, const Load<S>&, const S&) const {
+        return {};
+    }
+    template <class Mesh>
+    constexpr Settled<S, State> settled(const State&, const Shafts<S>&, const Mesh& mesh, const Load<S>&) const {
+        return {{}, mesh.error + mesh.twist};
+    }
+    template <class Mesh>
+    constexpr S compliance(const Shafts<S>&, const Mesh&) const {
+        return S(0.0);
+    }
+    constexpr S max_rate(const Bodies<S>&) const { return S(0.0); }
+};
+
+}  // namespace strainwave::structure

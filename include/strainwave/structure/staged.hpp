@@ -1,0 +1,394 @@
+#pragma once
+#include <strainwave/compiled.hpp>
+#include <strainwave/structure/structure.hpp>
+#include <strainwave/variation/constant.hpp>
+
+namespace strainwave::structure {
+
+template <class S, class Variation = variation::Constant<S>>
+struct Staged {
+    S pitch_radius{25e-3};
+    S pressure_angle{0.3490658503988659};
+    S coupling_stiffness{5e3};
+    S coupling_damping{0.0};
+    S bearing_stiffness{5e7};
+    S bearing_damping{0.0};
+    S mesh_stiffness{1e8};
+    S mesh_damping{0.0};
+    S circular_spline_stiffness{1e5};
+    S circular_spline_damping{0.0};
+    S radial_mass{0.03};
+    S flexspline_inertia{2e-5};
+    S circular_spline_inertia{3e-4};
+    Variation coupling_variation{};
+    Variation bearing_variation{};
+    Variation mesh_variation{};
+    Variation circular_spline_variation{};
+
+    static constexpr auto name = "staged";
+    static constexpr auto source =
+        "document A, eq. (1), with the relations that it leaves out and its errors mended (errata E-A1 to E-A6); the circular "
+        "spline fixed, varying springs and the default values are assumed";
+    static constexpr auto doc = R"(
+        A gear whose wave generator, flexspline and circular spline move by themselves.
+
+        .. math:: T_{WG} = K_{WG}(\theta_{in} - \theta_{WG}) + c_{WG}(\dot\theta_{in} - \dot\theta_{WG}) =
+                  F_b \left(r_g \tan\alpha_n + \frac{d\delta}{d\theta_{WG}}\right) + J_{WG}\ddot\theta_{WG}
+
+        .. math:: F_b = K_b (\delta + x_1 - x_2) + c_b(\dot\delta + \dot x_1 - \dot x_2) = F_m \sin\alpha_t + m_r \ddot x_2
+
+        .. math:: F_m = K_m \mu + c_m \dot\mu, \qquad \mu = x_2 \sin\alpha_t - (y_1 + y_2) \cos\alpha_t
+
+        .. math:: F_m r_g \cos\alpha_t = T_{FS}(y_1 / r_g) + J_{FS} \ddot y_1 / r_g = J_{CS}\ddot\theta_{CS} + T_{CS}, \qquad
+                  T_{CS} = K_{CS}(\theta_{CS} - \theta_{out}) + c_{CS}(\dot\theta_{CS} - \dot\theta_{out})
+
+        with r_g = pitch_radius, alpha_t = pressure_angle, x_1 = r_g tan(alpha_n) theta_WG, tan(alpha_n) = 1 / (i tan(alpha_t)),
+        y_2 = r_g theta_CS, and i the ratio. K_WG, c_WG = coupling_stiffness, coupling_damping join the motor shaft to the wave
+        generator; K_b, c_b are those of its bearing, K_m, c_m those of the mesh, K_CS, c_CS = circular_spline_stiffness,
+        circular_spline_damping join the circular spline to the output shaft and its position sensor. The parts of the gear tell
+        the rest: J_WG is its input_inertia, T_FS the torque of its stiffness, hysteresis and damping, delta = -e r_g /
+        tan(alpha_t) its kinematic error as a radial displacement of the wave generator. m_r = radial_mass and J_FS =
+        flexspline_inertia are those of the flexspline's toothed ring, J_CS = circular_spline_inertia.
+
+        So reads a gear whose flexspline is fixed: its ratio is positive. Where the circular spline is fixed the ratio is
+        negative, and the two exchange their places: T_CS holds the circular spline to the housing, and T_FS, over the twist of
+        the flexspline against the output shaft, is the torque on it.
+
+        Each stiffness may vary as the wave generator turns. The torque with which such a spring turns the wave generator is part
+        of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
+
+        Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), by which the gear gives more power than it takes
+        (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), takes the sign of the error against that of
+        its own eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
+        freedom (E-A6). Its x_1 is linear in theta_WG: the equations say nothing of the cyclic deformation of the flexspline.
+
+        Output as A has it: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
+        ``circular_spline_displacement`` y_2, ``bearing_force`` F_b, ``mesh_force`` F_m, ``wave_generator_torque`` T_WG,
+        ``circular_spline_torque`` T_CS, and ``output_torque`` T = torque - friction_output. Fixed steps must follow the fastest
+        mode, some 1e4 to 1e5 rad/s.
+
+        >>> import strainwave as sw
+        >>> structure = sw.structure.Staged(pitch_radius=25e-3, bearing_stiffness=5e7, mesh_stiffness=1e8,
+        ...     coupling_stiffness=5e3, circular_spline_stiffness=1e5, radial_mass=0.032, flexspline_inertia=2e-5,
+        ...     circular_spline_inertia=3e-4)
+        >>> gear = sw.Gear(structure=structure, input_inertia=8e-6)
+        >>> gear.structure.mesh_stiffness
+        100000000.0)";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest));
+        visit(SW_FIELD(m, pressure_angle, "rad", "Pressure angle alpha_t of the teeth", 0.01, 1.5));
+        visit(SW_REQUIRED(m, coupling_stiffness, "N.m/rad", "Stiffness K_WG between input shaft and wave generator", smallest));
+        visit(SW_FIELD(m, coupling_damping, "N.m.s/rad", "Damping c_WG there", 0));
+        visit(SW_REQUIRED(m, bearing_stiffness, "N/m", "Radial stiffness K_b of the wave generator's bearing", smallest));
+        visit(SW_FIELD(m, bearing_damping, "N.s/m", "Damping c_b of that bearing", 0));
+        visit(SW_REQUIRED(m, mesh_stiffness, "N/m", "Stiffness K_m of the mesh, along its line of action", smallest));
+        visit(SW_FIELD(m, mesh_damping, "N.s/m", "Damping c_m of the mesh", 0));
+        visit(SW_REQUIRED(m, circular_spline_stiffness, "N.m/rad",
+                          "Stiffness K_CS between circular spline and output shaft, or housing if that spline is fixed", smallest));
+        visit(SW_FIELD(m, circular_spline_damping, "N.m.s/rad", "Damping c_CS there", 0));
+        visit(SW_REQUIRED(m, radial_mass, "kg", "Mass m_r of the flexspline's ring that moves radially", smallest));
+        visit(SW_REQUIRED(m, flexspline_inertia, "kg.m2", "Inertia J_FS of the flexspline's ring, about its axis", smallest));
+        visit(SW_REQUIRED(m, circular_spline_inertia, "kg.m2", "Inertia J_CS of the circular spline", smallest));
+        visit(SW_PART(m, coupling_variation, "How K_WG varies as the wave generator turns"));
+        visit(SW_PART(m, bearing_variation, "How K_b varies"));
+        visit(SW_PART(m, mesh_variation, "How K_m varies"));
+        visit(SW_PART(m, circular_spline_variation, "How K_CS varies"));
+    }
+
+    /// All but the windup and the speed of the wave generator at the output's scale. The ring that is held is the one joined to
+    /// the housing, the ring that drives the one joined to the output shaft.
+    struct State {
+        S windup{0.0};
+        S generator_speed{0.0};
+        S radial_lag{0.0};
+        S radial_speed{0.0};
+        S held_angle{0.0};
+        S held_speed{0.0};
+        S driving_lead{0.0};
+        S driving_speed{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, windup, "rad", "Input angle less the angle of the wave generator"));
+            visit(SW_FIELD(m, generator_speed, "rad/s", "Speed of the wave generator"));
+            visit(SW_FIELD(m, radial_lag, "rad", "Radial displacement of the flexspline behind that of the wave generator"));
+            visit(SW_FIELD(m, radial_speed, "rad/s", "Speed of the radial displacement"));
+            visit(SW_FIELD(m, held_angle, "rad", "How far the ring that is held gives way to the torque"));
+            visit(SW_FIELD(m, held_speed, "rad/s", "Speed of that"));
+            visit(SW_FIELD(m, driving_lead, "rad", "Angle of the ring that drives less the output angle"));
+            visit(SW_FIELD(m, driving_speed, "rad/s", "Speed of the ring that drives"));
+        }
+    };
+
+    struct Output {
+        S bearing_displacement{0.0}, radial_displacement{0.0}, flexspline_displacement{0.0}, circular_spline_displacement{0.0};
+        S bearing_force{0.0}, mesh_force{0.0}, wave_generator_torque{0.0}, circular_spline_torque{0.0}, output_torque{0.0};
+
+        template <class Self, class Visit>
+        static constexpr void fields(Self& m, Visit&& visit) {
+            visit(SW_FIELD(m, bearing_displacement, "m", "Radial displacement x_1 of the wave generator's bearing"));
+            visit(SW_FIELD(m, radial_displacement, "m", "Radial displacement x_2 of the flexspline"));
+            visit(SW_FIELD(m, flexspline_displacement, "m", "Tangential displacement y_1 of the flexspline by its torsion"));
+            visit(SW_FIELD(m, circular_spline_displacement, "m", "Tangential displacement y_2 of the circular spline"));
+            visit(SW_FIELD(m, bearing_force, "N", "Radial force F_b of the bearing"));
+            visit(SW_FIELD(m, mesh_force, "N", "Force F_m of the mesh"));
+            visit(SW_FIELD(m, wave_generator_torque, "N.m", "Torque T_WG on the wave generator"));
+            visit(SW_FIELD(m, circular_spline_torque, "N.m", "Torque T_CS of the circular spline on what it is joined to"));
+            visit(SW_FIELD(m, output_torque, "N.m", "Torque T at the output shaft, less the friction there"));
+        }
+    };
+
+    /// Two bodies joined, at the output's scale.
+    template <class Varying>
+    struct Joint {
+        S stiffness{1.0};  ///< N.m/rad
+        S damping{0.0};    ///< N.m.s/rad
+        Varying variation{};
+
+        constexpr variation::Factor<S> factor(const Angle<S>& generator) const {
+            return variation.active() ? variation.at(generator) : variation::Factor<S>{};
+        }
+        constexpr S most() const { return stiffness * variation.largest(); }
+    };
+    /// What a joint holds where it is deformed.
+    struct Held {
+        S deformation, rate;  ///< rad, rad/s
+        S elastic, torque;    ///< N.m, with damping
+        S turning;            ///< with which it holds the wave generator back as its stiffness varies, N.m
+    };
+
+    /// The chain of bodies at the output's scale: every radial displacement times tan(alpha_t) / r_g, every tangential one by r_g.
+    template <class Varying>
+    struct Chain {
+        Joint<Varying> coupling, bearing, mesh, spline;
+        S radial_inertia, flexspline_inertia, spline_inertia;  ///< kg.m2
+        S lever;                                               ///< r_g / tan(alpha_t), m: force of the bearing per torque
+        S mesh_lever;                                          ///< r_g cos(alpha_t), m
+        S radius;                                              ///< r_g
+
+        using State = typename Staged::State;
+        using Output = typename Staged::Output;
+
+        static constexpr bool rigid() { return false; }
+
+        constexpr Generator<S> generator(const State& inner, const Shafts<S>& at) const {
+            return {{at.input_angle.within - inner.windup, at.input_angle.turns}, inner.generator_speed};
+        }
+        constexpr S generator_acceleration(const State& rate, const S&) const { return rate.generator_speed; }
+        constexpr S gap(const State& inner, const Shafts<S>&) const { return inner.radial_lag; }
+        constexpr S spring_twist(const State& inner, const Shafts<S>& at) const {
+            return select(flexspline_held(at), inner.held_angle, inner.driving_lead);
+        }
+        constexpr S spring_twist_rate(const State& inner, const Shafts<S>& at) const {
+            return select(flexspline_held(at), inner.held_speed, inner.driving_speed - at.output_speed);
+        }
+        template <class Mesh>
+        constexpr S deformation_rate(const State& inner, const Shafts<S>&, const Mesh& mesh_) const {
+            return mesh_.per_input * inner.generator_speed - inner.radial_speed - mesh_.per_twist * mesh_.twist_rate;
+        }
+
+        template <class Mesh>
+        constexpr Reaction<S, State> reaction(const State& inner, const Shafts<S>& at, const Mesh& mesh_,
+                                              const Load<S>& load) const {
+            const auto held_flexspline = flexspline_held(at);
+            const Joints of = joints(inner, at, mesh_);
+            const S spring = load.spring - mesh_.per_twist * of.bearing.torque;
+            const S holding = select(held_flexspline, spring, of.spline.torque);
+            const S driving = select(held_flexspline, of.spline.torque, spring);
+            const S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
+            State rate{};
+            rate.windup = at.input_speed - inner.generator_speed;
+            rate.generator_speed = (of.coupling.torque - mesh_.per_input * of.bearing.torque - turning) / load.generator_inertia;
+            rate.radial_lag = inner.generator_speed * at.inverse_ratio - inner.radial_speed;
+            rate.radial_speed = (of.bearing.torque - of.mesh.torque) / radial_inertia;
+            rate.held_angle = inner.held_speed;
+            rate.held_speed = (of.mesh.torque - holding) / select(held_flexspline, flexspline_inertia, spline_inertia);
+            rate.driving_lead = inner.driving_speed - at.output_speed;
+            rate.driving_speed = (of.mesh.torque - driving) / select(held_flexspline, spline_inertia, flexspline_inertia);
+            return {driving, of.coupling.torque, rate};
+        }
+
+        template <class Mesh>
+        constexpr Energies<S> energies(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const Load<S>& load) const {
+            const auto held_flexspline = flexspline_held(at);
+            const Joints of = joints(inner, at, mesh_);
+            const auto elastic = [](const Held& joint) { return S(0.5) * joint.elastic * joint.deformation; };
+            const auto lost = [](const Held& joint) { return (joint.torque - joint.elastic) * joint.rate; };
+            const S held_inertia = select(held_flexspline, flexspline_inertia, spline_inertia);
+            const S driving_inertia = select(held_flexspline, spline_inertia, flexspline_inertia);
+            return {elastic(of.coupling) + elastic(of.bearing) + elastic(of.mesh) + elastic(of.spline),
+                    S(0.5) * (load.generator_inertia * inner.generator_speed * inner.generator_speed +
+                              radial_inertia * inner.radial_speed * inner.radial_speed +
+                              held_inertia * inner.held_speed * inner.held_speed +
+                              driving_inertia * inner.driving_speed * inner.driving_speed),
+                    lost(of.coupling) + lost(of.bearing) + lost(of.mesh) + lost(of.spline), of.bearing.elastic};
+        }
+
+        template <class Mesh>
+        constexpr Output output(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const Load<S>&,
+                                const S& friction) const {
+            const auto held_flexspline = flexspline_held(at);
+            const Joints of = joints(inner, at, mesh_);
+            const S input = at.input_angle.within + S(2.0 * pi) * at.input_angle.turns;
+            const S generator = (input - inner.windup) * at.inverse_ratio;
+            const S driving = input * at.inverse_ratio - at.transmission_error + inner.driving_lead;
+            return {lever * generator,         lever * (generator - inner.radial_lag),
+                    radius * mesh_.twist,      radius * select(held_flexspline, driving, inner.held_angle),
+                    of.bearing.torque / lever, of.mesh.torque / mesh_lever,
+                    of.coupling.torque,        of.spline.torque,
+                    mesh_.torque - friction};
+        }
+
+        template <class Mesh>
+        constexpr Settled<S, State> settled(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const Load<S>& load) const {
+            const auto held_flexspline = flexspline_held(at);
+            const Angle<S> angle = generator(inner, at).angle;
+            const auto under = [&](const Joint<Varying>& joint, const S& torque) { return resting(joint, angle, torque); };
+            const S torque = load.spring;
+            const Held of_bearing = under(bearing, torque), of_mesh = under(mesh, torque), of_spline = under(spline, torque);
+            const S turning = load.turning + of_bearing.turning + of_mesh.turning + of_spline.turning;
+            const variation::Factor<S> factor = coupling.factor(angle);
+            const S bend = S(0.5) * coupling.stiffness * factor.slope * inner.windup * inner.windup;
+            State found{};
+            found.windup = (mesh_.per_input * torque + turning + bend) / (coupling.stiffness * factor.value);
+            found.generator_speed = at.input_speed;
+            found.radial_lag = mesh_.error + of_bearing.deformation;
+            found.radial_speed = mesh_.per_input * at.input_speed;
+            found.held_angle = select(held_flexspline, mesh_.twist, of_spline.deformation);
+            found.driving_lead = select(held_flexspline, of_spline.deformation, mesh_.twist);
+            found.driving_speed = at.output_speed;
+            return {found, found.windup * at.inverse_ratio + found.radial_lag + of_mesh.deformation + found.held_angle +
+                               found.driving_lead};
+        }
+        template <class Mesh>
+        constexpr S compliance(const Shafts<S>& at, const Mesh& mesh_) const {
+            return S(1.0) / bearing.stiffness + S(1.0) / mesh.stiffness + S(1.0) / spline.stiffness +
+                   abs(mesh_.per_input * at.inverse_ratio) / coupling.stiffness;
+        }
+
+        /// The fastest mode without damping, or the fastest decay by damping alone. Of a decay a Runge-Kutta step of fourth order
+        /// bears 2.78 times its length.
+        constexpr S max_rate(const Bodies<S>& bodies) const {
+            const auto of_flexspline = bodies.inverse_ratio > S(0.0);
+            const auto ends = [&](const S& of_spring, const S& of_spline) {
+                return Ends{select(of_flexspline, of_spring, of_spline), select(of_flexspline, of_spline, of_spring)};
+            };
+            const Ends springs = ends(bodies.stiffness, spline.most()), dampers = ends(bodies.damping, spline.damping);
+            const S elastic = largest_eigenvalue(
+                bodies, {coupling.most(), bearing.most(), mesh.most(), springs.held, springs.driving, bodies.load_stiffness});
+            const S decay = largest_eigenvalue(
+                bodies, {coupling.damping, bearing.damping, mesh.damping, dampers.held, dampers.driving, S(0.0)});
+            return max(sqrt(elastic), decay / S(2.5));
+        }
+
+    private:
+        struct Joints {
+            Held coupling, bearing, mesh, spline;
+        };
+        struct Ends {
+            S held, driving;
+        };
+        /// Of the joints one after the other, from the input to the load.
+        struct Line {
+            S coupling, bearing, mesh, held, driving, load;
+        };
+
+        static constexpr auto flexspline_held(const Shafts<S>& at) { return at.inverse_ratio > S(0.0); }
+
+        static constexpr Held held(const Joint<Varying>& joint, const Angle<S>& angle, const S& deformation, const S& rate) {
+            const variation::Factor<S> factor = joint.factor(angle);
+            const S stiff = joint.stiffness * deformation, elastic = factor.value * stiff;
+            return {deformation, rate, elastic, elastic + joint.damping * rate, S(0.5) * factor.slope * stiff * deformation};
+        }
+        static constexpr Held resting(const Joint<Varying>& joint, const Angle<S>& angle, const S& torque) {
+            const S deformation = torque / (joint.stiffness * joint.factor(angle).value);
+            return held(joint, angle, deformation, S(0.0));
+        }
+
+        template <class Mesh>
+        constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& mesh_) const {
+            const auto held_flexspline = flexspline_held(at);
+            const Angle<S> angle = generator(inner, at).angle;
+            const S in_mesh =
+                at.transmission_error - inner.windup * at.inverse_ratio - inner.radial_lag - inner.held_angle - inner.driving_lead;
+            const S on_spline = select(held_flexspline, inner.driving_lead, inner.held_angle);
+            const S on_spline_rate = select(held_flexspline, inner.driving_speed - at.output_speed, inner.held_speed);
+            return {held(coupling, angle, inner.windup, at.input_speed - inner.generator_speed),
+                    held(bearing, angle, mesh_.deformation, mesh_.deformation_rate),
+                    held(mesh, angle, in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
+                    held(spline, angle, on_spline, on_spline_rate)};
+        }
+
+        /// Of what the joints do to the rates of the bodies, by powers of it; the iteration stops short of what little is left.
+        constexpr S largest_eigenvalue(const Bodies<S>& bodies, const Line& line) const {
+            constexpr int bodies_count = 6, rounds = 100;
+            const auto of_flexspline = bodies.inverse_ratio > S(0.0);
+            const Array<S, bodies_count> inertia{{bodies.input_inertia, bodies.generator_inertia, radial_inertia,
+                                                  select(of_flexspline, flexspline_inertia, spline_inertia),
+                                                  select(of_flexspline, spline_inertia, flexspline_inertia),
+                                                  bodies.output_inertia}};
+            Array<S, bodies_count> x{};
+            for (int i = 0; i < bodies_count; ++i) x[i] = S(1.0 + 0.1 * i) * S(i % 2 == 0 ? 1.0 : -1.0) / sqrt(inertia[i]);
+            S eigenvalue{0.0};
+            for (int round = 0; round < rounds; ++round) {
+                const S turned = bodies.inverse_ratio * x[1];
+                const S coupled = line.coupling * (x[0] - x[1]), borne = line.bearing * (turned - x[2]);
+                const S meshed = line.mesh * (x[2] - x[3] - x[4]), kept = line.held * x[3], driven = line.driving * (x[4] - x[5]);
+                const Array<S, bodies_count> force{{coupled, bodies.inverse_ratio * borne - coupled, meshed - borne, kept - meshed,
+                                                    driven - meshed, line.load * x[5] - driven}};
+                S work{0.0}, size{0.0};
+                for (int i = 0; i < bodies_count; ++i) {
+                    work = work + x[i] * force[i];
+                    size = size + x[i] * inertia[i] * x[i];
+                }
+                eigenvalue = work / max(size, S(smallest));
+                for (int i = 0; i < bodies_count; ++i) x[i] = force[i] / (inertia[i] * max(eigenvalue, S(smallest)));
+            }
+            return eigenvalue;
+        }
+    };
+
+    /// The chain of these bodies, its numbers worked out once.
+    constexpr auto compile() const {
+        using Varying = decltype(compiled(mesh_variation));
+        const SinCos<S> flank = sincos(pressure_angle);
+        const S lever = pitch_radius * flank.cos / flank.sin, mesh_lever = pitch_radius * flank.cos;
+        const S of_bearing = lever * lever, of_mesh = mesh_lever * mesh_lever;
+        return Chain<Varying>{{coupling_stiffness, coupling_damping, compiled(coupling_variation)},
+                              {bearing_stiffness * of_bearing, bearing_damping * of_bearing, compiled(bearing_variation)},
+                              {mesh_stiffness * of_mesh, mesh_damping * of_mesh, compiled(mesh_variation)},
+                              {circular_spline_stiffness, circular_spline_damping, compiled(circular_spline_variation)},
+                              radial_mass * of_bearing,
+                              flexspline_inertia,
+                              circular_spline_inertia,
+                              lever,
+                              mesh_lever,
+                              pitch_radius};
+    }
+
+    static constexpr bool rigid() { return false; }
+
+// A gear that is not compiled works the chain out anew each time.
+#define SW_OF_CHAIN(verb)                                      \
+    template <class... Arguments>                              \
+    constexpr auto verb(const Arguments&... arguments) const { \
+        return compile().verb(arguments...);                   \
+    }
+    SW_OF_CHAIN(generator)
+    SW_OF_CHAIN(generator_acceleration)
+    SW_OF_CHAIN(gap)
+    SW_OF_CHAIN(spring_twist)
+    SW_OF_CHAIN(spring_twist_rate)
+    SW_OF_CHAIN(deformation_rate)
+    SW_OF_CHAIN(reaction)
+    SW_OF_CHAIN(energies)
+    SW_OF_CHAIN(output)
+    SW_OF_CHAIN(settled)
+    SW_OF_CHAIN(compliance)
+    SW_OF_CHAIN(max_rate)
+#undef SW_OF_CHAIN
+};
+
+}  // namespace strainwave::structure

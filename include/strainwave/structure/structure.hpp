@@ -1,0 +1,75 @@
+#pragma once
+#include <strainwave/angle.hpp>
+
+/// What stands between the two shafts of a gear beside its spring `stiffness`. At the output's scale such a structure has
+///
+///     State, Output                          of the bodies within the gear, and what they show in recordings
+///     rigid()                                whether no body within the gear moves by itself
+///     generator(inner, shafts)               -> Generator
+///     generator_acceleration(rate, input)    rad/s2, by the rate of its state and the acceleration of the input
+///     gap(inner, shafts)                     rad: what deforms, before the kinematic error is taken from it
+///     spring_twist, spring_twist_rate(inner, shafts)  of the spring, where it is not what is left of the gap
+///     deformation_rate(inner, shafts, mesh)  rad/s, of what is left of the gap
+///     reaction(inner, shafts, mesh, load)    -> Reaction
+///     energies(inner, shafts, mesh, load)    -> Energies
+///     output(inner, shafts, mesh, load, friction)  -> Output, with the friction at the output [N.m]
+///     settled(inner, shafts, mesh, load)     -> Settled: at rest under the torque of the spring
+///     compliance(shafts, mesh)               rad/(N.m), of all but the spring
+///     max_rate(bodies)                       rad/s, what steps of a fixed length must follow
+namespace strainwave::structure {
+
+/// How the two shafts of a gear stand and move.
+template <class S>
+struct Shafts {
+    Angle<S> input_angle;
+    S input_speed;         ///< rad/s
+    S transmission_error;  ///< theta_in / i - theta_out, rad
+    S output_speed;        ///< rad/s
+    S inverse_ratio;       ///< 1 / i
+};
+
+/// How the wave generator stands and turns.
+template <class S>
+struct Generator {
+    Angle<S> angle;
+    S speed;  ///< rad/s
+};
+
+/// What the rest of the gear does to the bodies within it.
+template <class S>
+struct Load {
+    S spring;             ///< of the spring, its hysteresis and damping, N.m
+    S turning;            ///< with which a spring whose stiffness varies holds the wave generator back, N.m
+    S generator_inertia;  ///< kg.m2
+};
+
+template <class S, class State>
+struct Reaction {
+    S torque;        ///< on the output shaft, N.m
+    S input_torque;  ///< that holds the input shaft back, N.m
+    State rate;      ///< of the bodies within the gear
+};
+
+/// Of the bodies within a gear.
+template <class S>
+struct Energies {
+    S elastic{0.0};      ///< J
+    S kinetic{0.0};      ///< J
+    S damping{0.0};      ///< that their damping takes, W
+    S under_error{0.0};  ///< elastic torque that works where the kinematic error changes, N.m
+};
+
+template <class S, class State>
+struct Settled {
+    State state;
+    S transmission_error;  ///< rad
+};
+
+/// What vibrates: the inertias [kg.m2] of the shafts and of the wave generator, stiffness [N.m/rad] and damping [N.m.s/rad] of
+/// the spring, stiffness of the load.
+template <class S>
+struct Bodies {
+    S input_inertia, generator_inertia, output_inertia, inverse_ratio, stiffness, damping, load_stiffness;
+};
+
+}  // namespace strainwave::structure

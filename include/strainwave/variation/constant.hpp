@@ -1,0 +1,27 @@
+#pragma once
+#include <strainwave/variation/variation.hpp>
+
+namespace strainwave::variation {
+
+template <class S>
+struct Constant {
+    static constexpr auto name = "constant";
+    static constexpr auto source = "definition";
+    static constexpr auto doc = R"(
+        A stiffness that does not change with the angle.
+
+        .. math:: k(\theta) = k
+
+        >>> from strainwave.variation import Constant
+        >>> Constant()
+        Constant())";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    static constexpr bool active() { return false; }
+    constexpr Factor<S> at(const Angle<S>&) const { return {}; }
+    constexpr S largest() const { return S(1.0); }
+};
+
+}  // namespace strainwave::variation
