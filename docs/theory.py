@@ -253,6 +253,19 @@ SHOWN: dict[str, dict[str, Any]] = {
     "bouc_wen": {
         f"n = {n:g}:": sw.hysteresis.BoucWen(stiffness=1000.0, saturation=0.5, sharpness=n, shape=0.5) for n in (1.0, 2.0, 8.0)
     },
+    "backlash": {"": sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=1e-3)},
+    "frictional_windup": {
+        "": sw.hysteresis.FrictionalWindup(
+            springs=sw.stiffness.MultiCompliance(
+                flexspline_stiffness=8000.0,
+                flexspline_hardening=0.02,
+                wave_generator_stiffness=2.0,
+                wave_generator_hardening=1.5,
+                reduction=100.0,
+            ),
+            friction=5.0,
+        )
+    },
     "power_density": {
         f"p = {p:g}:": preisach(sw.hysteresis.PowerDensity(limit=1e-3, saturation=1.0, exponent=p)) for p in (2.0, 4.0, 8.0)
     },
@@ -466,6 +479,8 @@ def slipped(model: Any) -> float:
     """The twist [rad] at which the secant has fallen to a third of what it begins with, but within all that it knows."""
     if hasattr(model, "lost_motion"):
         return 0.6 * float(model.lost_motion)
+    if hasattr(model, "springs"):  # which harden, so that the secant does not fall so far
+        return float(model.springs.twist(4.0 * model.friction))
     reaches = np.geomspace(1e-6, 10.0, 281)
     secant = np.array([model.trace([0.0, reach])[-1] / reach for reach in reaches])
     known = getattr(getattr(model, "density", None), "limit", reaches[-1])
