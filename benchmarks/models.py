@@ -74,6 +74,7 @@ SUITED: dict[str, list[dict[str, Any]]] = {
     "piecewise": [{"k1": 1.2e4, "k2": 6e3}],
     "three_segment": [{"k1": 1.2e4, "k2": 1.8e4, "k3": 2.1e4, "t1": 10.0, "t2": 40.0}],
     "cubic": [{"a1": 1.2e4, "a3": 1e9}],
+    "backlash": [{"law": sw.stiffness.Cubic(a1=1.2e4, a3=1e9), "clearance": 1e-4}],
     "power_density": [{"limit": 2e-3, "saturation": 3.0, "exponent": 3.0}],
     "grid_density": [{"limit": 2e-3, "weight": np.full(n * (n + 1) // 2, 6.0 / (n * (n + 1)))} for n in (4, 10)],
     "maxwell_slip": [elements(4), elements(8), elements(16)],
