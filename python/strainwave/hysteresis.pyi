@@ -1013,8 +1013,8 @@ class FrictionalWindup:
     between +-T_m, and leaves the twist x(F) without torque. Exact over any monotone step; minor loops close. Virgin is no
     twist and no torque.
 
-    Document R takes the friction at the input, or divides it by N (E-R13), and lets it follow the speed of the input: with the
-    input held, as in a torsion test, there would be no hysteresis, and elsewhere energy out of nothing (E-R14).
+    Document R has the friction at the input's scale, or divides it by N (E-R13), and lets it follow the speed of the input:
+    then a torsion test, whose input is held, would show no hysteresis (E-R14).
 
     It is a whole spring: in a gear, the ``stiffness`` acts in parallel, and is what is stiff beside it (Linear with a
     negligible stiffness if nothing is). The reduction of the springs is to be that of the gear. Where both springs harden,

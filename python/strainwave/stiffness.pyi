@@ -511,9 +511,9 @@ class Backlash:
     spring. The stiffness jumps at the flanks, where it is that of the spring; a torque of exactly 0 has the twist 0. With c =
     0 it is the spring itself.
 
-    Without loss: flanks meet elastically, and what a blow loses is for ``damping`` and friction of the gear. The damping of a
-    gear acts within the play, too. A strain wave gear has next to no play as long as it is sound: its teeth are preloaded.
-    Worn or badly fitted ones have; for a backlash that grows with the torque take a ``hysteresis``.
+    Without loss: flanks meet elastically, and what a blow loses is for ``damping`` and friction of the gear, which act within
+    the play, too. Makers call strain wave gears free of backlash, for their teeth are preloaded: this law is for worn ones,
+    for badly fitted ones, and for what else stands between the gear and its load.
 
     >>> from strainwave.stiffness import Backlash, Linear
     >>> spring = Backlash(law=Linear(k=1e4), clearance=2e-4)
