@@ -54,12 +54,22 @@ def harmonics(n: int) -> dict[str, Any]:
     return {"order": order, "amplitude": 2e-4 / order**2, "phase": np.zeros(n)}
 
 
+def chart(n: int) -> dict[str, Any]:
+    """Deviations of both splines that fall with their order."""
+    amplitude, phase = 4e-6 / np.arange(1, n + 1), np.zeros(n)
+    return {
+        f"{spline}_{what}": numbers
+        for spline in ("flexspline", "circular_spline")
+        for what, numbers in (("amplitude", amplitude), ("phase", phase))
+    }
+
+
 # Numbers in the size of the drive, by the names of models, for those whose defaults do nothing or suit another gear; sequences
 # also in several lengths.
 SUITED: dict[str, list[dict[str, Any]]] = {
     "fourier": [harmonics(1), harmonics(4), harmonics(16)],
     "misalignment": [{"housing_eccentricity": 2e-5, "combine": "max"}],
-    "tooth_errors": [{"flexspline_deviation": 1.5e-5, "circular_spline_deviation": 1.5e-5}],
+    "tooth_errors": [chart(2), chart(16)],
     "stochastic": [{"amplitude": 2e-5}],
     "viscous": [{"viscous": 5e-5}],
     "coulomb": [{"coulomb": 0.03, "breakaway": 0.045, "viscous": 5e-5}],

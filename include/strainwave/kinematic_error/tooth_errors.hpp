@@ -160,13 +160,13 @@ private:
         };
         for (int i = 0; i < amplitude.count; ++i) add(i + 1, amplitude[i], phase[i]);
         if (sought(total) || any(total > S(0.0)))
-            for (int i = 0; i < highest; ++i) add(i + 1, S(0.25397454373696393 / (i + 1)) * total, drawn[i]);  // sqrt(2 / pi) / pi
+            for (int i = 0; i < highest; ++i) add(i + 1, S(0.25397454373696393) * total / S(i + 1), drawn[i]);  // sqrt(2 / pi) / pi
         return Harmonics<S, 1, highest>::of(order, size, start);
     }
 
     /// The share of order n of a deviation that the mean over all engaged teeth leaves.
     constexpr S left(int n, int teeth) const {
-        const S x = S(0.5 * pi * n) * engaged_share * (S(flexspline_teeth) / S(teeth));
+        const S x = S(0.5 * pi) * S(n) * engaged_share * (S(flexspline_teeth) / S(teeth));
         const S zone = sine_quotient(x) + S(0.5) * (sine_quotient(x + S(pi)) + sine_quotient(x - S(pi)));
         return n % 2 == 0 ? zone : (first_lobe + first_lobe - S(1.0)) * zone;
     }
