@@ -13,11 +13,12 @@ from strainwave.files.described import all_paths
 
 DRIVES = sw.catalogue("drives")
 AT_REST_IN_THE_COLD = {"space-pointing-joint": 253.15}  # K
-STEP = {"position-drive-printed": 2e-5}  # s; the others take the usual one
+STEP = {"position-drive-printed": 2e-5, "tilt-actuator": 1.5e-5}  # s; the others take the usual one
 CASCADES = ["robot-joint", "space-pointing-joint"]
 USE = {  # speed [rad/s] and acceleration [rad/s2] that the note of a set names
     "robot-joint": (2.0, 10.0),
     "space-pointing-joint": (0.1, 0.1),
+    "tilt-actuator": (1.0, 3.0),
     "tilt-actuator-lumped": (1.0, 3.0),
 }
 every_drive = pytest.mark.parametrize("name", DRIVES)
@@ -40,6 +41,7 @@ def test_the_drives_are_listed() -> None:
         "position-drive-printed",
         "robot-joint",
         "space-pointing-joint",
+        "tilt-actuator",
         "tilt-actuator-lumped",
         "two-inertia-gear",
     ]
