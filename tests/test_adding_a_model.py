@@ -31,15 +31,24 @@ BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run ti
 DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 USUAL = "one of the models whose drives run in code of their own, for speed"
+SERIES = "stages become one spring, with which runs are faster"
 AT_REST = "friction whose breakaway a torsion loop from the input can tell"
 ELSEWHERE = {
     "Fourier": {
         "specialised.hpp": USUAL,
+        "kinematic_error/scaled.hpp": "what it scales by default",
         "kinematic_error/misalignment.hpp": "what a misalignment is to leading order",
         "verbs.hpp": "the harmonics of any error are of this form",
         "analysis/steady.py": STEADY_RUNNING,
         "identify/log.py": "harmonics found in a log are of this form",
+        "studies/pure_error.py": "the assumed curve of the study of misalignment",
+        "studies/recovery.py": "an error of every order, by which a drive is probed",
     },
+    "Misalignment": {"studies/actuator_ramp.py": "the law that its study is about"},
+    "Staged": {"any.hpp": BOUND_TO_ANY, "studies/actuator_ramp.py": SERIES},
+    "Lumped": {"gear.hpp": DEFAULT, "specialised.hpp": USUAL, "studies/actuator_ramp.py": SERIES},
+    "Constant": {"gear.hpp": DEFAULT, "structure/staged.hpp": "what its springs do where nothing else is said"},
+    "Scaled": {"any.hpp": BOUND_TO_ANY},
     "Viscous": {"specialised.hpp": USUAL, "identify/log.py": LOG, "identify/friction.py": STEADY_TABLE},
     "Coulomb": {
         "specialised.hpp": USUAL,
@@ -90,7 +99,7 @@ ELSEWHERE = {
         "specialised.hpp": USUAL,
         "identify/experiment.py": "a run under gravity starts hanging, so must the log that it is fitted to",
     },
-    "Linear": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
+    "Linear": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE, "studies/actuator_ramp.py": SERIES},
     "Piecewise": {"specialised.hpp": USUAL},
     "ThreeSegment": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
     "Cubic": {

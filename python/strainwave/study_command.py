@@ -53,7 +53,7 @@ def misalignment(
     out: Annotated[Path, typer.Option(help="Folder for the recordings, tables and report.html.")] = Path("out/misalignment"),
     drive: Annotated[
         str, typer.Option(help="Drive to run: a name of `strainwave drives`, or a .toml file; its controller a cascade.")
-    ] = "tilt-actuator-lumped",
+    ] = "tilt-actuator",
     stroke: Annotated[float, typer.Option(help="Stroke of the output in degrees.")] = 90.0,
     time: Annotated[float, typer.Option(help="Time of the ramp through the stroke in s.")] = 5.0,
     measured: Annotated[

@@ -23,7 +23,6 @@ from strainwave.studies.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.studies.misalignment import Levels, MisalignmentStudy, Recovery
 from strainwave.studies.pure_error import COMBINE
 
-SHOWN_LEVELS = ("e1", "beta")
 LINE = 110  # letters of a line on a terminal
 
 
@@ -71,6 +70,7 @@ def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None 
             "records": {plots.SEEN[column]: _noise(column, noise) for column, noise in study.RECORDS.items()},
             "measured": None if found.measured is None else found.measured.title,
             "measured_figure": "" if found.measured is None else Markup(plots.measured_figure(found, found.measured)),
+            "staged": {name: percent(abs(found.off_in_series(name))) for name in ("torque", "current")} if found.staged else {},
             "assumed_geometry": found.assumed_geometry,
             "numbers": list(numbers({"": found.gear_set})),
             "provenance": provenance or Provenance(),
@@ -147,7 +147,7 @@ def _fits(found: MisalignmentStudy) -> Iterator[dict[str, str]]:
 
 def _level_table(levels: Levels) -> dict[str, Any]:
     rows = []
-    for sweep in SHOWN_LEVELS:
+    for sweep in study.BOTH_LOOPS:
         name = study.SWEEPS[sweep][0]
         for place, level in enumerate(levels.column(sweep, name)):
             shown = microns(level) if sweep == "e1" else f"{number(degrees(level), 2)}°"
@@ -186,7 +186,7 @@ def _silent_rows(found: MisalignmentStudy) -> Iterator[list[str]]:
         yield [words, unit, *(number(1e3 * each, 2) for each in swings)]
 
 
-def _recovered(recovery: Recovery) -> dict[str, str]:
+def _recovered(recovery: Recovery) -> dict[str, Any]:
     best = recovery.best
     x, y = recovery.m
     truth = hypot(x, y)
@@ -201,7 +201,7 @@ def _recovered(recovery: Recovery) -> dict[str, str]:
         "true_way": f"{number(degrees(np.arctan2(y, x)), 3)}°",
         "inside": "inside" if best.contains(recovery.m) else "outside",
         "within": f"{recovery.within} of {len(recovery.trials)}",
-        "misfits": ", ".join(f"{number(recovery.first[each].misfit, 2)}" for each in COMBINE),
+        "misfits": [number(recovery.first[each].misfit, 2) for each in COMBINE],
     }
 
 
@@ -256,5 +256,5 @@ def _claim_lines(found: MisalignmentStudy) -> Iterator[str]:
 
 
 def _wrapped(claim: Claim) -> Iterator[str]:
-    yield from textwrap.wrap(f"{claim.verdict}: “{claim.words}”", LINE)
+    yield from textwrap.wrap(f"{claim.verdict}: {claim.words}", LINE)
     yield from textwrap.wrap(claim.answer, LINE, initial_indent="  ", subsequent_indent="  ")

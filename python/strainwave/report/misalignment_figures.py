@@ -13,6 +13,7 @@ from strainwave.files.recording import Recording
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT
 from strainwave.report.typeset import number
+from strainwave.report.typeset import unit as typeset_unit
 from strainwave.studies import misalignment as study
 from strainwave.studies.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 ARCMIN = 180.0 * 60.0 / np.pi
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 DETAIL = 2.0  # turns of the input that a detail shows
 STRAIGHT: dict[str, Any] = {"color": LIGHT["ink"], "linewidth": 1.0}
 TILTED: tuple[dict[str, Any], ...] = (
@@ -107,8 +109,8 @@ def difference_figure(found: MisalignmentStudy) -> str:
             last = _detail(turns)
             torque.plot(turns[last], there["torque"][last], label=f"tilt {tilt_words(tilt)}", **style)
             error.plot(turns[last], ARCMIN * run["kinematic_error"][last], **style)
-        figures.label_axes(whole, "torque − torque straight, whole ramp", "N.m", "time", "s")
-        figures.label_axes(torque, "torque − torque straight, last two turns of the input", "N.m")
+        figures.label_axes(whole, "difference of the torque, whole ramp", "N.m", "time", "s")
+        figures.label_axes(torque, "difference of the torque, last two turns", "N.m")
         figures.label_axes(error, "pure kinematic error [arcmin], same turns", "1", "turns of the input", "1")
         error.sharex(torque)
         figures.legend(figure, torque)
@@ -158,12 +160,16 @@ def _plain(axis: Axis) -> None:
 
 
 def _decades(axis: Axis) -> None:
-    """Plain numbers at the decades of a logarithmic axis."""
+    """Plain numbers or powers of ten at the decades of a logarithmic axis."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    axis.set_major_locator(LogLocator())
+    def decade(value: float, _: float) -> str:
+        power = round(float(np.log10(value)))
+        return number(value) if abs(power) <= 2 else f"10{str(power).translate(SUPERSCRIPTS)}"
+
+    axis.set_major_locator(LogLocator(numticks=6))
     axis.set_minor_formatter(NullFormatter())
-    axis.set_major_formatter(FuncFormatter(lambda value, _: number(value, 3)))
+    axis.set_major_formatter(FuncFormatter(decade))
 
 
 def spectrum_figure(found: MisalignmentStudy) -> str:
@@ -182,7 +188,8 @@ def spectrum_figure(found: MisalignmentStudy) -> str:
             axes.set_ylim(1e-5 * top, 2.0 * top)
             last = axes is panels[-1]
             text, of = ("order, per turn of the input", "1") if last else ("", "1")
-            figures.label_axes(axes, f"amplitude, {words}", unit, text, of)
+            figures.label_axes(axes, f"amplitude, {words} [{typeset_unit(unit)}]", "1", text, of)
+            _decades(axes.yaxis)
             axes.set_xticks(range(int(study.HIGHEST) + 1))
         figures.legend(figure, panels[0])
 
@@ -200,12 +207,12 @@ def passing_figure(found: MisalignmentStudy) -> str:
                 for order, line in ((2.0, "-"), (4.0, ":")):
                     chosen = (table["position_gain"] == gain) & (table["order"] == order)
                     bandwidth = number(gain / (2.0 * np.pi), 2)
-                    label = f"{bandwidth} Hz" if order == 2.0 else ""
+                    label = f"position loop of {bandwidth} Hz" if order == 2.0 else ""
                     style: dict[str, Any] = {"color": LIGHT[colour], "marker": marker, "linestyle": line, "linewidth": 1.0}
                     frequency, share = table["frequency"][chosen], 100.0 * table["share"][chosen]
                     place = np.argsort(frequency)
                     axes.plot(frequency[place], share[place], label=label, markersize=4.0, **style)
-            figures.label_axes(axes, f"share at the output [%], loop on the {LOOPS[side]}", "1")
+            figures.label_axes(axes, f"share [%], loop on the {LOOPS[side]}", "1")
         swept = np.geomspace(table["frequency"].min(), table["frequency"].max(), 100)
         ideal = 100.0 * study.share_by_ideal_loop(swept, found.ramp.gain)
         label = f"ideal loop of {number(found.ramp.gain / (2.0 * np.pi), 2)} Hz, rigid gear"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments, kinematic_error
+from strainwave import Drive, _core, arguments, kinematic_error, stiffness, structure
 from strainwave.files.described import parameters, parts
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted
@@ -132,6 +132,36 @@ class ActuatorRamp:
     def settled(self, recording: Recording) -> Recording:
         """What follows the run-in."""
         return recording.between(RUN_IN * self.duration, self.duration)
+
+
+def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
+    """The same with the stages of a staged gear in series as one spring, whose steps may be longer; else the ramp itself.
+
+    Right for what is slow against the stages, as orders of the wave generator are. Inertias between the stages are left out.
+    Referred to the output, with the ratio i, compliances add up (E-A6), with those of both couplings:
+
+    1/K = 1/K_t + tan^2(alpha_t) / (K_b r_g^2) + 1 / (K_m r_g^2 cos^2(alpha_t)) + 1/K_CS + 1 / (K_WG i^2)
+
+    Each damper takes the rate that its spring takes of the twist: c = K^2 sum c_j / K_j^2.
+    """
+    gear: Any = ramp.drive.gear
+    stages: Any = gear.structure
+    if not isinstance(stages, structure.Staged) or not isinstance(gear.stiffness, stiffness.Linear):
+        return ramp
+    race = (stages.pitch_radius / np.tan(stages.pressure_angle)) ** 2
+    flank = (stages.pitch_radius * np.cos(stages.pressure_angle)) ** 2
+    square = float(gear.kinematics.ratio) ** 2
+    pairs = (
+        (gear.stiffness.k, gear.damping),
+        (race * stages.bearing_stiffness, race * stages.bearing_damping),
+        (flank * stages.mesh_stiffness, flank * stages.mesh_damping),
+        (stages.circular_spline_stiffness, stages.circular_spline_damping),
+        (square * stages.coupling_stiffness, square * stages.coupling_damping),
+    )
+    k = 1.0 / sum(1.0 / spring for spring, _ in pairs)
+    damping = k**2 * sum(damper / spring**2 for spring, damper in pairs)
+    one = {"structure": structure.Lumped(), "stiffness": stiffness.Linear(k=k), "damping": damping}
+    return ActuatorRamp.of(ramp.drive.replace(gear=gear.replace(**one)), ramp.stroke, ramp.duration)
 
 
 def geometry(drive: Drive) -> tuple[Any, bool]:

@@ -7,7 +7,7 @@ times and gains. Its claims are then put to the numbers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -21,15 +21,16 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
 from strainwave.simulation.ensemble import Ensemble
-from strainwave.studies.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp, geometry, noises
-from strainwave.studies.pure_error import COMBINE, PureError, placed, pure_error
+from strainwave.simulation.signals import outputs
+from strainwave.studies.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp, geometry, in_series, noises
+from strainwave.studies.pure_error import COMBINE, PureError, pure_error
 from strainwave.studies.recovery import Model, Recovered, corrected, recover, refined
 
 Array = NDArray[np.float64]
 
 STROKE = np.pi / 2.0  # rad: document A says "the maximum stroke", and not how much
 DURATION = 5.0  # s: document A
-DRIVE = "tilt-actuator-lumped"
+DRIVE = "tilt-actuator"
 
 USUAL = "max"  # how the lobes share where one way is shown: the one with which order 2, that is observed, is of first order
 MICRON, DEGREE = 1e-6, np.pi / 180.0
@@ -39,12 +40,13 @@ BESIDE = 20e-6  # m: e_1 beside which the generator's own misalignment is tried
 SWEEPS: dict[str, tuple[str, tuple[float, ...], dict[str, float]]] = {
     "e1": ("housing_eccentricity", (10e-6, 20e-6, 40e-6, 80e-6), {}),
     "beta": ("housing_tilt_x", tuple(DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
-    "h": ("offset", (0.0, 2e-3, 4e-3, 8e-3), {"housing_tilt_x": SHOWN_TILT}),
+    "h": ("offset", (0.0, 2e-3, 8e-3), {"housing_tilt_x": SHOWN_TILT}),
     "e2": ("generator_eccentricity", (10e-6, 20e-6, 40e-6, 80e-6), {}),
     "alpha": ("generator_tilt_x", tuple(DEGREE * level for level in (0.1, 0.2, 0.4, 0.8)), {}),
     "e2 beside e1": ("generator_eccentricity", (5e-6, 10e-6, 20e-6, 40e-6), {"housing_eccentricity": BESIDE}),
 }
 SHOWN_TILTS = SWEEPS["beta"][1][:3]
+BOTH_LOOPS = ("e1", "beta")  # sweeps that are run with the loop on the motor encoder, too
 SILENT = ("e2", "alpha")  # sweeps of what stands on the shaft alone
 SEEN_ORDERS = (1.0, 2.0, 4.0)
 HIGHEST = 10.0  # order of the spectra
@@ -148,6 +150,8 @@ class MisalignmentStudy:
         law: the wave generator, straight
         assumed_geometry: whether its dimensions are assumed, as the drive has none
         shown: runs by loop and tilt [rad], 0 the straight one, with `combine` max
+        series: the same ramp with the stages of the gear in series, with which all but the shown runs are made; else the ramp
+        shown_in_series: the shown runs with the loop on the output, made with it
         levels: by `combine` and loop
         passing: by loop
         spectra: orders of torque, current and output angle by channel, for the straight and the shown run
@@ -161,6 +165,8 @@ class MisalignmentStudy:
     law: Any
     assumed_geometry: bool
     shown: Mapping[str, Mapping[float, Recording]]
+    series: ActuatorRamp
+    shown_in_series: Mapping[float, Recording]
     levels: Mapping[tuple[str, str], Levels]
     passing: Mapping[str, Passing]
     spectra: Mapping[str, tuple[Recording, Recording]]
@@ -172,6 +178,18 @@ class MisalignmentStudy:
     def straight(self) -> Recording:
         """The run without misalignment, its loop closed on the output."""
         return self.shown[OUTPUT][0.0]
+
+    @property
+    def staged(self) -> bool:
+        """Whether the gear has stages that are in series for all but the shown runs."""
+        return self.series is not self.ramp
+
+    def off_in_series(self, name: str) -> float:
+        """How far the swing of a column with the shown tilt is from that with the stages in series, as a share of it."""
+        swings = [
+            swing(difference(self.ramp, runs, SHOWN_TILT, name)[name]) for runs in (self.shown[OUTPUT], self.shown_in_series)
+        ]
+        return swings[1] / swings[0] - 1.0
 
     def per_error(self) -> float:
         """Kinematic error at the output per radial displacement [rad/m]."""
@@ -208,18 +226,22 @@ def misalignment(
     pure = pure_error(measured_error, law)
     progress("ramp with and without misalignment")
     shown = {side: _shown(ramp.closed_on(side), law) for side in LOOPS}
+    series = in_series(ramp)
+    shown_in_series = shown[OUTPUT] if series is ramp else _shown(series, law)
     levels = {}
     for combine, side in product(COMBINE, LOOPS):
         progress(f"levels, {combine}, loop on the {LOOPS[side]}")
-        levels[combine, side] = swept(ramp.closed_on(side), law.replace(combine=combine))
+        levels[combine, side] = swept(series.closed_on(side), law.replace(combine=combine))
     passing = {}
     for side in LOOPS:
         progress(f"ramp times and gains, loop on the {LOOPS[side]}")
-        passing[side] = passed(ramp.closed_on(side), law)
+        passing[side] = passed(series.closed_on(side), law)
     progress("recovery of a misalignment")
-    recoveries = tuple(recovered(ramp, law))
+    recoveries = tuple(recovered(series, law))
     spectra = {name: _spectra(ramp, shown[OUTPUT], name) for name in ("torque", "current", "output_angle")}
-    return MisalignmentStudy(gear_set, ramp, law, assumed, shown, levels, passing, spectra, pure, recoveries, own)
+    return MisalignmentStudy(
+        gear_set, ramp, law, assumed, shown, series, shown_in_series, levels, passing, spectra, pure, recoveries, own
+    )
 
 
 # ---- The ramp with and without misalignment --------------------------------------------------------------------------
@@ -227,8 +249,10 @@ def misalignment(
 
 def _shown(ramp: ActuatorRamp, law: Any) -> dict[float, Recording]:
     """The straight run and those of three tilts."""
-    tilted = {tilt: law.replace(combine=USUAL, housing_tilt_x=tilt) for tilt in (0.0, *SHOWN_TILTS)}
-    return {tilt: ramp.with_error(each).run() for tilt, each in tilted.items()}
+    tilts = (0.0, *SHOWN_TILTS)
+    changes = [{f"{ERROR}.housing_tilt_x": tilt} for tilt in tilts]
+    runs = ramp.with_error(law.replace(combine=USUAL)).many(changes, list(outputs(ramp.drive)))
+    return {tilt: runs.member(place) for place, tilt in enumerate(tilts)}
 
 
 def difference(ramp: ActuatorRamp, runs: Mapping[float, Recording], tilt: float, name: str) -> Recording:
@@ -261,22 +285,27 @@ def share_of_whole_orders(ramp: ActuatorRamp, runs: Mapping[float, Recording], n
 # ---- Levels ----------------------------------------------------------------------------------------------------------
 
 
-def members() -> tuple[list[dict[str, float]], dict[str, slice]]:
-    """What each run of the sweeps changes of the straight law, and which runs are of which sweep."""
+def members(sweeps: Iterable[str]) -> tuple[list[dict[str, float]], dict[str, slice]]:
+    """What each run of some sweeps changes of the straight law, and which runs are of which sweep."""
     changes: list[dict[str, float]] = [{}]
     rows = {}
-    for sweep, (name, values, beside) in SWEEPS.items():
+    for sweep in sweeps:
+        name, values, beside = SWEEPS[sweep]
         rows[sweep] = slice(len(changes), len(changes) + len(values))
         changes += [{**beside, name: value} for value in values]
     return changes, rows
 
 
 def swept(ramp: ActuatorRamp, law: Any) -> Levels:
-    """Runs of all levels of all sweeps."""
-    changes, rows = members()
-    runs = ramp.with_error(law).many(
-        [{f"{ERROR}.{name}": value for name, value in change.items()} for change in changes],
-        record=[*CHANNELS, "kinematic_error"],
+    """Runs of all levels, without noise of the sensors: differences are those of the misalignment alone."""
+    changes, rows = members(SWEEPS if _side(ramp) == OUTPUT else BOTH_LOOPS)
+    runs = (
+        ramp.without_noise()
+        .with_error(law)
+        .many(
+            [{f"{ERROR}.{name}": value for name, value in change.items()} for change in changes],
+            record=[*CHANNELS, "kinematic_error"],
+        )
     )
     found = [effect(ramp, runs, number) for number in range(len(changes))]
     names = dict.fromkeys(name for change in changes for name in change)
@@ -337,7 +366,7 @@ def passed(ramp: ActuatorRamp, law: Any) -> Passing:
     misaligned = law.replace(combine=USUAL, housing_eccentricity=BESIDE)
     rows = []
     for times in TIMES:
-        lasting = ramp.lasting(times * ramp.duration).with_error(misaligned)
+        lasting = ramp.without_noise().lasting(times * ramp.duration).with_error(misaligned)
         gains = [factor * ramp.gain for factor in GAINS]
         changes = [
             {ramp.gain_path: gain, f"{ERROR}.housing_eccentricity": eccentricity}
@@ -390,34 +419,32 @@ def recovered(ramp: ActuatorRamp, law: Any) -> Iterator[Recovery]:
     """Puts a misalignment in, and looks for it in what can be measured."""
     model = Model.of(ramp)
     for combine in ("max", "single"):
-        records = _records(ramp.with_error(law.replace(combine=combine, **INJECTED)))
-        for column, noise in RECORDS.items():
-            yield _recovery(records, column, noise, model, law.replace(combine=combine))
-
-
-def _recovery(records: list[Recording], column: str, noise: float, model: Model, law: Any) -> Recovery:
-    draws = np.random.default_rng(1)
-    measured = [with_noise(each, column, noise, draws) for each in records]
-    first = recover(measured[0], column, model, law)
-    best = refined(first[law.combine], measured[0], model, law)
-    run = model.run(placed(law, best.m))
-    trials = tuple(corrected(best, each, run, model, law) for each in measured)
-    return Recovery(column, noise, law.replace(**INJECTED), first, trials)
+        straight = law.replace(combine=combine)
+        injected = straight.replace(**INJECTED)
+        records = _records(ramp.with_error(injected))
+        measured = {column: [_noisy(each, column, trial) for trial, each in enumerate(records)] for column in RECORDS}
+        first = {column: recover(seen[0], column, model, straight) for column, seen in measured.items()}
+        best = refined([each[combine] for each in first.values()], [seen[0] for seen in measured.values()], model, straight)
+        runs = model.run([each.m for each in best], straight)
+        for (column, seen), each, run in zip(measured.items(), best, runs, strict=True):
+            trials = tuple(corrected(each, record, run, model, straight) for record in seen)
+            yield Recovery(column, RECORDS[column], injected, first[column], trials)
 
 
 def _records(ramp: ActuatorRamp) -> list[Recording]:
     """Runs of the drive, each with other noises of the sensors in its loops."""
     seeds = noises(ramp.drive, "seed")
     if not seeds:
-        return [ramp.settled(ramp.run())] * TRIALS
-    changes = [{path: float(1 + trial * len(seeds) + place) for place, path in enumerate(seeds)} for trial in range(TRIALS)]
+        run = ramp.settled(ramp.run())
+        return [run] * TRIALS
+    changes = [{path: float(101 + trial * len(seeds) + place) for place, path in enumerate(seeds)} for trial in range(TRIALS)]
     runs = ramp.many(changes, record=["input_angle", *RECORDS])
     return [ramp.settled(runs.member(trial)) for trial in range(TRIALS)]
 
 
-def with_noise(recording: Recording, column: str, noise: float, draws: np.random.Generator) -> Recording:
+def _noisy(recording: Recording, column: str, trial: int) -> Recording:
     """A column as a sensor would show it."""
-    seen = recording[column] + noise * draws.standard_normal(len(recording))
+    seen = recording[column] + RECORDS[column] * np.random.default_rng(trial).standard_normal(len(recording))
     columns = {"input_angle": recording["input_angle"], column: seen}
     return Recording(columns, {name: recording.unit(name) for name in columns})
 

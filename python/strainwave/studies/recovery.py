@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,18 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
-from strainwave.analysis.orders import orders
+from strainwave.analysis.orders import order_spectrum, orders
 from strainwave.files.recording import Recording
-from strainwave.studies.actuator_ramp import ActuatorRamp
+from strainwave.studies.actuator_ramp import ERROR, ActuatorRamp
 from strainwave.studies.pure_error import COMBINE, MICRON, placed
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 ORDERS = (1.0, 2.0, 3.0, 4.0)
-NEIGHBOURS = 6  # lines on each side of an order, whose size tells the noise
+SEEN = ("input_angle", "transmission_error", "current")
+NEIGHBOURS = 8  # lines on each side of an order, whose size tells the noise; but for the next, which has half of the order
+HANN = 1.5  # power of noise in a line through a Hann window over that without
 PROBE = 2e-5  # rad: amplitude of each order by which the model of the drive is probed
-CORRECTIONS = 3
+CORRECTIONS = 2
+SMALL = 1e-8  # m: step by which the slopes of the orders are taken
 CONFIDENCE = 0.95
 
 
@@ -43,8 +46,10 @@ class Model:
     def of(cls, ramp: ActuatorRamp) -> Model:
         """Runs a drive with an error of a few orders, small and of equal size, and without."""
         quiet = ramp.without_noise()
-        none, probe = (quiet.settled(quiet.with_error(_orders_of(size)).run()) for size in (0.0, PROBE))
-        return cls(quiet, none, probe)
+        probe = kinematic_error.Fourier(order=ORDERS, amplitude=[0.0] * len(ORDERS), phase=[0.0] * len(ORDERS))
+        changes = [{f"{ERROR}.amplitude[{place}]": size for place in range(len(ORDERS))} for size in (0.0, PROBE)]
+        runs = quiet.with_error(probe).many(changes, SEEN)
+        return cls(quiet, *(quiet.settled(runs.member(place)) for place in (0, 1)))
 
     def gain(self, column: str) -> Complex:
         """Answer over error at each order [unit of the column / rad], shape (4,)."""
@@ -52,9 +57,14 @@ class Model:
         answers: Complex = _sines(probe.amplitude, probe.phase) - _sines(none.amplitude, none.phase)
         return answers / PROBE
 
-    def run(self, law: Any) -> Recording:
-        """A run with some error, after the run-in."""
-        return self.ramp.settled(self.ramp.with_error(law).run())
+    def run(self, points: Sequence[tuple[float, float]], law: Any) -> list[Recording]:
+        """Runs with the shaft at some places m [m], after the run-in."""
+        changes = [
+            {f"{ERROR}.housing_eccentricity": float(np.hypot(*m)), f"{ERROR}.housing_direction": float(np.arctan2(m[1], m[0]))}
+            for m in points
+        ]
+        runs = self.ramp.with_error(law).many(changes, SEEN)
+        return [self.ramp.settled(runs.member(place)) for place in range(len(points))]
 
 
 @dataclass(frozen=True)
@@ -144,27 +154,41 @@ def recover(recording: Recording, column: str, model: Model, law: Any) -> dict[s
     return {each: _solved(seen.at / gain, seen, gain, column, law.replace(combine=each)) for each in COMBINE}
 
 
-def refined(found: Recovered, recording: Recording, model: Model, law: Any) -> Recovered:
+def refined(found: Sequence[Recovered], recordings: Sequence[Recording], model: Model, law: Any) -> list[Recovered]:
     """The same, for drives whose answer depends on the size of the error: what was found is run, and corrected by the rest.
 
     Hysteresis and friction answer a small error otherwise than a large one. The corrections shrink by how far the answer to the
     probe is from that to the error itself, some per cent. What is left between the orders is noise alone.
+
+    Args:
+        found: what was found with one `combine`
+        recordings: from which each was found
+        model: of the drive
+        law: `Misalignment` with that `combine`
     """
+    best = list(found)
     for _ in range(CORRECTIONS):
-        found = corrected(found, recording, model.run(placed(law.replace(combine=found.combine), found.m)), model, law)
-    return found
+        runs = model.run([each.m for each in best], law)
+        best = [corrected(*each, model, law) for each in zip(best, recordings, runs, strict=True)]
+    return best
 
 
 def corrected(found: Recovered, recording: Recording, run: Recording, model: Model, law: Any) -> Recovered:
-    """What was found, corrected by how far the record is from a run with it."""
-    gain, own = model.gain(found.column), placed(law.replace(combine=found.combine), found.m)
+    """What was found, corrected in one step by how far the record is from a run with it."""
+    gain = model.gain(found.column)
     seen = look(beside(recording, run, found.column), found.column)
-    return _solved(harmonics(own) + seen.at / gain, seen, gain, found.column, own, found.m)
-
-
-def chosen(found: Mapping[str, Recovered]) -> Recovered:
-    """The one that leaves least beside the noise."""
-    return min(found.values(), key=lambda each: each.misfit)
+    asked, sigma = seen.at / gain, seen.noise / np.abs(gain)
+    ways = [
+        (harmonics(placed(law, tuple(found.m + step))) - harmonics(placed(law, tuple(found.m - step)))) / (2.0 * SMALL)
+        for step in SMALL * np.eye(2)
+    ]
+    slopes = np.array([np.concatenate([(way / sigma).real, (way / sigma).imag]) for way in ways]).T
+    wanted = np.concatenate([(asked / sigma).real, (asked / sigma).imag])
+    step, *_ = np.linalg.lstsq(slopes, wanted, rcond=None)
+    covariance: Array = np.linalg.pinv(slopes.T @ slopes)
+    misfit = float(np.sum((wanted - slopes @ step) ** 2)) / (2 * len(ORDERS) - 2)
+    m = (float(found.m[0] + step[0]), float(found.m[1] + step[1]))
+    return Recovered(found.column, found.combine, m, covariance, seen.degrees, misfit)
 
 
 def beside(recording: Recording, run: Recording, column: str) -> Recording:
@@ -179,17 +203,19 @@ def beside(recording: Recording, run: Recording, column: str) -> Recording:
 def look(recording: Recording, column: str) -> Seen:
     """The orders of a column, and its noise.
 
-    Lines between the orders have noise alone; those next to an order tell how much of it the order has.
+    Lines between the orders have noise alone; those near an order tell how much of it the order has. They come from a spectrum
+    through a Hann window. It adds half to the power of noise, and the powers of neighbouring lines correlate by 4/9, of next
+    ones by 1/36, so that two lines tell about as much as one without a window.
     """
-    turned = np.ptp(recording.values("input_angle", "rad")) / (2.0 * np.pi)
-    lines = int(turned * (1.0 + 1e-9))
-    reach = min(NEIGHBOURS, (lines - 1) // 2)
-    apart = [step / lines for step in range(-reach, reach + 1) if step]
-    asked = np.array([order + each for order in ORDERS for each in (0.0, *apart)])
-    there = orders(recording, column, asked)
-    amplitude, phase = (values.reshape(len(ORDERS), -1) for values in (there.amplitude, there.phase))
-    noise = np.sqrt(0.5 * np.mean(amplitude[:, 1:] ** 2, axis=1))
-    return Seen(_sines(amplitude[:, 0], phase[:, 0]), np.maximum(noise, np.finfo(float).tiny), 4 * reach)
+    there = orders(recording, column, ORDERS)
+    spectrum = order_spectrum(recording, column, ORDERS[-1] + 0.5)
+    line = np.rint(spectrum["order"] * there.revolutions)
+    reach = min(NEIGHBOURS, (there.revolutions - 2) // 2)
+    apart = [np.abs(line - order * there.revolutions) for order in ORDERS]
+    near = [spectrum["amplitude"][(distance > 1) & (distance <= reach)] for distance in apart]
+    noise = np.sqrt(np.array([np.mean(lines**2) for lines in near]) / (2.0 * HANN))
+    degrees = round(2.0 * len(near[0]) / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0)))
+    return Seen(_sines(there.amplitude, there.phase), np.maximum(noise, np.finfo(float).tiny), degrees)
 
 
 def harmonics(law: Any) -> Complex:
@@ -203,13 +229,7 @@ def _sines(amplitude: Array, phase: Array) -> Complex:
     return values
 
 
-def _orders_of(amplitude: float) -> Any:
-    return kinematic_error.Fourier(order=ORDERS, amplitude=[amplitude] * len(ORDERS), phase=[0.0] * len(ORDERS))
-
-
-def _solved(
-    asked: Complex, seen: Seen, gain: Complex, column: str, law: Any, start: tuple[float, float] | None = None
-) -> Recovered:
+def _solved(asked: Complex, seen: Seen, gain: Complex, column: str, law: Any) -> Recovered:
     """m by least squares from an error at each order [rad], each weighed by its noise."""
     from scipy.optimize import least_squares
 
@@ -220,7 +240,7 @@ def _solved(
         return np.concatenate([rest.real, rest.imag])
 
     far = 0.4 * float(law.minor_radius) / MICRON
-    begin = np.clip(np.array(_start(asked, law) if start is None else start) / MICRON, -0.9 * far, 0.9 * far)
+    begin = np.clip(np.array(_start(asked, law)) / MICRON, -0.9 * far, 0.9 * far)
     best: Any = least_squares(gap, begin, bounds=(-far, far), x_scale=max(float(np.abs(begin).max()), 1.0))
     covariance: Array = MICRON**2 * np.linalg.pinv(best.jac.T @ best.jac)
     m = (MICRON * float(best.x[0]), MICRON * float(best.x[1]))
