@@ -177,6 +177,11 @@ struct Gear {
         mesh.rate = reaction.rate;
         return mesh;
     }
+    /// What the mean stiffness of the spring is multiplied by, and its slope over the angle of the wave generator.
+    constexpr variation::Factor<S> stiffness_factor(const Inner& inner, const Shafts& at) const {
+        if (!stiffness_variation.active()) return {};
+        return stiffness_variation.at(structure.generator(inner, at).angle);
+    }
     /// What spring and hysteresis hold at a twist [rad], `moved` [rad] from where the hysteresis was last brought up to date, N.m;
     /// the stiffness is `factor` times its mean.
     constexpr S held_torque(const S& twist, const typename Hysteresis::State& held, const S& moved, const S& temperature,
@@ -274,10 +279,6 @@ private:
         return twist;
     }
 
-    constexpr variation::Factor<S> stiffness_factor(const Inner& inner, const Shafts& at) const {
-        if (!stiffness_variation.active()) return {};
-        return stiffness_variation.at(structure.generator(inner, at).angle);
-    }
     constexpr S turning(const variation::Factor<S>& factor, const S& twist, const S& temperature) const {
         if (!stiffness_variation.active()) return S(0.0);
         return factor.slope * softness(temperature) * stiffness.energy(twist);

@@ -40,7 +40,7 @@ class Search {
     const Known<S>& known;
     const Input<S>& u;
     typename Drive::State x;
-    const QuasiStatic<S, decltype(Drive{}.gear)> spring;
+    QuasiStatic<S, decltype(Drive{}.gear)> spring;
 
     using MotorState = decltype(Drive{}.motor.relaxation_rate());
     using MotorNumbers = Flat<S, MotorState>;
@@ -82,6 +82,7 @@ private:
         auto& y = x.continuous;
         const S inverse = drive.gear.kinematics.inverse_ratio();
         const auto mesh = drive.geometry(x, y);
+        spring.vary(drive.gear.stiffness_factor(y.structure, drive.gear_shafts(x, y)).value);
         move(mesh.per_input);
         const S total_input = y.input_angle + S(2.0 * pi) * x.turns;
         const bool both = known.knows(input_angle) && known.knows(output_angle);

@@ -10,14 +10,16 @@ class QuasiStatic {
     const Gear& gear;
     const S temperature;
     typename decltype(Gear{}.hysteresis)::State held;
-    S at;
+    S at, factor{1.0};
 
 public:
     constexpr QuasiStatic(const Gear& gear_, const S& temperature_, const S& begin = S(0.0))
         : gear(gear_), temperature(temperature_), held(initial_state(gear_.hysteresis)), at(begin) {}
 
     /// At a twist [rad] that is reached without turning back on the way, N.m.
-    constexpr S torque(const S& twist) const { return gear.held_torque(twist, held, twist - at, temperature); }
+    constexpr S torque(const S& twist) const { return gear.held_torque(twist, held, twist - at, temperature, factor); }
+    /// From here on the spring is so many times as stiff as in the mean.
+    constexpr void vary(const S& stiffness_factor) { factor = stiffness_factor; }
     constexpr void move(const S& twist) {
         held = gear.hysteresis.advance(held, twist - at);
         at = twist;

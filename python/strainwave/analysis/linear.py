@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 HELD = 1e30  # N.m: more than any torque that turns an input
+DAMPINGS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
 INPUTS = ("command", "command_rate", "load_torque", "temperature")
 _COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
 
@@ -227,6 +228,8 @@ def modes(drive: Drive) -> dict[str, Array]:
     arguments.drive(drive)
     same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening", "structure", "stiffness_variation")
     gear = Gear(**{name: getattr(drive.gear, name) for name in same})
+    damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPINGS]
+    gear = gear.replace(structure=gear.structure.replace(dict.fromkeys(damped, 0.0)))
     bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
     held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HELD, breakaway=HELD)))
     return {"free": _frequencies(bare), "input held": _frequencies(held)}
