@@ -310,6 +310,36 @@ def test_the_lump_is_as_stiff_and_as_damped_as_the_stages_in_series() -> None:
     assert lump.damping == pytest.approx(series**2 * np.sum(damping / stiffness**2), rel=2e-3)
 
 
+def test_it_rests_and_runs_with_its_stages_as_the_balance_says() -> None:
+    """At 1 rad the stream alone: wave generator, rings and flank give way to T as their springs say. In open loop it runs."""
+    drive = without_noise(sw.load(STAGED))
+    free = sw.friction.Viscous(viscous=drive.gear.friction_output.viscous)
+    found = sw.equilibrium(drive.replace({"gear.friction_output": free}), command=1.0)
+    torque = ACROSS * math.sin(1.0)
+    assert found["structure.held_angle"] == pytest.approx(torque / 2e4, rel=1e-9)
+    assert found["structure.driving_lead"] == pytest.approx(torque / 2e5, rel=1e-9)
+    turning = found["motor.current"] * TORQUE_CONSTANT
+    assert found["structure.windup"] == pytest.approx(turning / 2e3, rel=1e-9)
+    assert turning == pytest.approx(torque / RATIO, rel=0.1)  # and what the error of the gear asks for
+    motor = drive.replace({"control": sw.control.OpenLoop(), "sensors": sw.Sensors(), "load": sw.loads.Inertia(inertia=0.6)})
+    running = sw.equilibrium(motor, command=10.0, load_torque=5.0)
+    current, speed = running["motor.current"], running.input_speed
+    assert 0.284 * current + TORQUE_CONSTANT * speed == pytest.approx(10.0, rel=1e-12)
+    assert current * TORQUE_CONSTANT * RATIO == pytest.approx(5.0 + 3.7 + 3.56 * speed / RATIO, rel=1e-9)
+    assert running["structure.generator_speed"] == pytest.approx(speed, rel=1e-12)
+
+
+def test_the_loops_leave_the_stages_alone_and_damp_the_rest() -> None:
+    """Linearised across the stream's pull: the modes of the stages keep their 2 %, all others have more than 60 %."""
+    drive = without_noise(sw.load(STAGED))
+    free = sw.friction.Viscous(viscous=drive.gear.friction_output.viscous)
+    linear = sw.linearise(drive.replace({"gear.friction_output": free}), command=1.0)
+    of_stages = np.abs(linear.poles) > 1e4
+    assert of_stages.sum() == 8
+    assert linear.damping_ratios[of_stages] == pytest.approx(0.02, rel=0.2)
+    assert linear.damping_ratios[~of_stages].min() > 0.6
+
+
 def test_both_sets_differ_in_their_gear_alone() -> None:
     lumped, staged = sw.GearSet.read(LUMPED), sw.GearSet.read(STAGED)
     parts = ("structure", "stiffness", "damping")

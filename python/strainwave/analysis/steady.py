@@ -155,9 +155,10 @@ class Rates(ComparedByFields):
 def _at_rest(drive: Drive, state: Array) -> Array:
     """`state` without its speeds, every shaft that can stick sticking."""
     still = state.copy()
-    places = Layout(drive).places
+    layout = Layout(drive)
     for name in ("input_speed", "output_speed", "input_slip_direction", "output_slip_direction"):
-        still[places[name]] = 0.0
+        still[layout.places[name]] = 0.0
+    still[_bodies(layout)[1]] = 0.0
     return _core.consistent(drive, still)
 
 
@@ -206,9 +207,10 @@ class _Slow(ComparedByFields):
 
     def rows(self, rates: Rates) -> list[int]:
         """The rates that must vanish."""
-        places = self.layout.places
-        wanted = [*range(self.layout.count)[places["motor"]], *_needed(self.layout, rates)]
-        return wanted + [places[f"{end}_speed"].start for end, free in zip(("input", "output"), self.free, strict=True) if free]
+        motor, (_, within) = range(self.layout.count)[self.layout.places["motor"]], _bodies(self.layout)
+        wanted = [*motor, *within, *_needed(self.layout, rates)]
+        speeds = [self.layout.places[f"{end}_speed"].start for end in ("input", "output")]
+        return wanted + [speed for speed, free in zip(speeds, self.free, strict=True) if free]
 
     def guess(self) -> Array:
         """Where to begin: where the controller wants the input, if it may move; else here."""
@@ -245,7 +247,8 @@ class _Slow(ComparedByFields):
             (False, True): [wind],
             (False, False): [],
         }[self.free]
-        moves = np.hstack([everything[:, places["motor"]], everything[:, places["control"]], *angles])
+        within, _ = _bodies(self.layout)
+        moves = np.hstack([everything[:, places["motor"]], everything[:, within], everything[:, places["control"]], *angles])
         return _followed(moves, rates, _sensing(self.layout))
 
 
@@ -292,7 +295,7 @@ class _Steady(ComparedByFields):
     def rows(self, rates: Rates) -> list[int]:
         """The rates that must vanish; those of friction and of sensors have."""
         places = self.layout.places
-        inner = [*range(self.layout.count)[places["motor"]], *_needed(self.layout, rates)]
+        inner = [*_inner(self.layout), *_needed(self.layout, rates)]
         return [*inner, places["input_speed"].start, places["output_speed"].start]
 
     def at(self, speed: float) -> Array:
@@ -305,12 +308,13 @@ class _Steady(ComparedByFields):
     def surplus(self, speed: float) -> float:
         """What is left to accelerate the whole drive at a speed, referred to the input [N.m]: spring and motor settled."""
         drive, places, inputs = self.drive, self.layout.places, self.inputs
-        state = _settled(drive, self.at(speed), inputs, [*range(self.layout.count)[places["motor"]], *_sensing(self.layout)])
+        state = _settled(drive, self.at(speed), inputs, [*_inner(self.layout), *_sensing(self.layout)])
         rates = Rates.of(drive, state, inputs)
         if not rates.finite:
             raise ValueError(_unsteady(drive, inputs, OVERFLOW))
         load: Any = drive.load  # one that has an inertia: `check_continuous`
-        inertia = drive.motor.inertia + drive.gear.input_inertia, load.inertia / drive.gear.kinematics.ratio
+        generator = 0.0 if _bodies(self.layout)[1] else drive.gear.input_inertia  # a body by itself has settled
+        inertia = drive.motor.inertia + generator, load.inertia / drive.gear.kinematics.ratio
         of_input, of_output = (rates.rate[places[name]].item() for name in ("input_speed", "output_speed"))
         return float(inertia[0] * of_input + inertia[1] * of_output)
 
@@ -342,7 +346,7 @@ class _Steady(ComparedByFields):
         places, count = self.layout.places, self.layout.count
         everything, friction = np.eye(count), np.flatnonzero(self.layout.friction()).tolist()
         run = everything[:, places["input_speed"]] + everything[:, places["output_speed"]] / self.drive.gear.kinematics.ratio
-        inner = np.hstack([everything[:, places["motor"]], everything[:, places["control"]]])
+        inner = np.hstack([everything[:, _inner(self.layout)], everything[:, places["control"]]])
         moves = np.hstack([inner, everything[:, places["transmission_error"]], run])
         return _followed(_followed(moves, rates, friction), rates, _sensing(self.layout))
 
@@ -353,6 +357,19 @@ class _Steady(ComparedByFields):
 def _sensing(layout: Layout) -> list[int]:
     """Where the numbers of sensors stand."""
     return [place for place, name in enumerate(layout.names[: layout.count]) if name.startswith("sensors.")]
+
+
+def _bodies(layout: Layout) -> tuple[list[int], list[int]]:
+    """Where the displacements of the bodies within the gear stand, and where their speeds do."""
+    places = range(layout.count)[layout.places["structure"]]
+    speeds = [place for place in places if layout.names[place].endswith("_speed")]
+    return [place for place in places if place not in speeds], speeds
+
+
+def _inner(layout: Layout) -> list[int]:
+    """Where the numbers of the motor and of the bodies within the gear stand."""
+    everything = range(layout.count)
+    return [*everything[layout.places["motor"]], *everything[layout.places["structure"]]]
 
 
 def _needed(layout: Layout, rates: Rates) -> list[int]:
