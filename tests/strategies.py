@@ -26,6 +26,9 @@ TYPICAL = {
     "m": (2.4e-2, 2.6e-2),
     "K": (250.0, 350.0),
     "1/K": (1e-3, 1e-1),
+    "N/m": (1e6, 1e9),
+    "N.s/m": (1e0, 1e3),
+    "kg": (1e-3, 1e0),
 }
 AROUND_ONE = (10**-1.5, 10**1.5)
 
@@ -69,6 +72,11 @@ def numbers(field: Field) -> st.SearchStrategy[float]:
     if field["min"] is None:
         return st.just(0.0) | signed(magnitudes)
     return magnitudes if field["open"] or field["min"] > 0.0 else st.one_of(st.just(0.0), *5 * [magnitudes])
+
+
+def fitting(field: Field) -> float:
+    """One, or the largest number that a field takes."""
+    return 1.0 if field["max"] is None else min(1.0, float(field["max"]))
 
 
 def kinds_of(field: Field) -> list[Any]:

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.files import units
 
-from tests.strategies import Field, drives, gears, models, usual
+from tests.strategies import Field, drives, fitting, gears, models, usual
 
 LISTED = [model for family in _core.families.values() for model in family.values()]
 COMPOSED = [sw.Gear, sw.Drive]
@@ -150,11 +150,6 @@ def test_an_unknown_parameter_is_refused_and_the_known_ones_are_named(model: typ
         model(**usual(model), unheard_of=1.0)
     with pytest.raises(TypeError, match=message):
         model(**usual(model)).replace(unheard_of=1.0)
-
-
-def fitting(field: Field) -> float:
-    """One, or the largest number that a field takes."""
-    return 1.0 if field["max"] is None else min(1.0, float(field["max"]))
 
 
 @every_model

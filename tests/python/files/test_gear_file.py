@@ -21,7 +21,7 @@ from strainwave import _core
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, load, save
 
-from tests.strategies import drives, gears, made, models
+from tests.strategies import drives, fitting, gears, made, models
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCUMENT = (ROOT / "docs" / "gear-files.md").read_text(encoding="utf-8")
@@ -160,7 +160,7 @@ LAWS = (
 )
 PARTS = (
     "name, maker, note, ratings, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, friction_input, "
-    "friction_mesh, friction_output, softening, gear, motor, control, load, sensors, thermal, meter"
+    "friction_mesh, friction_output, softening, stiffness_variation, structure, gear, motor, control, load, sensors, thermal, meter"
 )
 HYSTERESIS = """
 [hysteresis]
@@ -427,7 +427,9 @@ PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 def filled(model: Any) -> Any:
     """A model in which no sequence is empty: one without numbers might do nothing, and need no table."""
-    return made(model, **{field["name"]: [1.0] for field in model.fields if field["kind"] == "sequence"})
+    if hasattr(model, "law"):
+        return made(model)
+    return made(model, **{field["name"]: [fitting(field)] for field in model.fields if field["kind"] == "sequence"})
 
 
 def with_law(**parts: Any) -> sw.Drive:
@@ -541,7 +543,8 @@ def gear_sets(draw: st.DrawFn) -> GearSet:
     motor, control = chosen["motor"], chosen["control"]
     fits = not isinstance(innermost(control), sw.control.Cascade | sw.control.StateFeedback)
     assume(fits or motor is None or isinstance(motor, sw.motor.BrushlessDC | sw.motor.PMSM))
-    assume(gear.input_inertia > 0.0 or motor is None or motor.inertia > 0.0)  # something must turn at the input
+    turns = gear.input_inertia > 0.0 and isinstance(gear.structure, sw.structure.Lumped)
+    assume(turns or motor is None or motor.inertia > 0.0)  # something must turn at the input
     whole = {part: model for part, model in chosen.items() if model is not None}
     turned = whole if "motor" in whole else whole | {"motor": sw.motor.BrushlessDC()}
     paths = GearSet.of(sw.Drive(gear=gear, **turned), name="x", source="x").sources

@@ -8,6 +8,7 @@ import pickle
 import re
 import shutil
 import tomllib
+from collections.abc import Iterator
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
@@ -45,9 +46,19 @@ def test_every_number_has_a_source_and_every_source_a_number() -> None:
         gear_set.replace(gear=gear_set.gear.replace(stiffness=sw.stiffness.Linear(k=1.0)))
 
 
+def counted(part: Any, path: str = "") -> Iterator[str]:
+    """What a part and its parts count, by path: that is no number of a fit."""
+    for field in part.fields:
+        name = f"{path}{field['name']}"
+        if field["kind"] == "count":
+            yield name
+        elif field["kind"] == "part":
+            yield from counted(getattr(part, field["name"]), f"{name}.")
+
+
 @given(drives)
 def test_the_paths_are_those_of_the_drives_parameters_and_its_counts(drive: sw.Drive) -> None:
-    counts = {f"gear.kinematics.{f['name']}" for f in drive.gear.kinematics.fields if f["kind"] == "count"}
+    counts = set(counted(drive))
     numbers = {path for path, *_ in _core.parameters(drive)}
     assert GearSet.of(drive, name="x", source="x").sources.keys() == numbers | counts
 
