@@ -199,7 +199,6 @@ def _recovered(recovery: Recovery) -> dict[str, Any]:
         "truth": f"{number(truth / study.MICRON, 4)} µm",
         "way": f"{number(way, 3)} ± {number(degrees(best.half_widths[1]), 1)}°",
         "true_way": f"{number(degrees(np.arctan2(y, x)), 3)}°",
-        "inside": "inside" if best.contains(recovery.m) else "outside",
         "within": f"{recovery.within} of {len(recovery.trials)}",
         "misfits": [number(recovery.first[each].misfit, 2) for each in COMBINE],
     }
@@ -246,7 +245,7 @@ def _recovery_lines(found: MisalignmentStudy) -> Iterator[str]:
     for each in map(_recovered, found.recoveries):
         yield (
             f"from {each['record']}, {each['combine']}: |m| = {each['size']} ({each['truth']}), towards {each['way']} "
-            f"({each['true_way']}), {each['inside']}; {each['within']} within 95 %"
+            f"({each['true_way']}); truth within the ellipse of 95 % in {each['within']} records"
         )
 
 

@@ -174,9 +174,11 @@ def _lobe(axes: Axes, turn: float, name: str) -> None:
     side = 0.09 * _unit(turn + np.pi / 2.0)
     ends = (RADIUS * _unit(turn) + side, reach * _unit(turn) + side)
     _note(axes, "", ends[1], xytext=ends[0], arrowprops={**_leader(LIGHT["ink"]), "arrowstyle": "-|>", "linewidth": 1.4})
-    beyond = 1.3 * _unit(turn) + 2.6 * side
-    _note(axes, f"lobe {name}:", beyond + np.array([-0.16, 0.0]), color=LIGHT["ink"], ha="center", va="center")
-    _indexed(axes, beyond + np.array([0.27, 0.0]), "δ", name, LIGHT["ink"])
+    beyond = 1.36 * _unit(turn) - 4.6 * side
+    _note(axes, "", 0.5 * (ends[0] + ends[1]), xytext=beyond, arrowprops=_leader(LIGHT["ink"]))
+    left = -0.19 if name == "B" else 0.46  # the text ends at its leader, or begins there
+    _note(axes, f"lobe {name}:", beyond + np.array([left - 0.08, 0.0]), color=LIGHT["ink"], ha="right", va="center")
+    _indexed(axes, beyond + np.array([left + 0.05, 0.0]), "δ", name, LIGHT["ink"])
 
 
 def _note(axes: Axes, text: str, place: Any, xytext: Any = None, **style: Any) -> None:

@@ -174,17 +174,22 @@ def _decades(axis: Axis) -> None:
 
 def spectrum_figure(found: MisalignmentStudy) -> str:
     """Orders of torque, current and output angle, straight and tilted."""
-    names = {"torque": ("torque", "N.m"), "current": ("motor current", "A"), "output_angle": ("output angle − command", "rad")}
+    names = {
+        "torque": ("torque", "N.m"),
+        "current": ("motor current", "A"),
+        "output_angle": ("output angle − command", "arcmin"),
+    }
 
     def draw(figure: Figure) -> None:
         panels = figure.subplots(3, 1, sharex=True)
         for axes, (column, (words, unit)) in zip(panels, names.items(), strict=True):
+            scale = ARCMIN if unit == "arcmin" else 1.0
             straight, tilted = found.spectra[column]
             label = f"tilt {tilt_words(study.SHOWN_TILT)}"
-            axes.plot(tilted["order"], tilted["amplitude"], color=LIGHT["model"], linewidth=1.0, label=label)
-            axes.plot(straight["order"], straight["amplitude"], color=LIGHT["ink"], linewidth=0.9, label="straight")
+            axes.plot(tilted["order"], scale * tilted["amplitude"], color=LIGHT["model"], linewidth=1.0, label=label)
+            axes.plot(straight["order"], scale * straight["amplitude"], color=LIGHT["ink"], linewidth=0.9, label="straight")
             axes.set_yscale("log")
-            top = float(max(tilted["amplitude"].max(), straight["amplitude"].max()))
+            top = scale * float(max(tilted["amplitude"].max(), straight["amplitude"].max()))
             axes.set_ylim(1e-5 * top, 2.0 * top)
             last = axes is panels[-1]
             text, of = ("order, per turn of the input", "1") if last else ("", "1")
@@ -241,7 +246,7 @@ def recovery_figure(recoveries: Mapping[str, Recovery]) -> str:
             true_x, true_y = np.array(recovery.m) / study.MICRON
             axes.plot(true_x, true_y, "+", color=LIGHT["model"], markersize=9.0, markeredgewidth=1.5, label="put in")
             axes.set_aspect("equal", adjustable="datalim")
-            figures.label_axes(axes, f"{SEEN[column]}: m towards y [µm]", "1", "m towards x [µm]", "1")
+            figures.label_axes(axes, f"{SEEN[column]}: m in y [µm]", "1", "m in x [µm]", "1")
             axes.locator_params(nbins=4)
         figures.legend(figure, panels[0])
 
