@@ -58,6 +58,8 @@ def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None 
             "level_figure": Markup(plots.level_figure(found)),
             "levels": [_level_table(each) for each in found.levels.values()],
             "spectrum_figure": Markup(plots.spectrum_figure(found)),
+            "flap_figure": Markup(plots.flap_figure(found)),
+            "largest_tilt": plots.tilt_words(study.SHOWN_TILTS[-1]),
             "passing_figure": Markup(plots.passing_figure(found)),
             "silent": percent(silence(found), 1),
             "silent_rows": list(_silent_rows(found)),

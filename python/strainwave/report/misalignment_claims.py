@@ -212,10 +212,8 @@ def _flap(found: MisalignmentStudy) -> Claim:
         "surface angular position is negligible”",
         IN_PART,
         f"It is small: ±{arcmin(moved[0])} of {number(degrees(found.ramp.stroke), 3)}° at e₁ = {microns(study.BESIDE)}. The "
-        "loop is "
-        f"not the reason: on the motor encoder it is ±{arcmin(moved[1])}. Order 2 comes at {number(frequency(found), 3)} Hz, "
-        "the loop "
-        f"reaches {number(gain / (2.0 * np.pi), 2)} Hz, and by itself would let {ideal} pass. On average over the ramp "
+        f"loop has a small part in that: on the motor encoder it is ±{arcmin(moved[1])}. Order 2 comes at "
+        f"{number(frequency(found), 3)} Hz, the loop reaches {number(gain / (2.0 * np.pi), 2)} Hz, and by itself would let {ideal} pass. On average over the ramp "
         f"{percent(share_at(found, OUTPUT))} pass, {percent(share_at(found, INPUT))} with the loop on the motor encoder: "
         "inertias, "
         "friction, the spring and the reaction of the error on the motor decide. Where the loop is faster than the error the "

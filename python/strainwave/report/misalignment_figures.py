@@ -201,6 +201,30 @@ def spectrum_figure(found: MisalignmentStudy) -> str:
     return figures.inline(draw, (figures.WIDTH, 5.2), "spectra", "Order spectra of torque, current and output angle")
 
 
+def flap_figure(found: MisalignmentStudy) -> str:
+    """What the output does with a tilt beyond what it does without, with the loop on either shaft, beside the error put in."""
+    largest = study.SHOWN_TILTS[-1]
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        run = found.ramp.settled(found.shown[OUTPUT][largest])
+        turns = run["input_angle"] / (2.0 * np.pi)
+        last = _detail(turns)
+        put_in = -run["kinematic_error"]
+        label = "the whole error, reversed"
+        axes.plot(turns[last], ARCMIN * (put_in - put_in[last].mean())[last], color=LIGHT["ink"], linewidth=0.9, label=label)
+        for side, colour, line in ((OUTPUT, "model", "-"), (INPUT, "measured", "--")):
+            there = study.difference(found.ramp, found.shown[side], largest, "output_angle")
+            turned, moved = there["input_angle"] / (2.0 * np.pi), ARCMIN * there["output_angle"]
+            end = _detail(turned)
+            style: dict[str, Any] = {"color": LIGHT[colour], "linestyle": line, "label": f"loop on the {LOOPS[side]}"}
+            axes.plot(turned[end], moved[end] - moved[end].mean(), **style)
+        figures.label_axes(axes, "output angle, difference [arcmin]", "1", "turns of the input", "1")
+        figures.legend(figure, axes)
+
+    return figures.inline(draw, (figures.WIDTH, 2.9), "flap", "Output angle with a tilt less that without, by loop")
+
+
 def passing_figure(found: MisalignmentStudy) -> str:
     """The share of the error that the output has, over the frequency of the order, for each gain of the position loop."""
 

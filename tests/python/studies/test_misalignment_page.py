@@ -107,7 +107,7 @@ def test_every_figure_names_its_quantities_and_their_units(html: str) -> None:
         "ramp": ("torque at the output [N·m]", "motor current [A]", "time [s]", "turns of the input"),
         "levels": ("half swing of torque [N·m]", "|m| [µm]"),
         "orders": ("amplitude, torque [N·m]", "order, per turn of the input"),
-        "loop": ("frequency of the order [Hz]", "share [%], loop on the motor encoder"),
+        "loop": ("frequency of the order [Hz]", "share [%], loop on the motor encoder", "the whole error, reversed"),
         "recovery": ("m in x [µm]",),
         "measured": ("torque at the output [N·m]", "motor current [A]", "measured"),
     }
