@@ -2,11 +2,12 @@
 
     python benchmarks/run.py                              all parts
     python benchmarks/run.py --only single,stick_slip     these parts
-    python benchmarks/run.py --peers casadi,numba         of single and ensemble: solvers whose name contains one of the words
-    python benchmarks/run.py --quick                      of single, ensemble and stick_slip: one run each, 20 s at most
+    python benchmarks/run.py --peers casadi,numba         of single, ensemble, actuator: solvers named like a word
+    python benchmarks/run.py --quick                      of those and stick_slip: one run each, 20 s at most
 
 single       one trajectory of the reference drive: error and time of all solvers
 ensemble     many reference drives at once: trajectories a second
+actuator     one trajectory and many of the tilt actuator, its gear in stages: error and time, and what it costs as it comes
 stick_slip   the same drive with friction that really sticks: error and time of what leads from event to event, and their cost
 scaling      time over steps, members and Maxwell elements
 files        ever more members run to files: time, memory and files
@@ -24,6 +25,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
+import actuator
 import ensemble
 import files
 import overhead
@@ -38,6 +40,7 @@ NAMES = [peer.name for peer in single.PEERS] + [crowd.peer.name for crowd in ens
 PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "single": single.run,
     "ensemble": ensemble.run,
+    "actuator": actuator.run,
     "stick_slip": lambda console, peers, quick: stick_slip.run(console, quick),
     "scaling": lambda console, peers, quick: scaling.run(console),
     "files": lambda console, peers, quick: files.run(console),

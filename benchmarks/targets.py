@@ -176,6 +176,9 @@ TARGETS = (
     Target("scikit-sundae CVODE", "single", 300, False, ahead_of("CVODE, Numba")),
     Target("diffrax", "single", 500, False, ahead_of("diffrax Tsit5")),
     Target(f"times real time at {SHARE_OF_PEAK_TORQUE:g} of the peak torque", "single", 1500, False, times_real_time),
+    Target(
+        "tilt actuator, staged gear: lead over CVODES", "actuator", 50, False, ahead_of("CasADi CVODES", "CasADi CVODES, gcc")
+    ),
     Target("ensemble: lead over JAX vmap", "ensemble", 30, False, many_ahead_of("JAX vmap, exponential")),
     Target("Numba prange", "ensemble", 20, False, many_ahead_of("Numba prange, exponential")),
     Target("diffrax vmap", "ensemble", 1000, False, many_ahead_of("diffrax vmap, Tsit5")),
