@@ -113,23 +113,21 @@ def _cards(found: MisalignmentStudy) -> list[dict[str, str]]:
             "eyebrow": "At the flap",
             "headline": f"±{arcmin(float(levels.column('e1', 'output_swing')[row]))}",
             "text": f"with the wave generator {microns(study.BESIDE)} off centre and the loop closed on the output; "
-            f"±{arcmin(float(found.levels[study.USUAL, INPUT].column('e1', 'output_swing')[row]))} with the loop on the "
-            "motor encoder.",
+            f"±{arcmin(float(found.levels[study.USUAL, INPUT].column('e1', 'output_swing')[row]))} with the loop on the motor "
+            "encoder.",
         },
         {
             "eyebrow": "In the motor current",
             "headline": f"±{quantity(current, 'A', 2)}",
             "text": f"of {quantity(nominal, 'A', 3)}, at orders 2, 4, … of the wave generator: {number(frequency(found), 3)} "
-            "Hz and "
-            "multiples. It grows in proportion to the misalignment.",
+            "Hz and multiples. It grows in proportion to the misalignment.",
         },
         {
             "eyebrow": "What one ramp tells",
             "headline": f"{number(recovery.best.size / study.MICRON, 3)} ± "
             f"{number(recovery.best.half_widths[0] / study.MICRON, 1)} µm",
             "text": f"from the current, where {microns(hypot(*recovery.m))} were put in (95 %). Eccentricity and tilt times "
-            "offset are "
-            "one number, and the wave generator's own misalignment on its shaft is none.",
+            "offset are one number, and the wave generator's own misalignment on its shaft is none.",
         },
     ]
 

@@ -135,9 +135,8 @@ def _detected(found: MisalignmentStudy) -> Claim:
         "“its presence can be detected and quantified in strain wave gears”",
         IN_PART,
         f"One vector can: from the motor current of one ramp |m| = {microns(best.size)} ± {microns(best.half_widths[0], 2)} "
-        "(95 %), "
-        f"{microns(hypot(*recovery.m))} were put in. m is e₁ plus the tilt β times the offset h: the two cannot be told apart. "
-        "e₂ and α alone leave no trace.",
+        f"(95 %), {microns(hypot(*recovery.m))} were put in. m is e₁ plus the tilt β times the offset h: the two cannot be "
+        "told apart. e₂ and α alone leave no trace.",
     )
 
 
@@ -146,9 +145,8 @@ def _radial(found: MisalignmentStudy) -> Claim:
     return Claim(
         "“e_WG,mis = θ_e,mis r_g ≅ θ_e r_g”",
         CORRECTED,
-        "The displacement acts through the flank and against the output: θ_e = −tan α_t e/r_g (E-A4). "
-        f"{microns(study.BESIDE)} are "
-        f"{arcmin(-study.BESIDE * found.per_error(), 3)}, not {arcmin(printed, 3)}.",
+        f"The displacement acts through the flank and against the output: θ_e = −tan α_t e/r_g (E-A4). {microns(study.BESIDE)} "
+        f"are {arcmin(-study.BESIDE * found.per_error(), 3)}, not {arcmin(printed, 3)}.",
     )
 
 
@@ -158,8 +156,7 @@ def _constant(found: MisalignmentStudy) -> Claim:
         "“a constant component, related to clearance, and a variable one, related to misalignment and tooth machining error”",
         IN_PART,
         f"Misalignment has a constant part, too: e₂ = {microns(study.BESIDE)} alone shifts the output by "
-        f"{arcmin(abs(constant))} "
-        "for good, and nothing that repeats. The setting of zero takes it away.",
+        f"{arcmin(abs(constant))} for good, and nothing that repeats. The setting of zero takes it away.",
     )
 
 
@@ -169,10 +166,8 @@ def _inputs(found: MisalignmentStudy) -> Claim:
         "and α)”",
         CORRECTED,
         "h is missing: without an offset from the centre of tilt, β acts in second order only (E-A8). e₂ and α turn with the "
-        "shaft, "
-        f"so that alone they leave a constant: at most {percent(silence(found), 1)} of the current that e₁ or β of the same "
-        "size "
-        "takes, from the start of the ramp (E-A9).",
+        f"shaft, so that alone they leave a constant: at most {percent(silence(found), 1)} of the current that e₁ or β of the "
+        "same size takes, from the start of the ramp (E-A9).",
     )
 
 
@@ -194,10 +189,8 @@ def _steady(found: MisalignmentStudy) -> Claim:
         "“the speed of the actuator is constant, and the torque oscillations are primarily linked to the control logic”",
         CORRECTED if tilted > straight else CONFIRMED,
         f"With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° the output speed swings by ±{percent(speed_swing(found))}. "
-        "The torque "
-        f"oscillates by {quantity(tilted, 'N.m', 2)} rms, without misalignment by {quantity(straight, 'N.m', 2)}: the wave "
-        "generator "
-        "sets the oscillation, the controller only how large it becomes.",
+        f"The torque oscillates by {quantity(tilted, 'N.m', 2)} rms, without misalignment by {quantity(straight, 'N.m', 2)}: "
+        "the wave generator sets the oscillation, the controller only how large it becomes.",
     )
 
 
@@ -208,19 +201,15 @@ def _flap(found: MisalignmentStudy) -> Claim:
     best = [slowest_and_tightest(found, side) for side in (OUTPUT, INPUT)]
     return Claim(
         "“Because the position control loop operates to minimize the relative error the effect of the kinematic error on the "
-        "flap "
-        "surface angular position is negligible”",
+        "flap surface angular position is negligible”",
         IN_PART,
         f"It is small: ±{arcmin(moved[0])} of {number(degrees(found.ramp.stroke), 3)}° at e₁ = {microns(study.BESIDE)}. The "
         f"loop has a small part in that: on the motor encoder it is ±{arcmin(moved[1])}. Order 2 comes at "
-        f"{number(frequency(found), 3)} Hz, the loop reaches {number(gain / (2.0 * np.pi), 2)} Hz, and by itself would let {ideal} pass. On average over the ramp "
-        f"{percent(share_at(found, OUTPUT))} pass, {percent(share_at(found, INPUT))} with the loop on the motor encoder: "
-        "inertias, "
-        "friction, the spring and the reaction of the error on the motor decide. Where the loop is faster than the error the "
-        "claim "
-        f"holds for the output sensor alone: in twice the time and with four times the gain {percent(best[0])} pass, with "
-        "the loop on "
-        f"the motor encoder {percent(best[1])}.",
+        f"{number(frequency(found), 3)} Hz, the loop reaches {number(gain / (2.0 * np.pi), 2)} Hz, and by itself would let "
+        f"{ideal} pass. On average over the ramp {percent(share_at(found, OUTPUT))} pass, {percent(share_at(found, INPUT))} "
+        "with the loop on the motor encoder: inertias, friction, the spring and the reaction of the error on the motor "
+        "decide. Where the loop is faster than the error the claim holds for the output sensor alone: in twice the time and "
+        f"with four times the gain {percent(best[0])} pass, with the loop on the motor encoder {percent(best[1])}.",
     )
 
 
@@ -230,8 +219,7 @@ def _noisy(found: MisalignmentStudy) -> Claim:
         "“the presence of the kinematic error caused a noisy signal with several oscillations”",
         CORRECTED,
         f"It is no noise: {percent(share, 4)} of the power of the difference lies at whole orders of the wave generator, the "
-        "same in "
-        "each turn but for the load. Over time it looks irregular, over the input angle it does not.",
+        "same in each turn but for the load. Over time it looks irregular, over the input angle it does not.",
     )
 
 
@@ -243,8 +231,7 @@ def _figure_3b(found: MisalignmentStudy) -> Claim:
         "the text, “angular deviation misalignment kinematic error” in the caption",
         CORRECTED,
         f"The two are not the same quantity, so both are drawn. With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° the "
-        "error swings "
-        f"by ±{arcmin(error)}, the torque by ±{quantity(torque, 'N.m', 2)}.",
+        f"error swings by ±{arcmin(error)}, the torque by ±{quantity(torque, 'N.m', 2)}.",
     )
 
 
@@ -256,8 +243,8 @@ def _level(found: MisalignmentStudy) -> Claim:
         "“As predictable, the effect of the kinematic error increases together with the misalignment level”",
         IN_PART,
         f"In proportion where one lobe carries (swing of torque ~ level to the power {power('single')}) or the outer one "
-        f"({power('max')}); with its square where both share ({power('mean')}). Not at all with h = 0 in first order, nor "
-        "with e₂ and α.",
+        f"({power('max')}); with its square where both share ({power('mean')}). Not at all with h = 0 in first order, nor with "
+        "e₂ and α.",
     )
 
 
@@ -265,7 +252,7 @@ def _eccentricity(found: MisalignmentStudy) -> Claim:
     return Claim(
         "“A similar effect can be found in presence of misalignments”",
         CONFIRMED,
-        f"More than similar: a tilt β and an eccentricity of h tan β swing the torque alike, to a ratio of "
+        "More than similar: a tilt β and an eccentricity of h tan β swing the torque alike, to a ratio of "
         f"{number(same_size(found, 'torque_swing'), 3)}.",
     )
 
@@ -284,6 +271,5 @@ def _greater(found: MisalignmentStudy) -> Claim:
         f"{percent(current[LEVEL] - 1.0)} in current at e₁ = {microns(sizes[LEVEL])}, {percent(torque[-1] - 1.0)} and "
         f"{percent(current[-1] - 1.0)} at {microns(sizes[-1])}. At a single moment the torque is up to "
         f"{percent(largest_ratio(found))} off with a tilt of {number(degrees(study.SHOWN_TILT), 2)}°. In half the time the "
-        "swing is "
-        f"{number(quick, 2)} times as large.",
+        f"swing is {number(quick, 2)} times as large.",
     )
