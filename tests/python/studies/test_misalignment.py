@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.studies import misalignment as study
-from strainwave.studies.actuator_ramp import ASSUMED, INPUT, OUTPUT, ActuatorRamp, geometry, in_series, noises
+from strainwave.studies.actuator_ramp import ASSUMED, ERROR, INPUT, OUTPUT, ActuatorRamp, geometry, in_series, noises
 from strainwave.studies.misalignment import Levels, passed, recovered, share_by_ideal_loop, swept
 from strainwave.studies.pure_error import placed
 from strainwave.studies.recovery import harmonics
@@ -197,6 +197,19 @@ def test_stages_in_series_are_the_lumped_set() -> None:
     assert in_series(staged).dt > 10.0 * staged.dt
     plain = ActuatorRamp.of(sw.load("tilt-actuator-lumped"), *SHORT)
     assert in_series(plain) is plain
+
+
+def test_stages_in_series_swing_as_the_stages_do() -> None:
+    """The slowest stage is a hundred times faster than the orders, so that its own swing is less by the square of that."""
+    staged = ActuatorRamp.of(sw.load("tilt-actuator"), radians(20.0), 1.1)
+    law = geometry(staged.drive)[0].replace(combine="single")
+    swings = []
+    for ramp in (staged, in_series(staged)):
+        changes = [{f"{ERROR}.housing_eccentricity": size} for size in (0.0, 20e-6)]
+        runs = ramp.without_noise().with_error(law).many(changes, ["torque", "current"])
+        last = [runs.member(place).between(0.5, 1.1) for place in (0, 1)]
+        swings.append([study.swing(last[1][name] - last[0][name]) for name in ("torque", "current")])
+    assert swings[1] == pytest.approx(swings[0], rel=5e-3)
 
 
 def test_noise_is_found_and_taken_away(ramp: ActuatorRamp) -> None:
