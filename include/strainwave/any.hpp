@@ -209,7 +209,8 @@ struct Choice {
     SW_VERB(deformation_rate)
     SW_VERB(energies)
     SW_VERB(compliance)
-    SW_VERB(max_rate)
+    SW_VERB(natural_frequency)
+    SW_VERB(decay)
 #undef SW_VERB
 
     constexpr S fastest() const {

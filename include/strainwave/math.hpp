@@ -93,6 +93,15 @@ inline SinCos<double> sincos(double x) {
 #endif
 inline SinCos<float> sincos(float x) { return {sin(x), cos(x)}; }
 
+/// Each of `n` angles within some turns of zero becomes its cosine.
+template <class S>
+constexpr void to_cosines(S* x, int n) {
+    for (int i = 0; i < n; ++i) x[i] = cos(x[i]);
+}
+#if !defined(__CUDACC_RTC__)
+inline void to_cosines(double* x, int n) { elementary::to_cosines(x, n); }
+#endif
+
 template <class S>
 constexpr S min(const S& a, const S& b) {
     return select(b < a, b, a);

@@ -68,6 +68,19 @@ struct Spectrum {
 
     Array<S, waves> order{}, phase{};
 
+    /// The sum of the cosines of its waves, after so many turns of order 1.
+    constexpr S sum(const S& turns) const {
+        Array<S, waves> cosine{};
+        for (int k = 0; k < waves; ++k) {
+            const S turned = order[k] * turns;
+            cosine[k] = S(2.0 * pi) * (turned - rint(turned)) + phase[k];
+        }
+        to_cosines(cosine.item, waves);
+        S total{0.0};
+        for (int k = 0; k < waves; ++k) total = total + cosine[k];
+        return total;
+    }
+
     static constexpr Spectrum drawn(const S& lowest, const S& highest, const S& seed) {
         Spectrum spectrum{};
         const S cell = (highest - lowest) / S(waves);

@@ -51,6 +51,9 @@ struct FrictionalWindup {
         visit(SW_REQUIRED(m, friction, "N.m", "Friction F against the wind-up, at the output's scale", 0));
     }
 
+    /// Its springs hold no torque beyond a finite twist (E-R16).
+    constexpr Domain<S> domain(const S& twist) const { return springs.domain(twist); }
+
     struct State {
         S twist{0.0};
         S torque{0.0};

@@ -4,24 +4,6 @@
 
 namespace strainwave {
 
-namespace detail {
-
-template <class T, int bytes>
-struct Vector {
-    typedef T type [[gnu::vector_size(bytes)]];
-};
-
-/// Doubles in a register of the instruction set compiled for.
-#if defined(__AVX512F__)
-inline constexpr int register_width = 8;
-#elif defined(__AVX__)
-inline constexpr int register_width = 4;
-#else
-inline constexpr int register_width = 2;
-#endif
-
-}  // namespace detail
-
 /// `n` numbers that take every step together, in as many vector registers as they need. Every lane holds the same numbers whatever
 /// the registers.
 template <int n>

@@ -62,12 +62,7 @@ struct Noisy {
 
         constexpr State initial_state() const { return {}; }
         constexpr S shown(const State& x, const S& value) const {
-            S sum{0.0};
-            for (int k = 0; k < Spectrum<S>::waves; ++k) {
-                const S turned = spectrum.order[k] * x.clock;
-                sum = sum + cos(S(2.0 * pi) * (turned - rint(turned)) + spectrum.phase[k]);
-            }
-            return law.shown(state(law, x.own), value) + weight * sum;
+            return law.shown(state(law, x.own), value) + weight * spectrum.sum(x.clock);
         }
         constexpr State rate(const State& x, const S& value) const {
             return {S(1.0), numbers<S, Inner>(law.rate(state(law, x.own), value))};

@@ -56,7 +56,8 @@ struct Lumped {
     constexpr S compliance(const Shafts<S>&, const Mesh&) const {
         return S(0.0);
     }
-    constexpr S max_rate(const Bodies<S>&) const { return S(0.0); }
+    constexpr S natural_frequency(const Bodies<S>&) const { return S(0.0); }
+    constexpr S decay(const Bodies<S>&) const { return S(0.0); }
 };
 
 }  // namespace strainwave::structure

@@ -268,19 +268,15 @@ struct Staged {
                    abs(mesh_.per_input * at.inverse_ratio) / coupling.stiffness;
         }
 
-        /// The fastest mode without damping, or the fastest decay by damping alone. Of a decay a Runge-Kutta step of fourth order
-        /// bears 2.78 times its length.
-        constexpr S max_rate(const Bodies<S>& bodies) const {
-            const auto of_flexspline = bodies.inverse_ratio > S(0.0);
-            const auto ends = [&](const S& of_spring, const S& of_spline) {
-                return Ends{select(of_flexspline, of_spring, of_spline), select(of_flexspline, of_spline, of_spring)};
-            };
-            const Ends springs = ends(bodies.stiffness, spline.most()), dampers = ends(bodies.damping, spline.damping);
-            const S elastic = largest_eigenvalue(
-                bodies, {coupling.most(), bearing.most(), mesh.most(), springs.held, springs.driving, bodies.load_stiffness});
-            const S decay = largest_eigenvalue(
-                bodies, {coupling.damping, bearing.damping, mesh.damping, dampers.held, dampers.driving, S(0.0)});
-            return max(sqrt(elastic), decay / S(2.5));
+        /// Of the fastest mode without damping.
+        constexpr S natural_frequency(const Bodies<S>& bodies) const {
+            const Ends ends = at_ends(bodies, bodies.stiffness, spline.most());
+            return sqrt(largest_eigenvalue(
+                bodies, {coupling.most(), bearing.most(), mesh.most(), ends.held, ends.driving, bodies.load_stiffness}));
+        }
+        constexpr S decay(const Bodies<S>& bodies) const {
+            const Ends ends = at_ends(bodies, bodies.damping, spline.damping);
+            return largest_eigenvalue(bodies, {coupling.damping, bearing.damping, mesh.damping, ends.held, ends.driving, S(0.0)});
         }
 
     private:
@@ -296,6 +292,10 @@ struct Staged {
         };
 
         static constexpr auto flexspline_held(const Shafts<S>& at) { return at.inverse_ratio > S(0.0); }
+        static constexpr Ends at_ends(const Bodies<S>& bodies, const S& of_spring, const S& of_spline) {
+            const auto held_flexspline = bodies.inverse_ratio > S(0.0);
+            return {select(held_flexspline, of_spring, of_spline), select(held_flexspline, of_spline, of_spring)};
+        }
 
         static constexpr Held held(const Joint<Varying>& joint, const Angle<S>& angle, const S& deformation, const S& rate) {
             const variation::Factor<S> factor = joint.factor(angle);
@@ -387,7 +387,8 @@ struct Staged {
     SW_OF_CHAIN(output)
     SW_OF_CHAIN(settled)
     SW_OF_CHAIN(compliance)
-    SW_OF_CHAIN(max_rate)
+    SW_OF_CHAIN(natural_frequency)
+    SW_OF_CHAIN(decay)
 #undef SW_OF_CHAIN
 };
 

@@ -15,7 +15,8 @@
 ///     output(inner, shafts, mesh, load, friction)  -> Output, with the friction at the output [N.m]
 ///     settled(inner, shafts, mesh, load)     -> Settled: at rest under the torque of the spring
 ///     compliance(shafts, mesh)               rad/(N.m), of all but the spring
-///     max_rate(bodies)                       rad/s, what steps of a fixed length must follow
+///     natural_frequency(bodies)              rad/s, of the fastest mode
+///     decay(bodies)                          1/s, by damping alone
 namespace strainwave::structure {
 
 /// How the two shafts of a gear stand and move.
