@@ -266,12 +266,23 @@ def test_linearised_it_has_the_poles_of_masses_springs_and_dampers(fixed: str) -
 # Energy
 
 
+MISALIGNED = sw.kinematic_error.Misalignment(
+    major_radius=25.3e-3, minor_radius=24.7e-3, pitch_radius=25e-3, pressure_angle=pi / 6.0, housing_eccentricity=20e-6
+)
+RELIEVED = sw.kinematic_error.Scaled(law=ERROR, load_sensitivity=0.02)
+FRICTIONS = {
+    "viscous": sw.friction.Viscous(viscous=0.1),
+    "sticking": sw.friction.Stribeck(coulomb=0.8, breakaway=1.0, stribeck_speed=0.02, viscous=0.1),
+}
+
+
 @orientation
-@pytest.mark.parametrize("seed", range(3))
-def test_what_the_motor_supplies_is_stored_lost_or_at_the_load(fixed: str, seed: int) -> None:
+@pytest.mark.parametrize(("seed", "error"), [(0, ERROR), (1, MISALIGNED), (2, RELIEVED)])
+@pytest.mark.parametrize("friction", FRICTIONS.values(), ids=FRICTIONS)
+def test_what_the_motor_supplies_is_stored_lost_or_at_the_load(fixed: str, seed: int, error: Any, friction: Any) -> None:
     """To 1e-9 of the largest energy in play, under random torques; the dampers only ever take."""
     random = np.random.default_rng(seed)
-    gear = everywhere(GEAR.replace(kinematics=FIXED[fixed], friction_output=sw.friction.Viscous(viscous=0.1)))
+    gear = everywhere(GEAR.replace(kinematics=FIXED[fixed], kinematic_error=error, friction_output=friction))
     drive = free(gear, 5e-5, sw.loads.Inertia(inertia=0.02), meter=sw.meter.EnergyMeter())
     motor, load = (
         Waves([(size * random.normal(), 10.0 ** random.uniform(1.0, 3.0), random.uniform(0.0, 6.0)) for _ in range(4)])
@@ -290,6 +301,19 @@ def test_what_the_motor_supplies_is_stored_lost_or_at_the_load(fixed: str, seed:
     turned_over = max(np.abs(run[name]).max() for name in run.names if name.startswith(("stored_", "energy_")))
     assert np.abs(run["energy_supplied"] - taken - (stored - stored[0])).max() < 1e-9 * turned_over
     assert np.all(run["power_damping"] >= 0.0)
+
+
+@orientation
+def test_an_output_that_sticks_stands_still_and_the_bodies_within_swing(fixed: str) -> None:
+    """Exactly, as long as what the gear transmits is less than its breakaway."""
+    friction = sw.friction.Stribeck(coulomb=8.0, breakaway=10.0, stribeck_speed=0.02)
+    drive = DRIVE.replace(gear=GEAR.replace(kinematics=FIXED[fixed], friction_output=friction))
+    run = sw.simulate(drive, sw.scenario.constant(0.04, 0.05), 1e-5, sample=1e-4)
+    assert 2.0 < np.abs(run["torque"]).max() < 10.0
+    assert np.all(run["output_speed"] == 0.0)
+    assert np.ptp(run["output_angle"]) < 1e-15  # it follows from input angle and transmission error
+    assert np.ptp(run["mesh_force"]) > 10.0
+    np.testing.assert_allclose(run["output_torque"], 0.0, atol=1e-12)
 
 
 # The lumped gear as a limit
