@@ -109,21 +109,27 @@ struct Gear {
     using Shafts = structure::Shafts<S>;
     using Inner = typename Structure::State;
 
+    /// Where the wave generator does not turn the spring itself: what lies between them.
+    struct Between {
+        S deformation;       ///< What the error leaves of the gap, rad
+        S deformation_rate;  ///< rad/s
+        S per_twist;         ///< How the error follows the twist of the spring, rad/rad
+    };
+    static constexpr bool always_rigid = size_of<S, Inner> == 0;
+    using Apart = typename detail::Either<always_rigid, Stateless<S>, Between>::type;
+
     /// How the gear stands between its two shafts.
     struct Mesh {
-        S error;             ///< Kinematic error e, rad
-        S per_input;         ///< Deformation per angle of the wave generator: 1/i - e', rad/rad
-        S per_output;        ///< and per output angle, without its sign; not 1 where the error follows the load
-        S per_twist;         ///< How the error follows the twist of a spring that is a state of its own, rad/rad
-        S deformation;       ///< What is left of the gap, rad
-        S deformation_rate;  ///< rad/s
-        S twist;             ///< of the spring, rad
-        S twist_rate;        ///< rad/s
-        S spring;            ///< Torque of the spring, its hysteresis and damping, N.m
-        S turning;           ///< with which a spring that varies holds the wave generator back, N.m
-        S torque;            ///< on the output shaft, N.m
-        S input_torque;      ///< that holds the input shaft back, N.m
-        Inner rate;          ///< of the bodies within the gear
+        S error;         ///< Kinematic error e, rad
+        S per_input;     ///< Deformation per angle of the wave generator: 1/i - e', rad/rad
+        S per_output;    ///< and per output angle, without its sign; not 1 where the error follows the load
+        S twist;         ///< of the spring, rad
+        S twist_rate;    ///< rad/s
+        S spring;        ///< Torque of the spring, its hysteresis and damping, N.m
+        S torque;        ///< on the output shaft, N.m
+        S input_torque;  ///< that holds the input shaft back, N.m
+        Apart apart;
+        Inner rate;  ///< of the bodies within the gear
     };
 
     constexpr Shafts shafts(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
@@ -139,15 +145,18 @@ struct Gear {
         mesh.error = is.error.value;
         mesh.per_input = is.per_output * at.inverse_ratio - is.error.slope;
         mesh.per_output = is.per_output;
-        mesh.per_twist = is.per_twist;
-        mesh.deformation = is.deformation;
-        if (structure.rigid()) {
-            mesh.twist = mesh.deformation;
-            mesh.twist_rate = mesh.deformation_rate = structure.deformation_rate(inner, at, mesh);
+        mesh.twist = is.deformation;
+        if constexpr (always_rigid) {
+            mesh.twist_rate = structure.deformation_rate(inner, at, mesh);
         } else {
-            mesh.twist = structure.spring_twist(inner, at);
-            mesh.twist_rate = structure.spring_twist_rate(inner, at);
-            mesh.deformation_rate = structure.deformation_rate(inner, at, mesh);
+            mesh.apart.deformation = is.deformation;
+            mesh.apart.per_twist = is.per_twist;
+            if (!structure.rigid()) {
+                mesh.twist = structure.spring_twist(inner, at);
+                mesh.twist_rate = structure.spring_twist_rate(inner, at);
+            }
+            mesh.apart.deformation_rate = structure.deformation_rate(inner, at, mesh);
+            if (structure.rigid()) mesh.twist_rate = mesh.apart.deformation_rate;
         }
         return mesh;
     }
@@ -170,8 +179,7 @@ struct Gear {
                           const S& held_twist, const S& temperature) const {
         const variation::Factor<S> factor = stiffness_factor(inner, at);
         mesh.spring = held_torque(mesh.twist, held, mesh.twist - held_twist, temperature, factor.value) + damping * mesh.twist_rate;
-        mesh.turning = turning(factor, mesh.twist, temperature);
-        const auto reaction = structure.reaction(inner, at, mesh, load(mesh));
+        const auto reaction = structure.reaction(inner, at, mesh, load(mesh, turning(factor, mesh.twist, temperature)));
         mesh.torque = reaction.torque;
         mesh.input_torque = reaction.input_torque;
         mesh.rate = reaction.rate;
@@ -200,10 +208,10 @@ struct Gear {
     }
     /// Of the bodies within the gear.
     constexpr auto energies(const Inner& inner, const Shafts& at, const Mesh& mesh) const {
-        return structure.energies(inner, at, mesh, load(mesh));
+        return structure.energies(inner, at, mesh, load(mesh, S(0.0)));
     }
     constexpr auto output(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& friction) const {
-        return structure.output(inner, at, mesh, load(mesh), friction);
+        return structure.output(inner, at, mesh, friction);
     }
 
     /// How the gear rests where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
@@ -211,8 +219,7 @@ struct Gear {
                            const S& temperature) const {
         mesh.twist = twist;
         mesh.spring = torque;
-        mesh.turning = turning(stiffness_factor(inner, at), twist, temperature);
-        return structure.settled(inner, at, mesh, load(mesh));
+        return structure.settled(inner, at, mesh, load(mesh, turning(stiffness_factor(inner, at), twist, temperature)));
     }
     /// Of the gear beside its spring, rad/(N.m).
     constexpr S compliance(const Shafts& at, const Mesh& mesh) const { return structure.compliance(at, mesh); }
@@ -283,7 +290,7 @@ private:
         if (!stiffness_variation.active()) return S(0.0);
         return factor.slope * softness(temperature) * stiffness.energy(twist);
     }
-    constexpr structure::Load<S> load(const Mesh& mesh) const { return {mesh.spring, mesh.turning, input_inertia}; }
+    constexpr structure::Load<S> load(const Mesh& mesh, const S& turning) const { return {mesh.spring, turning, input_inertia}; }
     constexpr S softness(const S& temperature) const { return softening.active() ? softening.of_stiffness(temperature) : S(1.0); }
 };
 

@@ -45,7 +45,7 @@ struct Lumped {
         return {};
     }
     template <class Mesh>
-    constexpr Output output(const State&, const Shafts<S>&, const Mesh&, const Load<S>&, const S&) const {
+    constexpr Output output(const State&, const Shafts<S>&, const Mesh&, const S&) const {
         return {};
     }
     template <class Mesh>

@@ -186,7 +186,7 @@ struct Staged {
         }
         template <class Mesh>
         constexpr S deformation_rate(const State& inner, const Shafts<S>&, const Mesh& mesh_) const {
-            return mesh_.per_input * inner.generator_speed - inner.radial_speed - mesh_.per_twist * mesh_.twist_rate;
+            return mesh_.per_input * inner.generator_speed - inner.radial_speed - mesh_.apart.per_twist * mesh_.twist_rate;
         }
 
         template <class Mesh>
@@ -194,7 +194,7 @@ struct Staged {
                                               const Load<S>& load) const {
             const auto held_flexspline = flexspline_held(at);
             const Joints of = joints(inner, at, mesh_);
-            const S spring = load.spring - mesh_.per_twist * of.bearing.torque;
+            const S spring = load.spring - mesh_.apart.per_twist * of.bearing.torque;
             const S holding = select(held_flexspline, spring, of.spline.torque);
             const S driving = select(held_flexspline, of.spline.torque, spring);
             const S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
@@ -227,8 +227,7 @@ struct Staged {
         }
 
         template <class Mesh>
-        constexpr Output output(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const Load<S>&,
-                                const S& friction) const {
+        constexpr Output output(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const S& friction) const {
             const auto held_flexspline = flexspline_held(at);
             const Joints of = joints(inner, at, mesh_);
             const S input = at.input_angle.within + S(2.0 * pi) * at.input_angle.turns;
@@ -316,7 +315,7 @@ struct Staged {
             const S on_spline = select(held_flexspline, inner.driving_lead, inner.held_angle);
             const S on_spline_rate = select(held_flexspline, inner.driving_speed - at.output_speed, inner.held_speed);
             return {held(coupling, angle, inner.windup, at.input_speed - inner.generator_speed),
-                    held(bearing, angle, mesh_.deformation, mesh_.deformation_rate),
+                    held(bearing, angle, mesh_.apart.deformation, mesh_.apart.deformation_rate),
                     held(mesh, angle, in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
                     held(spline, angle, on_spline, on_spline_rate)};
         }

@@ -12,7 +12,7 @@
 ///     deformation_rate(inner, shafts, mesh)  rad/s, of what is left of the gap
 ///     reaction(inner, shafts, mesh, load)    -> Reaction
 ///     energies(inner, shafts, mesh, load)    -> Energies
-///     output(inner, shafts, mesh, load, friction)  -> Output, with the friction at the output [N.m]
+///     output(inner, shafts, mesh, friction)  -> Output, with the friction at the output [N.m]
 ///     settled(inner, shafts, mesh, load)     -> Settled: at rest under the torque of the spring
 ///     compliance(shafts, mesh)               rad/(N.m), of all but the spring
 ///     natural_frequency(bodies)              rad/s, of the fastest mode
