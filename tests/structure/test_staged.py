@@ -467,3 +467,8 @@ def test_a_number_of_a_stage_comes_back_from_a_log(path: str, guess: float) -> N
     found = sw.fit(DRIVE.replace({path: guess}), run, [path], dt=1e-5)
     (estimate,) = [each for each in found.estimates if each.path == path]
     assert estimate.value == pytest.approx(at(DRIVE, path), rel=1e-5)
+
+
+def test_steps_too_coarse_for_the_bodies_within_are_refused_by_their_name() -> None:
+    with pytest.raises(FloatingPointError, match=r"a body within its gear is as fast as a vibration of \d\.\d+e\+04 rad/s"):
+        sw.simulate(DRIVE, sw.scenario.constant(0.0, 0.01), dt=2e-4)

@@ -44,11 +44,13 @@ def check_resolution(drive: Drive, dt: float, twist: float, temperature: float) 
 def fastest_part(drive: Drive, twist: float, temperature: float, fastest: float) -> str:
     """Which part of a drive is as fast as that [rad/s]: the one without which it is slower."""
     plain = Drive()
-    for name, words in (("sensors", "a sensor"), ("control", "what its controller filters")):
-        without = drive.replace({name: getattr(plain, name)})
-        if _core.max_rate(without, twist, temperature) < fastest:
-            return words
-    return "its own motion"
+    without = {
+        "a body within its gear": drive.replace(gear=drive.gear.replace(structure=plain.gear.structure)),
+        "a sensor": drive.replace(sensors=plain.sensors),
+        "what its controller filters": drive.replace(control=plain.control),
+    }
+    slower = (words for words, rest in without.items() if _core.max_rate(rest, twist, temperature) < fastest)
+    return next(slower, "its own motion")
 
 
 def too_coarse(dt: float, twist: float, fastest: float, part: str) -> str:
