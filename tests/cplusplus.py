@@ -24,7 +24,10 @@ ZIG = (sys.executable, "-m", "ziglang", "c++")
 # Python may not call a module as it calls the function `load`.
 NAMESPACE = {"loads": "load", "kinematic_noise": "kinematic_error"}
 FRICTION = ("friction", "friction", "friction")
-GEAR = ("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", *FRICTION, "softening")
+GEAR = (
+    *("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", *FRICTION, "softening"),
+    *("structure", "variation"),
+)
 DRIVE = ("control", "motor", "loads", "sensor", "thermal", "meter")
 
 

@@ -24,9 +24,9 @@ FIRMWARE = (
 )
 # A Cortex-M4, whose floating-point unit knows single precision only: double would call a routine by name.
 CORTEX = ("-target", "thumb-linux-musleabihf", "-mcpu=cortex_m4+vfp4d16sp", "-fno-unwind-tables")
-# A memory of turning points, or four sections of delay in each of six sensors: their states have half as many numbers again as
-# those of a plain drive, or twice as many, and every stage of a step holds some.
-LARGE_STATES = ("hysteresis::Preisach", "sensor::Delayed")
+# A memory of turning points, bodies within the gear, or four sections of delay in each of six sensors: these states have half
+# as many numbers again as those of a plain drive, or twice as many, and every stage of a step holds some.
+LARGE_STATES = ("hysteresis::Preisach", "structure::Staged", "sensor::Delayed")
 LIBM = {"atanf", "cosf", "expf", "logf", "rintf", "sinf", "sincosf", "sqrtf"}
 
 

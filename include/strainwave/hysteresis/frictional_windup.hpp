@@ -145,7 +145,7 @@ private:
     static constexpr S searched(const Springs& both, const S& twist, const S& held, const S& friction, const S& farthest) {
         const S softest = both.flexspline.softness + both.wave_generator.softness;
         auto given = under(both, held, held + friction);
-        S low = clip((twist - given.twist) / softest, S(0.0), farthest), high = farthest, missed(unbounded);
+        S low = clip((twist - given.twist) / softest, S(0.0), farthest), high = farthest, missed = S(unbounded);
         S gone = clip((twist - given.twist) / given.compliance, low, high);
         auto sought = gone > S(0.0);
         for (int i = 0; i < max_steps && any(sought); ++i) {
