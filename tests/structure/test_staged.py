@@ -470,5 +470,5 @@ def test_a_number_of_a_stage_comes_back_from_a_log(path: str, guess: float) -> N
 
 
 def test_steps_too_coarse_for_the_bodies_within_are_refused_by_their_name() -> None:
-    with pytest.raises(FloatingPointError, match=r"a body within its gear is as fast as a vibration of \d\.\d+e\+04 rad/s"):
-        sw.simulate(DRIVE, sw.scenario.constant(0.0, 0.01), dt=2e-4)
+    with pytest.raises(FloatingPointError, match="a body within its gear is as fast as a vibration of"):
+        sw.simulate(DRIVE, sw.scenario.constant(0.0, 0.01), dt=4e-4)
