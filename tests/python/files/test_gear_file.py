@@ -160,7 +160,8 @@ LAWS = (
 )
 PARTS = (
     "name, maker, note, ratings, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, friction_input, "
-    "friction_mesh, friction_output, softening, stiffness_variation, structure, gear, motor, control, load, sensors, thermal, meter"
+    "friction_mesh, friction_output, softening, stiffness_variation, structure, gear, motor, control, load, sensors, "
+    "thermal, meter"
 )
 HYSTERESIS = """
 [hysteresis]
