@@ -200,6 +200,8 @@ def _recovered(recovery: Recovery) -> dict[str, Any]:
         "way": f"{number(way, 3)} ± {number(degrees(best.half_widths[1]), 1)}°",
         "true_way": f"{number(degrees(np.arctan2(y, x)), 3)}°",
         "within": f"{recovery.within} of {len(recovery.trials)}",
+        "hits": recovery.within,
+        "trials": len(recovery.trials),
         "misfits": [number(recovery.first[each].misfit, 2) for each in COMBINE],
     }
 

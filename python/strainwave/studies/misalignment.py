@@ -437,7 +437,7 @@ def _records(ramp: ActuatorRamp) -> list[Recording]:
     if not seeds:
         run = ramp.settled(ramp.run())
         return [run] * TRIALS
-    changes = [{path: float(101 + trial * len(seeds) + place) for place, path in enumerate(seeds)} for trial in range(TRIALS)]
+    changes = [{path: float(1 + trial * len(seeds) + place) for place, path in enumerate(seeds)} for trial in range(TRIALS)]
     runs = ramp.many(changes, record=["input_angle", *RECORDS])
     return [ramp.settled(runs.member(trial)) for trial in range(TRIALS)]
 
