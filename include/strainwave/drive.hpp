@@ -374,7 +374,8 @@ struct Drive {
     /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the vibration of gear and load at twists up to
     /// `twist` [rad] in a run that begins at `temperature` [K], the decay of speeds and of a controlled current, sensors, what
     /// the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length, of a
-    /// vibration 2.83 times: of bodies within the gear that suffices, for what steps do not follow of them they damp.
+    /// vibration 2.83 times, and 2.5 leaves room. For bodies within the gear stability is enough: a step that is stable damps a
+    /// mode that it does not resolve.
     constexpr S max_rate(const S& twist, const S& temperature) const {
         const S inner = max(max(sensors.fastest(), strainwave::fastest<S>(control)), strainwave::fastest<S>(thermal));
         const S stiffness = steepest(twist, temperature), decay = max(damping(), current_damping());
@@ -441,6 +442,10 @@ struct Drive {
     template <class Visit>
     constexpr void bounds(const Derivatives& now, Visit&& visit) const {
         if (bounded<S>(gear.stiffness)) visit("gear.stiffness", domain<S>(gear.stiffness, now.mesh.twist));
+        if (kinematic_error::follows_load(gear.kinematic_error))
+            visit("gear.kinematic_error",
+                  Domain<S>{"load_sensitivity times error times stiffness", S(1.0) - gear.unrelieved(now.mesh), S(-unbounded),
+                            S(0.8), "1", "a smaller load_sensitivity keeps it there"});
         if (bounded<S>(gear.hysteresis)) visit("gear.hysteresis", domain<S>(gear.hysteresis, now.mesh.twist));
         if (bounded<Contact>(gear.friction_input)) visit("gear.friction_input", domain<S>(gear.friction_input, now.contacts.input));
         if (bounded<Contact>(gear.friction_mesh)) visit("gear.friction_mesh", domain<S>(gear.friction_mesh, now.contacts.mesh));
@@ -448,8 +453,9 @@ struct Drive {
             visit("gear.friction_output", domain<S>(gear.friction_output, now.contacts.output));
     }
     constexpr bool has_bounds() const {
-        return bounded<S>(gear.stiffness) || bounded<S>(gear.hysteresis) || bounded<Contact>(gear.friction_input) ||
-               bounded<Contact>(gear.friction_mesh) || bounded<Contact>(gear.friction_output);
+        return kinematic_error::follows_load(gear.kinematic_error) || bounded<S>(gear.stiffness) || bounded<S>(gear.hysteresis) ||
+               bounded<Contact>(gear.friction_input) || bounded<Contact>(gear.friction_mesh) ||
+               bounded<Contact>(gear.friction_output);
     }
 
     constexpr typename Gear::Mesh geometry(const State& x, const Continuous& y) const {

@@ -109,7 +109,7 @@ struct Gear {
     using Shafts = structure::Shafts<S>;
     using Inner = typename Structure::State;
 
-    /// Where the wave generator does not turn the spring itself: what lies between them.
+    /// Deformation of the bearing, where a structure puts bodies between wave generator and spring.
     struct Between {
         S deformation;       ///< What the error leaves of the gap, rad
         S deformation_rate;  ///< rad/s
@@ -122,7 +122,7 @@ struct Gear {
     struct Mesh {
         S error;         ///< Kinematic error e, rad
         S per_input;     ///< Deformation per angle of the wave generator: 1/i - e', rad/rad
-        S per_output;    ///< and per output angle, without its sign; not 1 where the error follows the load
+        S per_output;    ///< and per output angle, without its sign; not 1 where the error of a rigid structure follows the load
         S twist;         ///< of the spring, rad
         S twist_rate;    ///< rad/s
         S spring;        ///< Torque of the spring, its hysteresis and damping, N.m
@@ -140,17 +140,17 @@ struct Gear {
     /// All of it but the torques.
     constexpr Mesh geometry(const Inner& inner, const Shafts& at) const {
         const auto generator = structure.generator(inner, at);
-        const Engaged is = engaged(inner, at, generator);
+        const Engaged found = engaged(inner, at, generator);
         Mesh mesh{};
-        mesh.error = is.error.value;
-        mesh.per_input = is.per_output * at.inverse_ratio - is.error.slope;
-        mesh.per_output = is.per_output;
-        mesh.twist = is.deformation;
+        mesh.error = found.error.value;
+        mesh.per_input = found.per_output * at.inverse_ratio - found.error.slope;
+        mesh.per_output = found.per_output;
+        mesh.twist = found.deformation;
         if constexpr (always_rigid) {
             mesh.twist_rate = structure.deformation_rate(inner, at, mesh);
         } else {
-            mesh.apart.deformation = is.deformation;
-            mesh.apart.per_twist = is.per_twist;
+            mesh.apart.deformation = found.deformation;
+            mesh.apart.per_twist = found.per_twist;
             if (!structure.rigid()) {
                 mesh.twist = structure.spring_twist(inner, at);
                 mesh.twist_rate = structure.spring_twist_rate(inner, at);
@@ -221,6 +221,15 @@ struct Gear {
         mesh.spring = torque;
         return structure.settled(inner, at, mesh, load(mesh, turning(stiffness_factor(inner, at), twist, temperature)));
     }
+    /// What the spring must hold so that this torque [N.m] reaches the output at rest: not the same where the error follows the
+    /// load.
+    constexpr S spring_torque_for(const Mesh& mesh, const S& torque) const { return torque * unrelieved(mesh); }
+    /// How much of the twist is not what the error gives way by: 1 where the error does not follow the load.
+    constexpr S unrelieved(const Mesh& mesh) const {
+        if constexpr (!always_rigid)
+            if (!structure.rigid()) return S(1.0) + mesh.apart.per_twist;
+        return S(1.0) / mesh.per_output;
+    }
     /// Of the gear beside its spring, rad/(N.m).
     constexpr S compliance(const Shafts& at, const Mesh& mesh) const { return structure.compliance(at, mesh); }
 
@@ -251,14 +260,14 @@ private:
 
     /// The noise follows the elastic torque that there is without it, so that neither waits for the other.
     constexpr Engaged engaged(const Inner& inner, const Shafts& at, const structure::Generator<S>& generator) const {
-        Engaged is = engaged_without_noise(inner, at, generator);
+        Engaged found = engaged_without_noise(inner, at, generator);
         if (kinematic_noise.active()) {
             const kinematic_error::Error<S> noise =
-                kinematic_noise.at(generator.angle, stiffness.torque(is.twist), generator.speed);
-            is.error = {is.error.value + noise.value, is.error.slope + noise.slope};
-            is.deformation = structure.gap(inner, at) - is.error.value;
+                kinematic_noise.at(generator.angle, stiffness.torque(found.twist), generator.speed);
+            found.error = {found.error.value + noise.value, found.error.slope + noise.slope};
+            found.deformation = structure.gap(inner, at) - found.error.value;
         }
-        return is;
+        return found;
     }
     constexpr Engaged engaged_without_noise(const Inner& inner, const Shafts& at, const structure::Generator<S>& generator) const {
         const kinematic_error::Error<S> full = kinematic_error.at(generator.angle);

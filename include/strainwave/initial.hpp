@@ -83,7 +83,7 @@ private:
         const S inverse = drive.gear.kinematics.inverse_ratio();
         const auto mesh = drive.geometry(x, y);
         spring.vary(drive.gear.stiffness_factor(y.structure, drive.gear_shafts(x, y)).value);
-        move(mesh.per_input);
+        move(mesh.per_input, mesh.per_output);
         const S total_input = y.input_angle + S(2.0 * pi) * x.turns;
         const bool both = known.knows(input_angle) && known.knows(output_angle);
         const S between = both ? known[input_angle] * inverse - known[output_angle] : S(0.0);
@@ -95,11 +95,14 @@ private:
         place(input, error);
         return drive.geometry(x, y).twist;
     }
-    /// The twist of the spring where the shafts stand so far from each other [rad].
-    constexpr S twist_between(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& between) const {
-        const S left = between - mesh.error;
-        if (drive.gear.structure.rigid()) return left;
-        return spring.twist_within(left, drive.gear.compliance(drive.gear_shafts(x, x.continuous), mesh));
+    /// The twist of the spring where the shafts stand so far from each other [rad]: what the other joints take is told by the last
+    /// round, and beyond it by their mean stiffness.
+    constexpr S twist_between(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& between) {
+        if (drive.gear.structure.rigid()) return between - mesh.error;
+        const S compliance = drive.gear.compliance(drive.gear_shafts(x, x.continuous), mesh), before = mesh.twist;
+        settle_gear(mesh, before);
+        const S beside = x.continuous.transmission_error - before - compliance * spring.torque(before);
+        return spring.twist_within(between - beside, compliance);
     }
     constexpr void settle_gear(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& twist) {
         const S temperature = drive.temperatures(x.continuous, u).gear;
@@ -111,19 +114,21 @@ private:
         x.continuous.transmission_error = transmission_error;
     }
     /// Of speeds one gives the other as if the twist stayed as it is.
-    constexpr void move(const S& per_input) {
+    constexpr void move(const S& per_input, const S& per_output) {
         auto& y = x.continuous;
         y.input_speed = known.knows(input_speed)    ? known[input_speed]
-                        : known.knows(output_speed) ? known[output_speed] / per_input
+                        : known.knows(output_speed) ? known[output_speed] * per_output / per_input
                                                     : S(0.0);
-        y.output_speed = known.knows(output_speed) ? known[output_speed] : per_input * y.input_speed;
+        y.output_speed = known.knows(output_speed) ? known[output_speed] : per_input / per_output * y.input_speed;
     }
     constexpr S wanted_twist(const typename decltype(Drive{}.gear)::Mesh& mesh) {
         if (known.knows(twist)) return known[twist];
         if (!known.knows(torque) && prescribes(drive.load)) return S(0.0);
         const S transmitted = known.knows(torque) ? known[torque] : balancing_torque();
-        const S rate = mesh.per_input * x.continuous.input_speed - x.continuous.output_speed;
-        return spring.twist(drive.gear.structure.rigid() ? transmitted - drive.gear.damping * rate : transmitted);
+        const S wanted = drive.gear.spring_torque_for(mesh, transmitted);
+        if (!drive.gear.structure.rigid()) return spring.twist(wanted);
+        const S rate = mesh.per_input * x.continuous.input_speed - mesh.per_output * x.continuous.output_speed;
+        return spring.twist(wanted - drive.gear.damping * rate);
     }
     /// What the gear must transmit so that load and friction do not accelerate the output.
     constexpr S balancing_torque() {

@@ -465,11 +465,11 @@ class Scaled:
 
     .. math:: e(\\theta, T) = e_0(\\theta)\\, \\frac{e^{-\\kappa_d d}}{1 + \\kappa_T |T|}
 
-    with e_0 the law, T the elastic torque of the gear's spring, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
+    with e_0 the law, T the torque of the gear's law of stiffness at that twist, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
     depth_sensitivity. The twist is what solves delta + e(theta, T(delta)) = theta_in / i - theta_out, and both shafts feel
     the torque through how it changes with their angles: what the error does under load neither takes energy nor gives any.
     The sensitivities are the user's: no catalogue gives them. The product of load_sensitivity, error and stiffness must stay
-    well below 1. ``error`` and ``slope`` are those without load.
+    below 0.8: a run that exceeds it is refused. ``error`` and ``slope`` are those without load.
 
     >>> from strainwave.kinematic_error import Fourier, Scaled
     >>> law = Scaled(law=Fourier(order=[2], amplitude=[3e-4], phase=[0.0]), load_sensitivity=0.01)

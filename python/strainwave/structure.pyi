@@ -79,7 +79,7 @@ class Staged:
     tan(alpha_t) its kinematic error as a radial displacement of the wave generator. m_r = radial_mass and J_FS =
     flexspline_inertia are those of the flexspline's toothed ring, J_CS = circular_spline_inertia.
 
-    So reads a gear whose flexspline is fixed: its ratio is positive. Where the circular spline is fixed the ratio is
+    This is the gear with its flexspline fixed: its ratio is positive. Where the circular spline is fixed the ratio is
     negative, and the two exchange their places: T_CS holds the circular spline to the housing, and T_FS, over the twist of
     the flexspline against the output shaft, is the torque on it.
 
@@ -87,9 +87,15 @@ class Staged:
     of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
 
     Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), by which the gear gives more power than it takes
-    (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), takes the sign of the error against that of
-    its own eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
+    (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), gives the error the opposite sign of its own
+    eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
     freedom (E-A6). Its x_1 is linear in theta_WG: the equations say nothing of the cyclic deformation of the flexspline.
+
+    Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as A has it: that the held
+    ring's turn reaches the output in the ratio of the teeth, 1 percent from 1, is left out (E-A12).
+
+    With the circular spline fixed, x_1, x_2 and the forces have the sign of the output's motion, y_1 is the twist of the flexspline
+    against the output shaft times r_g, and y_2 counts against the output's sense.
 
     Output as A has it: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
     ``circular_spline_displacement`` y_2, ``bearing_force`` F_b, ``mesh_force`` F_m, ``wave_generator_torque`` T_WG,
@@ -131,7 +137,7 @@ class Staged:
 
     Source
     ------
-    document A, eq. (1), with the relations that it leaves out and its errors mended (errata E-A1 to E-A6); the circular spline fixed, varying springs and the default values are assumed
+    document A, eq. (1), with the relations that it leaves out, corrected (errata E-A1 to E-A6); the circular spline fixed, varying springs and the default values are assumed
     """
 
     def __init__(self, *, pitch_radius: float, pressure_angle: float = ..., coupling_stiffness: float, coupling_damping: float = ..., bearing_stiffness: float, bearing_damping: float = ..., mesh_stiffness: float, mesh_damping: float = ..., circular_spline_stiffness: float, circular_spline_damping: float = ..., radial_mass: float, flexspline_inertia: float, circular_spline_inertia: float, coupling_variation: strainwave.variation.Constant | strainwave.variation.Periodic = ..., bearing_variation: strainwave.variation.Constant | strainwave.variation.Periodic = ..., mesh_variation: strainwave.variation.Constant | strainwave.variation.Periodic = ..., circular_spline_variation: strainwave.variation.Constant | strainwave.variation.Periodic = ...) -> None: ...

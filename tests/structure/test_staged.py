@@ -11,6 +11,9 @@ import pytest
 import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from strainwave import _core
+from strainwave.simulation.initial import beginning_numbers
+from strainwave.simulation.state import Layout
 
 from tests.actuator_equations import IN, OUT, WG, X2, Y1, Y2, damping_matrix, masses, stiffness_matrix
 from tests.side_by_side import side_by_side
@@ -472,3 +475,51 @@ def test_a_number_of_a_stage_comes_back_from_a_log(path: str, guess: float) -> N
 def test_steps_too_coarse_for_the_bodies_within_are_refused_by_their_name() -> None:
     with pytest.raises(FloatingPointError, match="a body within its gear is as fast as a vibration of"):
         sw.simulate(DRIVE, sw.scenario.constant(0.0, 0.01), dt=4e-4)
+
+
+SCALED = sw.kinematic_error.Scaled(law=ERROR, load_sensitivity=0.1)
+known = pytest.mark.parametrize(
+    "initial",
+    [
+        {"torque": 5.0},
+        {"twist": 1e-3},
+        {"input_angle": 0.4},
+        {"input_angle": 0.4, "output_angle": 0.4 / FIXED["flexspline"].ratio - 3e-3},
+    ],
+    ids="_".join,
+)
+
+
+@orientation
+@known
+def test_no_body_within_accelerates_where_a_run_begins(fixed: str, initial: dict[str, float]) -> None:
+    """With an error that follows the load, springs that vary, and whatever is known: all that the joints hold balances."""
+    gear = everywhere(GEAR).replace(kinematics=FIXED[fixed], kinematic_error=SCALED)
+    drive = DRIVE.replace(gear=gear)
+    load = np.array([0.0, 0.0, 5.0, 0.0, 293.15, 0.0])
+    start = beginning_numbers(drive, None, initial, load)
+    layout = Layout(drive)
+    rates = dict(zip(layout.names, _core.differentiate_rates(drive, start, load)[0], strict=False))
+    inertia = {"generator": 2e-5, "radial": 0.08 * (0.025 / tan(pi / 6.0)) ** 2, "held": 5e-5, "driving": 5e-5}
+    for body, kg in inertia.items():
+        assert abs(rates[f"structure.{body}_speed"] * kg) < 1e-9, body  # N.m, of 5
+
+
+@orientation
+@pytest.mark.parametrize("structure", [STRUCTURE, sw.structure.Lumped()], ids=["staged", "lumped"])
+def test_a_known_torque_is_that_on_the_output_under_an_error_that_follows_it(fixed: str, structure: Any) -> None:
+    gear = GEAR.replace(kinematics=FIXED[fixed], kinematic_error=SCALED, structure=structure)
+    run = sw.simulate(
+        DRIVE.replace(gear=gear), sw.scenario.constant(0.0, 1e-6), 1e-6, initial={"torque": 5.0, "input_angle": 0.4}
+    )
+    assert run["torque"][0] == pytest.approx(5.0, rel=1e-10)
+
+
+@pytest.mark.parametrize("structure", [STRUCTURE, sw.structure.Lumped()], ids=["staged", "lumped"])
+def test_an_error_that_gives_way_faster_than_the_spring_is_refused(structure: Any) -> None:
+    error = sw.kinematic_error.Scaled(
+        law=sw.kinematic_error.Fourier(order=[1.0], amplitude=[1e-3], phase=[pi / 2.0]), load_sensitivity=1.0
+    )
+    drive = DRIVE.replace(gear=GEAR.replace(kinematic_error=error, structure=structure))
+    with pytest.raises(ValueError, match="load_sensitivity times error times stiffness"):
+        sw.simulate(drive, sw.scenario.sine(1.0, 20.0, 0.05), 2e-5)

@@ -27,7 +27,7 @@ struct Staged {
 
     static constexpr auto name = "staged";
     static constexpr auto source =
-        "document A, eq. (1), with the relations that it leaves out and its errors mended (errata E-A1 to E-A6); the circular "
+        "document A, eq. (1), with the relations that it leaves out, corrected (errata E-A1 to E-A6); the circular "
         "spline fixed, varying springs and the default values are assumed";
     static constexpr auto doc = R"(
         A gear whose wave generator, flexspline and circular spline move by themselves.
@@ -50,7 +50,7 @@ struct Staged {
         tan(alpha_t) its kinematic error as a radial displacement of the wave generator. m_r = radial_mass and J_FS =
         flexspline_inertia are those of the flexspline's toothed ring, J_CS = circular_spline_inertia.
 
-        So reads a gear whose flexspline is fixed: its ratio is positive. Where the circular spline is fixed the ratio is
+        This is the gear with its flexspline fixed: its ratio is positive. Where the circular spline is fixed the ratio is
         negative, and the two exchange their places: T_CS holds the circular spline to the housing, and T_FS, over the twist of
         the flexspline against the output shaft, is the torque on it.
 
@@ -58,9 +58,15 @@ struct Staged {
         of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
 
         Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), by which the gear gives more power than it takes
-        (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), takes the sign of the error against that of
-        its own eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
+        (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), gives the error the opposite sign of its own
+        eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
         freedom (E-A6). Its x_1 is linear in theta_WG: the equations say nothing of the cyclic deformation of the flexspline.
+
+        Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as A has it: that the held
+        ring's turn reaches the output in the ratio of the teeth, 1 percent from 1, is left out (E-A12).
+
+        With the circular spline fixed, x_1, x_2 and the forces have the sign of the output's motion, y_1 is the twist of the flexspline
+        against the output shaft times r_g, and y_2 counts against the output's sense.
 
         Output as A has it: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
         ``circular_spline_displacement`` y_2, ``bearing_force`` F_b, ``mesh_force`` F_m, ``wave_generator_torque`` T_WG,
@@ -152,8 +158,8 @@ struct Staged {
         }
         constexpr S most() const { return stiffness * variation.largest(); }
     };
-    /// What a joint holds where it is deformed.
-    struct Held {
+    /// A joint that is deformed, and what it holds.
+    struct Strained {
         S deformation, rate;  ///< rad, rad/s
         S elastic, torque;    ///< N.m, with damping
         S turning;            ///< with which it holds the wave generator back as its stiffness varies, N.m
@@ -185,22 +191,22 @@ struct Staged {
             return select(flexspline_held(at), inner.held_speed, inner.driving_speed - at.output_speed);
         }
         template <class Mesh>
-        constexpr S deformation_rate(const State& inner, const Shafts<S>&, const Mesh& mesh_) const {
-            return mesh_.per_input * inner.generator_speed - inner.radial_speed - mesh_.apart.per_twist * mesh_.twist_rate;
+        constexpr S deformation_rate(const State& inner, const Shafts<S>&, const Mesh& stance) const {
+            return stance.per_input * inner.generator_speed - inner.radial_speed - stance.apart.per_twist * stance.twist_rate;
         }
 
         template <class Mesh>
-        constexpr Reaction<S, State> reaction(const State& inner, const Shafts<S>& at, const Mesh& mesh_,
+        constexpr Reaction<S, State> reaction(const State& inner, const Shafts<S>& at, const Mesh& stance,
                                               const Load<S>& load) const {
             const auto held_flexspline = flexspline_held(at);
-            const Joints of = joints(inner, at, mesh_);
-            const S spring = load.spring - mesh_.apart.per_twist * of.bearing.torque;
+            const Joints of = joints(inner, at, stance);
+            const S spring = load.spring - stance.apart.per_twist * of.bearing.torque;
             const S holding = select(held_flexspline, spring, of.spline.torque);
             const S driving = select(held_flexspline, of.spline.torque, spring);
             const S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
             State rate{};
             rate.windup = at.input_speed - inner.generator_speed;
-            rate.generator_speed = (of.coupling.torque - mesh_.per_input * of.bearing.torque - turning) / load.generator_inertia;
+            rate.generator_speed = (of.coupling.torque - stance.per_input * of.bearing.torque - turning) / load.generator_inertia;
             rate.radial_lag = inner.generator_speed * at.inverse_ratio - inner.radial_speed;
             rate.radial_speed = (of.bearing.torque - of.mesh.torque) / radial_inertia;
             rate.held_angle = inner.held_speed;
@@ -211,11 +217,11 @@ struct Staged {
         }
 
         template <class Mesh>
-        constexpr Energies<S> energies(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const Load<S>& load) const {
+        constexpr Energies<S> energies(const State& inner, const Shafts<S>& at, const Mesh& stance, const Load<S>& load) const {
             const auto held_flexspline = flexspline_held(at);
-            const Joints of = joints(inner, at, mesh_);
-            const auto elastic = [](const Held& joint) { return S(0.5) * joint.elastic * joint.deformation; };
-            const auto lost = [](const Held& joint) { return (joint.torque - joint.elastic) * joint.rate; };
+            const Joints of = joints(inner, at, stance);
+            const auto elastic = [](const Strained& joint) { return S(0.5) * joint.elastic * joint.deformation; };
+            const auto lost = [](const Strained& joint) { return (joint.torque - joint.elastic) * joint.rate; };
             const S held_inertia = select(held_flexspline, flexspline_inertia, spline_inertia);
             const S driving_inertia = select(held_flexspline, spline_inertia, flexspline_inertia);
             return {elastic(of.coupling) + elastic(of.bearing) + elastic(of.mesh) + elastic(of.spline),
@@ -227,44 +233,45 @@ struct Staged {
         }
 
         template <class Mesh>
-        constexpr Output output(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const S& friction) const {
+        constexpr Output output(const State& inner, const Shafts<S>& at, const Mesh& stance, const S& friction) const {
             const auto held_flexspline = flexspline_held(at);
-            const Joints of = joints(inner, at, mesh_);
+            const Joints of = joints(inner, at, stance);
             const S input = at.input_angle.within + S(2.0 * pi) * at.input_angle.turns;
             const S generator = (input - inner.windup) * at.inverse_ratio;
             const S driving = input * at.inverse_ratio - at.transmission_error + inner.driving_lead;
             return {lever * generator,         lever * (generator - inner.radial_lag),
-                    radius * mesh_.twist,      radius * select(held_flexspline, driving, inner.held_angle),
+                    radius * stance.twist,     radius * select(held_flexspline, driving, inner.held_angle),
                     of.bearing.torque / lever, of.mesh.torque / mesh_lever,
                     of.coupling.torque,        of.spline.torque,
-                    mesh_.torque - friction};
+                    stance.torque - friction};
         }
 
         template <class Mesh>
-        constexpr Settled<S, State> settled(const State& inner, const Shafts<S>& at, const Mesh& mesh_, const Load<S>& load) const {
+        constexpr Settled<S, State> settled(const State& inner, const Shafts<S>& at, const Mesh& stance,
+                                            const Load<S>& load) const {
             const auto held_flexspline = flexspline_held(at);
             const Angle<S> angle = generator(inner, at).angle;
             const auto under = [&](const Joint<Varying>& joint, const S& torque) { return resting(joint, angle, torque); };
-            const S torque = load.spring;
-            const Held of_bearing = under(bearing, torque), of_mesh = under(mesh, torque), of_spline = under(spline, torque);
+            const S torque = load.spring / (S(1.0) + stance.apart.per_twist);
+            const Strained of_bearing = under(bearing, torque), of_mesh = under(mesh, torque), of_spline = under(spline, torque);
             const S turning = load.turning + of_bearing.turning + of_mesh.turning + of_spline.turning;
             const variation::Factor<S> factor = coupling.factor(angle);
             const S bend = S(0.5) * coupling.stiffness * factor.slope * inner.windup * inner.windup;
             State found{};
-            found.windup = (mesh_.per_input * torque + turning + bend) / (coupling.stiffness * factor.value);
+            found.windup = (stance.per_input * torque + turning + bend) / (coupling.stiffness * factor.value);
             found.generator_speed = at.input_speed;
-            found.radial_lag = mesh_.error + of_bearing.deformation;
-            found.radial_speed = mesh_.per_input * at.input_speed;
-            found.held_angle = select(held_flexspline, mesh_.twist, of_spline.deformation);
-            found.driving_lead = select(held_flexspline, of_spline.deformation, mesh_.twist);
+            found.radial_lag = stance.error + of_bearing.deformation;
+            found.radial_speed = stance.per_input * at.input_speed;
+            found.held_angle = select(held_flexspline, stance.twist, of_spline.deformation);
+            found.driving_lead = select(held_flexspline, of_spline.deformation, stance.twist);
             found.driving_speed = at.output_speed;
             return {found, found.windup * at.inverse_ratio + found.radial_lag + of_mesh.deformation + found.held_angle +
                                found.driving_lead};
         }
         template <class Mesh>
-        constexpr S compliance(const Shafts<S>& at, const Mesh& mesh_) const {
+        constexpr S compliance(const Shafts<S>& at, const Mesh& stance) const {
             return S(1.0) / bearing.stiffness + S(1.0) / mesh.stiffness + S(1.0) / spline.stiffness +
-                   abs(mesh_.per_input * at.inverse_ratio) / coupling.stiffness;
+                   abs(stance.per_input * at.inverse_ratio) / coupling.stiffness;
         }
 
         /// Of the fastest mode without damping.
@@ -280,7 +287,7 @@ struct Staged {
 
     private:
         struct Joints {
-            Held coupling, bearing, mesh, spline;
+            Strained coupling, bearing, mesh, spline;
         };
         struct Ends {
             S held, driving;
@@ -296,31 +303,33 @@ struct Staged {
             return {select(held_flexspline, of_spring, of_spline), select(held_flexspline, of_spline, of_spring)};
         }
 
-        static constexpr Held held(const Joint<Varying>& joint, const Angle<S>& angle, const S& deformation, const S& rate) {
+        static constexpr Strained strained(const Joint<Varying>& joint, const Angle<S>& angle, const S& deformation,
+                                           const S& rate) {
             const variation::Factor<S> factor = joint.factor(angle);
             const S stiff = joint.stiffness * deformation, elastic = factor.value * stiff;
             return {deformation, rate, elastic, elastic + joint.damping * rate, S(0.5) * factor.slope * stiff * deformation};
         }
-        static constexpr Held resting(const Joint<Varying>& joint, const Angle<S>& angle, const S& torque) {
+        static constexpr Strained resting(const Joint<Varying>& joint, const Angle<S>& angle, const S& torque) {
             const S deformation = torque / (joint.stiffness * joint.factor(angle).value);
-            return held(joint, angle, deformation, S(0.0));
+            return strained(joint, angle, deformation, S(0.0));
         }
 
         template <class Mesh>
-        constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& mesh_) const {
+        constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance) const {
             const auto held_flexspline = flexspline_held(at);
             const Angle<S> angle = generator(inner, at).angle;
             const S in_mesh =
                 at.transmission_error - inner.windup * at.inverse_ratio - inner.radial_lag - inner.held_angle - inner.driving_lead;
             const S on_spline = select(held_flexspline, inner.driving_lead, inner.held_angle);
             const S on_spline_rate = select(held_flexspline, inner.driving_speed - at.output_speed, inner.held_speed);
-            return {held(coupling, angle, inner.windup, at.input_speed - inner.generator_speed),
-                    held(bearing, angle, mesh_.apart.deformation, mesh_.apart.deformation_rate),
-                    held(mesh, angle, in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
-                    held(spline, angle, on_spline, on_spline_rate)};
+            return {strained(coupling, angle, inner.windup, at.input_speed - inner.generator_speed),
+                    strained(bearing, angle, stance.apart.deformation, stance.apart.deformation_rate),
+                    strained(mesh, angle, in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
+                    strained(spline, angle, on_spline, on_spline_rate)};
         }
 
-        /// Of what the joints do to the rates of the bodies, by powers of it; the iteration stops short of what little is left.
+        /// Largest eigenvalue of the inverse of the inertias times the joints, by power iteration. Rayleigh's quotient comes from
+        /// below and is close enough for a limit on steps.
         constexpr S largest_eigenvalue(const Bodies<S>& bodies, const Line& line) const {
             constexpr int bodies_count = 6, rounds = 100;
             const auto of_flexspline = bodies.inverse_ratio > S(0.0);

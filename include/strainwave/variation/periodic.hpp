@@ -24,7 +24,7 @@ struct Periodic {
         with theta the angle of the wave generator, a_h = amplitude, B_h = order, phi_h = phase, up to 8 harmonics. A spring that
         holds the energy V(x, theta) turns the wave generator with the torque -dV/dtheta: without it energy would come from
         nowhere, and with it a stiffness that varies shows in the motor current even where nothing moves the output. The
-        amplitudes must add up to less than 1, so that the spring stays one.
+        amplitudes must add up to less than 1, so that the stiffness stays positive.
 
         >>> from strainwave.variation import Periodic
         >>> Periodic(order=[2], amplitude=[0.05], phase=[0.0]).amplitude

@@ -3,7 +3,7 @@
 
 /// How the stiffness of a spring in a gear changes as its wave generator turns. Such a law has
 ///
-///     active()         whether it changes at all: else nobody works it out
+///     active()         whether it changes at all; if not, it is not evaluated
 ///     at(angle)        -> Factor
 ///     largest()        the most that the factor becomes
 namespace strainwave::variation {
