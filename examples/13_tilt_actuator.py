@@ -4,7 +4,7 @@ The actuator of document A moves its nacelle by 90 degrees in 5 s, against the a
 axis of the circular spline and leans by 0.05 degrees. Look at the current: its ripple comes twice per turn of the generator, at
 10.1 Hz, and near the end of the stroke it is about what the load makes of the error. Document A finds torques significantly
 greater than nominal: here the peak is 1 % greater, and 3 % with twice the misalignment.
-The gear is lumped, which is faster: "tilt-actuator" has its stages, and shows the same with dt=1.5e-5.
+The gear is lumped, which is faster: "tilt-actuator" has its stages, and shows the same with dt=3.5e-5.
 """
 
 import numpy as np
@@ -26,7 +26,8 @@ turn = 2.0 * np.pi / (ratio * np.radians(18.0))  # s, of the wave generator
 
 figure = Figure(figsize=(8.0, 8.5), layout="constrained")
 current, torque, spectra = figure.subplots(3, 1)
-straight, found = runs["aligned"], {}
+straight = runs["aligned"]
+found: dict[str, dict[str, float]] = {}
 for name, run in reversed(runs.items()):
     current.plot(run.time, run["current"], linewidth=0.9, label=name)
     last = run.between(5.0 - 5.0 * turn, 5.0)
