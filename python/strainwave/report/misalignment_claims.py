@@ -268,8 +268,8 @@ def _greater(found: MisalignmentStudy) -> Claim:
         "“oscillating torques which are instantaneously significantly greater than the nominal ones”",
         IN_PART,
         f"A does not say how large its misalignment is. Here the peak is {percent(torque[LEVEL] - 1.0)} above the nominal one "
-        f"in torque and {percent(current[LEVEL] - 1.0)} in current at e₁ = {microns(sizes[LEVEL])}, {percent(torque[-1] - 1.0)} "
-        f"and {percent(current[-1] - 1.0)} at {microns(sizes[-1])}. At a single moment the torque is up to "
-        f"{percent(largest_ratio(found))} off with a tilt of {number(degrees(study.SHOWN_TILT), 2)}°. In half the time the "
-        f"swing is {number(quick, 2)} times as large.",
+        f"in torque and {percent(current[LEVEL] - 1.0)} in current at e₁ = {microns(sizes[LEVEL])}, "
+        f"{percent(torque[-1] - 1.0)} and {percent(current[-1] - 1.0)} at {microns(sizes[-1])}. At a single moment the torque "
+        f"is up to {percent(largest_ratio(found))} off with a tilt of {number(degrees(study.SHOWN_TILT), 2)}°. In half the "
+        f"time the swing is {number(quick, 2)} times as large.",
     )
