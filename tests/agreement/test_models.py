@@ -140,6 +140,8 @@ def test_a_gear_with_laws_drawn_at_every_place_runs_one_trajectory_in_every_scal
 def whole(gear: sw.Gear, parts: dict[str, Any]) -> Drive:
     """A drive of these parts, if they suit each other."""
     assume(getattr(parts["load"], "inertia", 1.0) > 1e-3)
+    # An output that is held begins under a load, and an error that gives way faster than the spring has no place to begin at.
+    assume(not (isinstance(parts["load"], sw.loads.Prescribed) and isinstance(gear.kinematic_error, sw.kinematic_error.Scaled)))
     try:
         return Drive(gear=gear.replace(input_inertia=2e-5 + gear.input_inertia), **parts)
     except ValueError:  # a voltage for a motor that takes none

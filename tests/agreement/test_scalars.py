@@ -135,6 +135,14 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
     "piecewise": {"stiffness": sw.stiffness.Piecewise(k1=8e3, k2=2e3, knee=5e-5)},
     "three_segment": {"stiffness": sw.stiffness.ThreeSegment(k1=8e3, k2=1e4, k3=1.3e4, t1=0.4, t2=0.9)},
     "multi_compliance": {"stiffness": made(sw.stiffness.MultiCompliance, reduction=100.0)},
+    "scaled": {
+        "kinematic_error": sw.kinematic_error.Scaled(
+            law=sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 2e-4], phase=[0.3, -1.0]),
+            load_sensitivity=0.02,
+            insertion_depth=1e-3,
+            depth_sensitivity=100.0,
+        )
+    },
     "backlash": {"stiffness": sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=5e-5)},
     "frictional_windup": {
         "hysteresis": sw.hysteresis.FrictionalWindup(springs=made(sw.stiffness.MultiCompliance, reduction=100.0), friction=0.3),

@@ -124,7 +124,7 @@ class GearSet:
         """Tables that a file of the set does without, by path: parts that do nothing, of whose numbers no source is given.
 
         >>> sorted(GearSet.read("hfuc-25-100").left_out)
-        ['gear.friction_mesh', 'gear.kinematic_noise', 'gear.softening']
+        ['gear.friction_mesh', 'gear.kinematic_noise', 'gear.softening', 'gear.stiffness_variation', 'gear.structure']
         """
         return gear_file.left_out(self)
 

@@ -57,16 +57,23 @@ def contradicted(start: GearSet) -> sw.Twin:
     return sw.twin(replace(start, sources=sources), friction=friction_table(), sources={"friction": "table of today"})
 
 
+VARYING = ("coupling_variation", "bearing_variation", "mesh_variation", "circular_spline_variation")
+
+
 @pytest.fixture(scope="module")
 def complete(start: GearSet) -> sw.Twin:
     """A gear with every kind of part, models inside models too."""
     losses = sw.friction.LoadDependent(driving_forward=0.1, driving_reverse=0.1)
+    varying = sw.variation.Periodic(order=[2.0], amplitude=[0.05], phase=[0.0])
     gear = start.gear.replace(
         kinematic_noise=sw.kinematic_error.Stochastic(amplitude=1e-5, seed=7),
         hysteresis=sw.hysteresis.Preisach(density=sw.hysteresis.GridDensity(limit=1e-3, weight=[1.0, 2.0, 1.0])),
         friction_mesh=sw.friction.Thermal(law=sw.friction.Cyclic(law=losses, order=[2.0], amplitude=[0.1], phase=[0.0])),
         friction_output=made(sw.friction.PositionDependent, cosine=[1e-3, 2e-3]),
         softening=sw.softening.ThermalSoftening(stiffness_fall=3e-4),
+        stiffness_variation=varying,
+        structure=made(sw.structure.Staged, **dict.fromkeys(VARYING, varying)),
+        input_inertia=1e-5,
     )
     return sw.twin(GearSet.of(gear, name="complete", source="assumed"), friction=friction_table())
 
