@@ -131,8 +131,17 @@ def test_a_drive_with_any_other_part_runs_one_trajectory_in_every_scalar(
     agree(base.replace(**{part: sw.Sensors(output_angle=law, input_speed=law) if part == "sensors" else law}), seed)
 
 
+def of_one_spring(gear: sw.Gear) -> sw.Gear:
+    """Random stages ask for steps of nanoseconds, and random errors under load may have no start: tests/structure has these."""
+    error = getattr(gear.kinematic_error, "law", gear.kinematic_error)
+    return gear.replace(structure=sw.structure.Lumped(), kinematic_error=error)
+
+
+rigid_gears = reduced_gears.map(of_one_spring)
+
+
 @settings(max_examples=50)
-@given(reduced_gears, seeds)
+@given(rigid_gears, seeds)
 def test_a_gear_with_laws_drawn_at_every_place_runs_one_trajectory_in_every_scalar(gear: sw.Gear, seed: int) -> None:
     agree(DRIVE.replace(gear=gear), seed)
 
@@ -140,8 +149,6 @@ def test_a_gear_with_laws_drawn_at_every_place_runs_one_trajectory_in_every_scal
 def whole(gear: sw.Gear, parts: dict[str, Any]) -> Drive:
     """A drive of these parts, if they suit each other."""
     assume(getattr(parts["load"], "inertia", 1.0) > 1e-3)
-    # An output that is held begins under a load, and an error that gives way faster than the spring has no place to begin at.
-    assume(not (isinstance(parts["load"], sw.loads.Prescribed) and isinstance(gear.kinematic_error, sw.kinematic_error.Scaled)))
     try:
         return Drive(gear=gear.replace(input_inertia=2e-5 + gear.input_inertia), **parts)
     except ValueError:  # a voltage for a motor that takes none
@@ -152,7 +159,7 @@ other_parts = st.fixed_dictionaries({part: models(family) for part, family in OT
 
 
 @settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
-@given(reduced_gears, other_parts, built(sw.Sensors), seeds)
+@given(rigid_gears, other_parts, built(sw.Sensors), seeds)
 def test_a_drive_with_parts_drawn_from_every_list_runs_one_trajectory_in_every_scalar(
     gear: sw.Gear, parts: dict[str, Any], sensors: sw.Sensors, seed: int
 ) -> None:
