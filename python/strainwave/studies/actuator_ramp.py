@@ -195,8 +195,7 @@ def _control_path(drive: Drive, name: str) -> str:
         if not inner:
             raise ValueError(
                 f"the controller {quoted(control.name)} of the drive has no {name}, but {listed(known)}; the study needs a "
-                "position "
-                "loop around a speed loop, as cascade and position_speed are"
+                "position loop around a speed loop, as cascade and position_speed are"
             )
         place, control = f"{place}.{inner[0].name}", getattr(control, inner[0].name)
     return f"{place}.{name}"
