@@ -64,12 +64,14 @@ Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval
 }
 
 double natural_frequency(const Drive& drive, double twist, double temperature) {
-    return drive.compile().natural_frequency(twist, temperature);
+    return own_motion::natural_frequency<double>(drive.compile(), twist, temperature);
 }
 
-double max_rate(const Drive& drive, double twist, double temperature) { return drive.compile().max_rate(twist, temperature); }
+double max_rate(const Drive& drive, double twist, double temperature) {
+    return own_motion::max_rate<double>(drive.compile(), twist, temperature);
+}
 
-double bristle_frequency(const Drive& drive) { return drive.compile().bristle_frequency(); }
+double bristle_frequency(const Drive& drive) { return own_motion::bristle_frequency<double>(drive.compile()); }
 
 Drive::Measurement measure(const Drive& drive, const Drive::State& x, const Input<double>& u) {
     const auto compiled = drive.compile();

@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/drive/own_motion.hpp>
 #include <strainwave/initial.hpp>
 #include <strainwave/integrate.hpp>
 #include <strainwave/scalar/dual.hpp>
@@ -263,7 +264,8 @@ Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const InputSched
                   const Pause& pause) {
     const CompiledDrive<S> drive = given.compile();
     const Input<S> at_start = interval<S>(schedule.inputs).start;
-    const S at_rest = drive.max_rate(S(0.0), at_start.temperature), on_bristles = drive.bristle_frequency();
+    const S at_rest = own_motion::max_rate<S>(drive, S(0.0), at_start.temperature),
+            on_bristles = own_motion::bristle_frequency<S>(drive);
     const auto too_fast = at_rest > S(max_rate);
     if (all(too_fast)) return {S(0.0), at_rest, on_bristles, S(0.0)};
     S twist{0.0}, sound{1.0};
@@ -275,8 +277,8 @@ Tally<S> run_from(const AnyDrive<S>& given, const Start& start, const InputSched
     const auto from = start(drive, at_start);
     note(shown<S>(drive, begun(drive, from, at_start, S(missed(schedule.first_step()))), at_start));
     run<S>(drive, from, schedule, note, pause);
-    return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, drive.max_rate(twist, at_start.temperature)), on_bristles,
-            sound};
+    return {select(too_fast, S(0.0), twist), select(too_fast, at_rest, own_motion::max_rate<S>(drive, twist, at_start.temperature)),
+            on_bristles, sound};
 }
 
 }  // namespace strainwave::host

@@ -57,8 +57,8 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
         if (has_bounds) check_bounds<double>(drive, start, begin);
         const auto within = [&](double done, double to, const Evaluation& end, const auto& standing_at) {
             if (taken == most)
-                throw StepsSpent{begin + done * dt, drive.natural_frequency(0.0, u.at(done, dt).temperature),
-                                 drive.bristle_frequency()};
+                throw StepsSpent{begin + done * dt, own_motion::natural_frequency<double>(drive, 0.0, u.at(done, dt).temperature),
+                                 own_motion::bristle_frequency<double>(drive)};
             pauses(taken++, i);
             if (has_bounds) check_bounds<double>(drive, end, begin + to * dt);
             const double until = to < 1.0 ? begin + to * dt : ends.at[i + 1];

@@ -330,71 +330,6 @@ struct Drive {
         return x;
     }
 
-    /// The fastest angular frequency [rad/s] at which gear and load vibrate, each as stiff as it becomes, the gear at twists up to
-    /// `twist` [rad] and as warm as it begins in a run of `temperature` [K].
-    constexpr S natural_frequency(const S& twist, const S& temperature) const {
-        const S stiffness = steepest(twist, temperature);
-        return gear.structure.rigid() ? of_two_masses(stiffness) : gear.structure.natural_frequency(bodies(stiffness));
-    }
-
-    /// How fast speeds decay at most [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
-    /// back-EMF and control. The larger eigenvalue of what two speeds do to their rates.
-    constexpr S damping() const {
-        State x = rest();
-        x.input_slip_direction = x.output_slip_direction = S(1.0);
-        const auto rate = [&](double input_speed, double output_speed) {
-            Continuous y = x.continuous;
-            y.input_speed = S(input_speed);
-            y.output_speed = S(output_speed);
-            return derivatives(x, y, Input{}).rate;
-        };
-        const Continuous slow = rate(1.0, 1.0), by_input = rate(2.0, 1.0), by_output = rate(1.0, 2.0);
-        const S input = slow.input_speed - by_input.input_speed, output = slow.output_speed - by_output.output_speed;
-        const S across = (slow.input_speed - by_output.input_speed) * (slow.output_speed - by_input.output_speed);
-        const S mean = S(0.5) * (input + output), product = input * output - across, square = mean * mean - product;
-        return select(square < S(0.0), sqrt(max(product, S(0.0))), max(mean + sqrt(max(square, S(0.0))), S(0.0)));
-    }
-
-    /// How fast the controller lets the current decay [1/s], beyond what the winding does by itself, which steps take exactly.
-    constexpr S current_damping() const {
-        if (!motor::has_current<S>(motor)) return S(0.0);
-        const State x = rest();
-        const auto rate = [&](const S& current) {
-            Continuous y = x.continuous;
-            auto numbers = flattened<S>(y.motor);
-            numbers[0] = numbers[0] + current;
-            y.motor = refilled(y.motor, numbers);
-            return flattened<S>(derivatives(x, y, Input{}).rate.motor)[0];
-        };
-        const S little{1e-3};  // A, so that no limit hides it
-        const S decay = (rate(S(0.0)) - rate(little)) / little;
-        return max(decay - flattened<S>(motor.relaxation_rate())[0], S(0.0));
-    }
-
-    /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: the vibration of gear and load at twists up to
-    /// `twist` [rad] in a run that begins at `temperature` [K], the decay of speeds and of a controlled current, sensors, what
-    /// the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times its length, of a
-    /// vibration 2.83 times, and 2.5 leaves room. For bodies within the gear stability is enough: a step that is stable damps a
-    /// mode that it does not resolve.
-    constexpr S max_rate(const S& twist, const S& temperature) const {
-        const S inner = max(max(sensors.fastest(), strainwave::fastest<S>(control)), strainwave::fastest<S>(thermal));
-        const S stiffness = steepest(twist, temperature), decay = max(damping(), current_damping());
-        if (gear.structure.rigid()) return max(max(of_two_masses(stiffness), decay / S(2.5)), inner);
-        const State x = rest();
-        const S softer = S(1.0) + stiffness * gear.compliance(gear_shafts(x, x.continuous), geometry(x, x.continuous));
-        const auto within = bodies(stiffness);
-        const S of_bodies = max(gear.structure.natural_frequency(within), gear.structure.decay(within));
-        return max(max(of_two_masses(stiffness / softer), max(decay, of_bodies) / S(2.5)), inner);
-    }
-
-    /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
-    constexpr S bristle_frequency() const {
-        const S inverse = gear.kinematics.inverse_ratio();
-        const S input = friction::presliding_stiffness<S>(gear.friction_input) +
-                        friction::presliding_stiffness<S>(gear.friction_mesh) * inverse * inverse;
-        return sqrt(max(input / input_inertia(), friction::presliding_stiffness<S>(gear.friction_output) / output_inertia()));
-    }
-
     // Events: a shaft stops, or breaks away.
 
     constexpr bool has_events() const { return input_sticks() || output_sticks(); }
@@ -562,22 +497,6 @@ private:
             return strainwave::braking<S>(load, u.load);
         else
             return {};
-    }
-
-    constexpr S steepest(const S& twist, const S& temperature) const {
-        return gear.steepest(twist, thermal.at(strainwave::initial_state(thermal), temperature).gear);
-    }
-    /// The faster angular frequency [rad/s] of two masses, one spring between them and one behind the output: of gear and load.
-    constexpr S of_two_masses(const S& stiffness) const {
-        const S inverse = gear.kinematics.inverse_ratio();
-        const S by_input = inverse * inverse / (inertia_of<S>(motor) + gear.input_inertia);
-        const S of_gear = stiffness * (S(1.0) / output_inertia() + by_input), of_load = load_stiffness<S>(load) / output_inertia();
-        const S mean = S(0.5) * (of_gear + of_load), share = stiffness * by_input / max(mean, S(smallest));
-        return sqrt(mean * (S(1.0) + sqrt(max(S(1.0) - share * (of_load / max(mean, S(smallest))), S(0.0)))));
-    }
-    constexpr structure::Bodies<S> bodies(const S& stiffness) const {
-        return {input_inertia(), gear.input_inertia, output_inertia(),       gear.kinematics.inverse_ratio(),
-                stiffness,       gear.damping,       load_stiffness<S>(load)};
     }
 
     constexpr Shaft input_shaft(const State& x, const Derivatives& now) const {

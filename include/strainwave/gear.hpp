@@ -145,18 +145,12 @@ struct Gear {
         mesh.error = found.error.value;
         mesh.per_input = found.per_output * at.inverse_ratio - found.error.slope;
         mesh.per_output = found.per_output;
-        mesh.twist = found.deformation;
-        if constexpr (always_rigid) {
-            mesh.twist_rate = structure.deformation_rate(inner, at, mesh);
-        } else {
+        mesh.twist = structure.spring_twist(inner, at, found.deformation);
+        mesh.twist_rate = structure.spring_twist_rate(inner, at, mesh);
+        if constexpr (!always_rigid) {
             mesh.apart.deformation = found.deformation;
             mesh.apart.per_twist = found.per_twist;
-            if (!structure.rigid()) {
-                mesh.twist = structure.spring_twist(inner, at);
-                mesh.twist_rate = structure.spring_twist_rate(inner, at);
-            }
-            mesh.apart.deformation_rate = structure.deformation_rate(inner, at, mesh);
-            if (structure.rigid()) mesh.twist_rate = mesh.apart.deformation_rate;
+            mesh.apart.deformation_rate = structure.deformation_rate(inner, mesh);
         }
         return mesh;
     }
@@ -272,9 +266,8 @@ private:
     constexpr Engaged engaged_without_noise(const Inner& inner, const Shafts& at, const structure::Generator<S>& generator) const {
         const kinematic_error::Error<S> full = kinematic_error.at(generator.angle);
         const S gap = structure.gap(inner, at), left = gap - full.value;
-        if (!kinematic_error::follows_load(kinematic_error))
-            return {full, left, structure.rigid() ? left : structure.spring_twist(inner, at)};
-        const S twist = structure.rigid() ? relieved_twist(full.value, gap) : structure.spring_twist(inner, at);
+        if (!kinematic_error::follows_load(kinematic_error)) return {full, left, structure.spring_twist(inner, at, left)};
+        const S twist = structure.spring_twist(inner, at, structure.rigid() ? relieved_twist(full.value, gap) : left);
         const kinematic_error::Relief<S> relief = kinematic_error::relief(kinematic_error, S(stiffness.torque(twist)));
         const S error = relief.factor * full.value, slope = relief.factor * full.slope;
         const S per_twist = full.value * relief.slope * stiffness.tangent(twist);

@@ -30,11 +30,14 @@ struct Lumped {
     constexpr Generator<S> generator(const State&, const Shafts<S>& at) const { return {at.input_angle, at.input_speed}; }
     constexpr S generator_acceleration(const State&, const S& input_acceleration) const { return input_acceleration; }
     constexpr S gap(const State&, const Shafts<S>& at) const { return at.transmission_error; }
-    constexpr S spring_twist(const State&, const Shafts<S>&) const { return S(0.0); }
-    constexpr S spring_twist_rate(const State&, const Shafts<S>&) const { return S(0.0); }
+    constexpr S spring_twist(const State&, const Shafts<S>&, const S& deformation) const { return deformation; }
     template <class Mesh>
-    constexpr S deformation_rate(const State&, const Shafts<S>& at, const Mesh& mesh) const {
+    constexpr S spring_twist_rate(const State&, const Shafts<S>& at, const Mesh& mesh) const {
         return mesh.per_input * at.input_speed - mesh.per_output * at.output_speed;
+    }
+    template <class Mesh>
+    constexpr S deformation_rate(const State&, const Mesh& mesh) const {
+        return mesh.twist_rate;
     }
     template <class Mesh>
     constexpr Reaction<S, State> reaction(const State&, const Shafts<S>&, const Mesh& mesh, const Load<S>& load) const {

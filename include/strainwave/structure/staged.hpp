@@ -184,25 +184,24 @@ struct Staged {
         }
         constexpr S generator_acceleration(const State& rate, const S&) const { return rate.generator_speed; }
         constexpr S gap(const State& inner, const Shafts<S>&) const { return inner.radial_lag; }
-        constexpr S spring_twist(const State& inner, const Shafts<S>& at) const {
+        constexpr S spring_twist(const State& inner, const Shafts<S>& at, const S&) const {
             return select(flexspline_held(at), inner.held_angle, inner.driving_lead);
         }
-        constexpr S spring_twist_rate(const State& inner, const Shafts<S>& at) const {
+        template <class Mesh>
+        constexpr S spring_twist_rate(const State& inner, const Shafts<S>& at, const Mesh&) const {
             return select(flexspline_held(at), inner.held_speed, inner.driving_speed - at.output_speed);
         }
         template <class Mesh>
-        constexpr S deformation_rate(const State& inner, const Shafts<S>&, const Mesh& stance) const {
+        constexpr S deformation_rate(const State& inner, const Mesh& stance) const {
             return stance.per_input * inner.generator_speed - inner.radial_speed - stance.apart.per_twist * stance.twist_rate;
         }
 
         template <class Mesh>
         constexpr Reaction<S, State> reaction(const State& inner, const Shafts<S>& at, const Mesh& stance,
                                               const Load<S>& load) const {
-            const auto held_flexspline = flexspline_held(at);
             const Joints of = joints(inner, at, stance);
-            const S spring = load.spring - stance.apart.per_twist * of.bearing.torque;
-            const S holding = select(held_flexspline, spring, of.spline.torque);
-            const S driving = select(held_flexspline, of.spline.torque, spring);
+            const Ends torque =
+                at_ends(at.inverse_ratio, load.spring - stance.apart.per_twist * of.bearing.torque, of.spline.torque);
             const S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
             State rate{};
             rate.windup = at.input_speed - inner.generator_speed;
@@ -210,25 +209,24 @@ struct Staged {
             rate.radial_lag = inner.generator_speed * at.inverse_ratio - inner.radial_speed;
             rate.radial_speed = (of.bearing.torque - of.mesh.torque) / radial_inertia;
             rate.held_angle = inner.held_speed;
-            rate.held_speed = (of.mesh.torque - holding) / select(held_flexspline, flexspline_inertia, spline_inertia);
+            const Ends inertia = at_ends(at.inverse_ratio, flexspline_inertia, spline_inertia);
+            rate.held_speed = (of.mesh.torque - torque.held) / inertia.held;
             rate.driving_lead = inner.driving_speed - at.output_speed;
-            rate.driving_speed = (of.mesh.torque - driving) / select(held_flexspline, spline_inertia, flexspline_inertia);
-            return {driving, of.coupling.torque, rate};
+            rate.driving_speed = (of.mesh.torque - torque.driving) / inertia.driving;
+            return {torque.driving, of.coupling.torque, rate};
         }
 
         template <class Mesh>
         constexpr Energies<S> energies(const State& inner, const Shafts<S>& at, const Mesh& stance, const Load<S>& load) const {
-            const auto held_flexspline = flexspline_held(at);
             const Joints of = joints(inner, at, stance);
             const auto elastic = [](const Strained& joint) { return S(0.5) * joint.elastic * joint.deformation; };
             const auto lost = [](const Strained& joint) { return (joint.torque - joint.elastic) * joint.rate; };
-            const S held_inertia = select(held_flexspline, flexspline_inertia, spline_inertia);
-            const S driving_inertia = select(held_flexspline, spline_inertia, flexspline_inertia);
+            const Ends inertia = at_ends(at.inverse_ratio, flexspline_inertia, spline_inertia);
             return {elastic(of.coupling) + elastic(of.bearing) + elastic(of.mesh) + elastic(of.spline),
                     S(0.5) * (load.generator_inertia * inner.generator_speed * inner.generator_speed +
                               radial_inertia * inner.radial_speed * inner.radial_speed +
-                              held_inertia * inner.held_speed * inner.held_speed +
-                              driving_inertia * inner.driving_speed * inner.driving_speed),
+                              inertia.held * inner.held_speed * inner.held_speed +
+                              inertia.driving * inner.driving_speed * inner.driving_speed),
                     lost(of.coupling) + lost(of.bearing) + lost(of.mesh) + lost(of.spline), of.bearing.elastic};
         }
 
@@ -251,9 +249,9 @@ struct Staged {
                                             const Load<S>& load) const {
             const auto held_flexspline = flexspline_held(at);
             const Angle<S> angle = generator(inner, at).angle;
-            const auto under = [&](const Joint<Varying>& joint, const S& torque) { return resting(joint, angle, torque); };
             const S torque = load.spring / (S(1.0) + stance.apart.per_twist);
-            const Strained of_bearing = under(bearing, torque), of_mesh = under(mesh, torque), of_spline = under(spline, torque);
+            const Strained of_bearing = resting(bearing, angle, torque), of_mesh = resting(mesh, angle, torque),
+                           of_spline = resting(spline, angle, torque);
             const S turning = load.turning + of_bearing.turning + of_mesh.turning + of_spline.turning;
             const variation::Factor<S> factor = coupling.factor(angle);
             const S bend = S(0.5) * coupling.stiffness * factor.slope * inner.windup * inner.windup;
@@ -276,12 +274,12 @@ struct Staged {
 
         /// Of the fastest mode without damping.
         constexpr S natural_frequency(const Bodies<S>& bodies) const {
-            const Ends ends = at_ends(bodies, bodies.stiffness, spline.most());
+            const Ends ends = at_ends(bodies.inverse_ratio, bodies.stiffness, spline.most());
             return sqrt(largest_eigenvalue(
                 bodies, {coupling.most(), bearing.most(), mesh.most(), ends.held, ends.driving, bodies.load_stiffness}));
         }
         constexpr S decay(const Bodies<S>& bodies) const {
-            const Ends ends = at_ends(bodies, bodies.damping, spline.damping);
+            const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
             return largest_eigenvalue(bodies, {coupling.damping, bearing.damping, mesh.damping, ends.held, ends.driving, S(0.0)});
         }
 
@@ -298,9 +296,10 @@ struct Staged {
         };
 
         static constexpr auto flexspline_held(const Shafts<S>& at) { return at.inverse_ratio > S(0.0); }
-        static constexpr Ends at_ends(const Bodies<S>& bodies, const S& of_spring, const S& of_spline) {
-            const auto held_flexspline = bodies.inverse_ratio > S(0.0);
-            return {select(held_flexspline, of_spring, of_spline), select(held_flexspline, of_spline, of_spring)};
+        /// What belongs to the flexspline, and what to the circular spline, by which of them is held.
+        static constexpr Ends at_ends(const S& inverse_ratio, const S& of_flexspline, const S& of_spline) {
+            const auto held_flexspline = inverse_ratio > S(0.0);
+            return {select(held_flexspline, of_flexspline, of_spline), select(held_flexspline, of_spline, of_flexspline)};
         }
 
         static constexpr Strained strained(const Joint<Varying>& joint, const Angle<S>& angle, const S& deformation,
@@ -332,11 +331,9 @@ struct Staged {
         /// below and is close enough for a limit on steps.
         constexpr S largest_eigenvalue(const Bodies<S>& bodies, const Line& line) const {
             constexpr int bodies_count = 6, rounds = 100;
-            const auto of_flexspline = bodies.inverse_ratio > S(0.0);
-            const Array<S, bodies_count> inertia{{bodies.input_inertia, bodies.generator_inertia, radial_inertia,
-                                                  select(of_flexspline, flexspline_inertia, spline_inertia),
-                                                  select(of_flexspline, spline_inertia, flexspline_inertia),
-                                                  bodies.output_inertia}};
+            const Ends ring = at_ends(bodies.inverse_ratio, flexspline_inertia, spline_inertia);
+            const Array<S, bodies_count> inertia{
+                {bodies.input_inertia, bodies.generator_inertia, radial_inertia, ring.held, ring.driving, bodies.output_inertia}};
             Array<S, bodies_count> x{};
             for (int i = 0; i < bodies_count; ++i) x[i] = S(1.0 + 0.1 * i) * S(i % 2 == 0 ? 1.0 : -1.0) / sqrt(inertia[i]);
             S eigenvalue{0.0};

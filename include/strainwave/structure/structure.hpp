@@ -8,8 +8,9 @@
 ///     generator(inner, shafts)               -> Generator
 ///     generator_acceleration(rate, input)    rad/s2, by the rate of its state and the acceleration of the input
 ///     gap(inner, shafts)                     rad: what deforms, before the kinematic error is taken from it
-///     spring_twist, spring_twist_rate(inner, shafts)  of the spring, where it is not what is left of the gap
-///     deformation_rate(inner, shafts, mesh)  rad/s, of what is left of the gap
+///     spring_twist(inner, shafts, deformation)     rad: that deformation, or a state of its own
+///     spring_twist_rate(inner, shafts, mesh)       rad/s
+///     deformation_rate(inner, mesh)          rad/s, of what the error leaves of the gap
 ///     reaction(inner, shafts, mesh, load)    -> Reaction
 ///     energies(inner, shafts, mesh, load)    -> Energies
 ///     output(inner, shafts, mesh, friction)  -> Output, with the friction at the output [N.m]

@@ -1,0 +1,114 @@
+#pragma once
+#include <strainwave/control/law.hpp>
+#include <strainwave/fastest.hpp>
+#include <strainwave/friction/contact.hpp>
+#include <strainwave/load/load.hpp>
+#include <strainwave/motor/rotor.hpp>
+#include <strainwave/structure/structure.hpp>
+
+/// How fast a drive moves by itself: what steps of a fixed length must follow. The gear is as stiff as it becomes at twists up to
+/// `twist` [rad], and as warm as it begins in a run of `temperature` [K].
+namespace strainwave::own_motion {
+
+namespace detail {
+
+template <class S, class Drive>
+constexpr S steepest(const Drive& drive, const S& twist, const S& temperature) {
+    return drive.gear.steepest(twist, drive.thermal.at(strainwave::initial_state(drive.thermal), temperature).gear);
+}
+
+/// The faster angular frequency [rad/s] of two masses, one spring between them and one behind the output: of gear and load.
+template <class S, class Drive>
+constexpr S of_two_masses(const Drive& drive, const S& stiffness) {
+    const S inverse = drive.gear.kinematics.inverse_ratio();
+    const S by_input = inverse * inverse / (inertia_of<S>(drive.motor) + drive.gear.input_inertia);
+    const S of_gear = stiffness * (S(1.0) / drive.output_inertia() + by_input);
+    const S of_load = load_stiffness<S>(drive.load) / drive.output_inertia();
+    const S mean = S(0.5) * (of_gear + of_load), share = stiffness * by_input / max(mean, S(smallest));
+    return sqrt(mean * (S(1.0) + sqrt(max(S(1.0) - share * (of_load / max(mean, S(smallest))), S(0.0)))));
+}
+
+template <class S, class Drive>
+constexpr structure::Bodies<S> bodies(const Drive& drive, const S& stiffness) {
+    const auto& gear = drive.gear;
+    return {drive.input_inertia(), gear.input_inertia,           drive.output_inertia(), gear.kinematics.inverse_ratio(), stiffness,
+            gear.damping,          load_stiffness<S>(drive.load)};
+}
+
+/// How fast speeds decay at most [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
+/// back-EMF and control. The larger eigenvalue of what two speeds do to their rates.
+template <class S, class Drive>
+constexpr S damping(const Drive& drive) {
+    auto x = drive.rest();
+    x.input_slip_direction = x.output_slip_direction = S(1.0);
+    const auto rate = [&](double input_speed, double output_speed) {
+        auto y = x.continuous;
+        y.input_speed = S(input_speed);
+        y.output_speed = S(output_speed);
+        return drive.derivatives(x, y, typename Drive::Input{}).rate;
+    };
+    const auto slow = rate(1.0, 1.0), by_input = rate(2.0, 1.0), by_output = rate(1.0, 2.0);
+    const S input = slow.input_speed - by_input.input_speed, output = slow.output_speed - by_output.output_speed;
+    const S across = (slow.input_speed - by_output.input_speed) * (slow.output_speed - by_input.output_speed);
+    const S mean = S(0.5) * (input + output), product = input * output - across, square = mean * mean - product;
+    return select(square < S(0.0), sqrt(max(product, S(0.0))), max(mean + sqrt(max(square, S(0.0))), S(0.0)));
+}
+
+/// How fast the controller lets the current decay [1/s], beyond what the winding does by itself, which steps take exactly.
+template <class S, class Drive>
+constexpr S current_damping(const Drive& drive) {
+    if (!motor::has_current<S>(drive.motor)) return S(0.0);
+    const auto x = drive.rest();
+    const auto rate = [&](const S& current) {
+        auto y = x.continuous;
+        auto numbers = flattened<S>(y.motor);
+        numbers[0] = numbers[0] + current;
+        y.motor = refilled(y.motor, numbers);
+        return flattened<S>(drive.derivatives(x, y, typename Drive::Input{}).rate.motor)[0];
+    };
+    const S little{1e-3};  // A, so that no limit hides it
+    const S decay = (rate(S(0.0)) - rate(little)) / little;
+    return max(decay - flattened<S>(drive.motor.relaxation_rate())[0], S(0.0));
+}
+
+}  // namespace detail
+
+/// The fastest angular frequency [rad/s] at which gear and load vibrate.
+template <class S, class Drive>
+constexpr S natural_frequency(const Drive& drive, const S& twist, const S& temperature) {
+    const S stiffness = detail::steepest<S>(drive, twist, temperature);
+    return drive.gear.structure.rigid() ? detail::of_two_masses<S>(drive, stiffness)
+                                        : drive.gear.structure.natural_frequency(detail::bodies<S>(drive, stiffness));
+}
+
+/// The fastest that fixed steps must follow, as an angular frequency [rad/s]: vibrations, the decay of speeds and of a controlled
+/// current, sensors, what the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times
+/// its length, of a vibration 2.83 times, and 2.5 leaves room. For bodies within the gear stability is enough: a step that is
+/// stable damps a mode that it does not resolve.
+template <class S, class Drive>
+constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
+    const auto& gear = drive.gear;
+    const S filters = max(drive.sensors.fastest(), strainwave::fastest<S>(drive.control));
+    const S inner = max(filters, strainwave::fastest<S>(drive.thermal));
+    const S stiffness = detail::steepest<S>(drive, twist, temperature);
+    const S decay = max(detail::damping<S>(drive), detail::current_damping<S>(drive));
+    if (gear.structure.rigid()) return max(max(detail::of_two_masses<S>(drive, stiffness), decay / S(2.5)), inner);
+    const auto x = drive.rest();
+    const S softer = S(1.0) + stiffness * gear.compliance(drive.gear_shafts(x, x.continuous), drive.geometry(x, x.continuous));
+    const auto bodies = detail::bodies<S>(drive, stiffness);
+    const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies));
+    return max(max(detail::of_two_masses<S>(drive, stiffness / softer), max(decay, of_bodies) / S(2.5)), inner);
+}
+
+/// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.
+template <class S, class Drive>
+constexpr S bristle_frequency(const Drive& drive) {
+    const auto& gear = drive.gear;
+    const S inverse = gear.kinematics.inverse_ratio();
+    const S input = friction::presliding_stiffness<S>(gear.friction_input) +
+                    friction::presliding_stiffness<S>(gear.friction_mesh) * inverse * inverse;
+    const S output = friction::presliding_stiffness<S>(gear.friction_output);
+    return sqrt(max(input / drive.input_inertia(), output / drive.output_inertia()));
+}
+
+}  // namespace strainwave::own_motion
