@@ -3,10 +3,11 @@
     python -m tests.tolerance                      two hundred drives compared, some minutes on one core
     python -m tests.tolerance --drives 1000 --first 5000
 
-A drive is any of `tests.stress`, all models at all places, controlled or not, whose gear has one spring, reduces the
-speed, makes no energy and has nothing faster than `FASTEST`; and a tolerance of its own, from 1e-7 to 1e-4. It is run to that and compared
-with a run ten thousand times as tight: what is recorded of the motion, and the torque of friction that rests on bristles, which
-is all that shows them. That of set-valued friction jumps at events, where any shift in time is as large as the jump.
+A drive is any of `tests.stress`, all models at all places, controlled or not, whose gear has one spring, reduces the speed,
+makes no energy and has nothing faster than `FASTEST`; and a tolerance of its own, from 1e-7 to 1e-4. It is run to that and
+compared with a run ten thousand times as tight: what is recorded of the motion, and the torque of friction that rests on
+bristles, which is all that shows them. That of set-valued friction jumps at events, where any shift in time is as large as
+the jump.
 
 Drives are drawn until enough are compared. Set aside is what says nothing of the method, by what tighter runs alone tell:
 drives that stand still, leave the range of a law, or are not done within `MOST_STEPS`; and those that magnify a change of

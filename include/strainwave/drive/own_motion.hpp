@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/control/law.hpp>
 #include <strainwave/fastest.hpp>
-#include <strainwave/friction/contact.hpp>
+#include <strainwave/friction/resistance.hpp>
 #include <strainwave/load/load.hpp>
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/structure/structure.hpp>
