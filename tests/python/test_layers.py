@@ -11,16 +11,17 @@ from pathlib import Path
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "identify", "studies"}
+ANALYSES = {"analysis", "identify", "rig", "studies"}
 LAYERS = {
     "files": {"files"},
     "simulation": {"files", "simulation"},
     "analysis": {"files", "simulation", "analysis"},
     "identify": {"files", "simulation", "identify"},
+    "rig": {"files", "simulation", "analysis", "identify", "rig"},
     "studies": {"files", "simulation", "analysis", "studies"},
     "report": {"files", "simulation", *ANALYSES, "report"},
 }
-TOP = {"__main__", "cli", "study_command", "demo"}
+TOP = {"__main__", "cli", "rig_command", "study_command", "demo"}
 
 
 def imported(path: Path) -> Iterator[str]:

@@ -1,0 +1,117 @@
+"""A torsion loop as a rig measured it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
+
+Array = NDArray[np.float64]
+Side = Literal["input", "output"]
+COLUMNS: dict[Side, tuple[str, str]] = {"input": ("input_angle", "input_torque"), "output": ("twist", "torque")}
+
+
+@dataclass(frozen=True, eq=False)
+class Loop(ComparedByFields):
+    """Angle of a loaded shaft and the torque on it, the other shaft held, in the order measured.
+
+    Args:
+        angle: how far the shaft has turned from the reference [rad], shape (n,), n >= 2
+        torque: torque on the shaft [N.m], shape (n,); positive torque turns towards positive angles
+        side: the shaft that was loaded
+        name: what was measured, one line
+        angle_sigma: standard deviation of each angle by itself [rad], shape (n,)
+        torque_sigma: standard deviation of each torque by itself [N.m], shape (n,)
+        angle_scale: standard deviation of what all angles share, relative to the angle [1]
+        torque_scale: standard deviation of what all torques share, relative to the torque [1]
+        time: when each was measured [s], shape (n,), or None
+        temperature: of the gear [K], shape (n,), or None
+        position: how far the flexspline was turned in its mount [rad]
+        unit: which specimen
+        remarks: what a reader of the result must know, in words
+
+    Raises:
+        ValueError: series differ in length, there are fewer than two points, or a number is not finite
+
+    >>> loop = Loop([0.0, 0.1, 0.0], [0.0, 0.03, 0.0], side="input", name="example")
+    >>> loop.recording()
+    <Recording "example": 3 samples; input_angle [rad], input_torque [N.m]>
+    """
+
+    angle: Array
+    torque: Array
+    side: Side
+    name: str
+    angle_sigma: Array
+    torque_sigma: Array
+    angle_scale: float = 0.0
+    torque_scale: float = 0.0
+    time: Array | None = None
+    temperature: Array | None = None
+    position: float = 0.0
+    unit: str = ""
+    remarks: tuple[str, ...] = ()
+
+    def __init__(
+        self,
+        angle: Sequence[float] | Array,
+        torque: Sequence[float] | Array,
+        *,
+        side: Side,
+        name: str,
+        angle_sigma: Sequence[float] | Array | float = 0.0,
+        torque_sigma: Sequence[float] | Array | float = 0.0,
+        angle_scale: float = 0.0,
+        torque_scale: float = 0.0,
+        time: Sequence[float] | Array | None = None,
+        temperature: Sequence[float] | Array | None = None,
+        position: float = 0.0,
+        unit: str = "",
+        remarks: Sequence[str] = (),
+    ) -> None:
+        arguments.one_of("side", side, COLUMNS)
+        n = len(arguments.numbers("angle", angle))
+        if n < 2:
+            raise ValueError(f"a loop needs two points or more, not {n}")
+        sigmas = {"angle_sigma": angle_sigma, "torque_sigma": torque_sigma}
+        series = {"angle": angle, "torque": torque, "time": time, "temperature": temperature}
+        series |= {key: np.full(n, each) if np.ndim(each) == 0 else np.asarray(each) for key, each in sigmas.items()}
+        for key, values in series.items():
+            object.__setattr__(self, key, None if values is None else _series(key, values, n))
+        for key, share in (("angle_scale", angle_scale), ("torque_scale", torque_scale)):
+            object.__setattr__(self, key, arguments.number(key, share, brackets="[)", low=0.0))
+        object.__setattr__(self, "position", arguments.number("position", position, "rad"))
+        for key, text in (("side", side), ("name", name), ("unit", unit)):
+            object.__setattr__(self, key, arguments.text(key, text))
+        object.__setattr__(self, "remarks", tuple(remarks))
+
+    def __len__(self) -> int:
+        return len(self.angle)
+
+    def recording(self) -> Recording:
+        """The loop as `sw.twin` and `sw.fit` take it: input_angle and input_torque, or twist and torque."""
+        angle, torque = COLUMNS[self.side]
+        columns, units = {angle: self.angle, torque: self.torque}, {angle: "rad", torque: "N.m"}
+        if self.time is not None and np.all(np.diff(self.time) > 0.0):
+            columns, units = {"time": self.time, **columns}, {"time": "s", **units}
+        if self.temperature is not None:
+            columns, units = {**columns, "temperature": self.temperature}, {**units, "temperature": "K"}
+        return Recording(columns, units, self.name)
+
+
+def _series(name: str, values: Sequence[float] | Array, n: int) -> Array:
+    array = arguments.numbers(name, values).copy()
+    if array.shape != (n,):
+        raise ValueError(f"{name} has shape {array.shape}; angle has {n} values, and {name} must have as many")
+    if not np.all(np.isfinite(array)):
+        row = int(np.flatnonzero(~np.isfinite(array))[0])
+        raise ValueError(f"{name}[{row}] = {array[row]} must be finite")
+    array.flags.writeable = False
+    return array
