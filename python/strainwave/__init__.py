@@ -34,6 +34,7 @@ from strainwave._core import (
 )
 
 if TYPE_CHECKING:
+    from strainwave import rig
     from strainwave.analysis.agreement import Agreement
     from strainwave.analysis.compare import compare
     from strainwave.analysis.difference import Difference
@@ -90,6 +91,7 @@ _LAZY = {
     "modes": "analysis.linear",
     "order_spectrum": "analysis.orders",
     "orders": "analysis.orders",
+    "rig": "rig",
     "save": "files.gear_set",
     "scenario": "simulation.scenario",
     "settling_time": "analysis.settling",
@@ -148,6 +150,7 @@ __all__ = [
     "motor",
     "order_spectrum",
     "orders",
+    "rig",
     "save",
     "scenario",
     "sensor",
@@ -170,7 +173,7 @@ def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'strainwave' has no attribute {name!r}")
     module = import_module(f"strainwave.{_LAZY[name]}")
-    return module if name == "scenario" else getattr(module, name)
+    return module if name in ("rig", "scenario") else getattr(module, name)
 
 
 def __dir__() -> list[str]:
