@@ -31,6 +31,10 @@ class Loop(ComparedByFields):
         torque_sigma: standard deviation of each torque by itself [N.m], shape (n,)
         angle_scale: standard deviation of what all angles share, relative to the angle [1]
         torque_scale: standard deviation of what all torques share, relative to the torque [1]
+        friction_sigma: standard deviation of the friction torque of the pulleys [N.m]: its error lowers all torques of forward
+            motion and raises those of backward motion, and so widens or narrows the loop
+        compliance_sigma: standard deviation of the rig's compliance [rad/(N.m)], whose error moves each angle in proportion to
+            its torque
         time: when each was measured [s], shape (n,), or None
         temperature: of the gear [K], shape (n,), or None
         position: how far the flexspline was turned in its mount [rad]
@@ -53,6 +57,8 @@ class Loop(ComparedByFields):
     torque_sigma: Array
     angle_scale: float = 0.0
     torque_scale: float = 0.0
+    friction_sigma: float = 0.0
+    compliance_sigma: float = 0.0
     time: Array | None = None
     temperature: Array | None = None
     position: float = 0.0
@@ -70,6 +76,8 @@ class Loop(ComparedByFields):
         torque_sigma: Sequence[float] | Array | float = 0.0,
         angle_scale: float = 0.0,
         torque_scale: float = 0.0,
+        friction_sigma: float = 0.0,
+        compliance_sigma: float = 0.0,
         time: Sequence[float] | Array | None = None,
         temperature: Sequence[float] | Array | None = None,
         position: float = 0.0,
@@ -85,8 +93,10 @@ class Loop(ComparedByFields):
         series |= {key: np.full(n, each) if np.ndim(each) == 0 else np.asarray(each) for key, each in sigmas.items()}
         for key, values in series.items():
             object.__setattr__(self, key, None if values is None else _series(key, values, n))
-        for key, share in (("angle_scale", angle_scale), ("torque_scale", torque_scale)):
-            object.__setattr__(self, key, arguments.number(key, share, brackets="[)", low=0.0))
+        shared = {"angle_scale": (angle_scale, "1"), "torque_scale": (torque_scale, "1")}
+        shared |= {"friction_sigma": (friction_sigma, "N.m"), "compliance_sigma": (compliance_sigma, "rad/(N.m)")}
+        for key, (each, of) in shared.items():
+            object.__setattr__(self, key, arguments.number(key, each, of, brackets="[)", low=0.0))
         object.__setattr__(self, "position", arguments.number("position", position, "rad"))
         for key, text in (("side", side), ("name", name), ("unit", unit)):
             object.__setattr__(self, key, arguments.text(key, text))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -33,11 +34,13 @@ class Masses:
         mass: of each [kg]
         count: how many there are
         sigma: standard deviation of each [kg]
+        source: where the numbers come from; "assumed" first if nobody measured them
     """
 
     mass: float
     count: int
     sigma: float = 0.0
+    source: str = ""
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,7 @@ class Camera:
         distance: from the camera to the target in pixels, as is the focal length [px]; no perspective where it is not known
         centre: of distortion and perspective [px], x and y; the middle of the image if None
         radial: k1, k2 of the lens [px^-2, px^-4]: a point at r from the centre is seen at r (1 + k1 r^2 + k2 r^4)
+        sources: where each of these numbers comes from, by its name
     """
 
     aspect: float = 1.0
@@ -59,6 +63,7 @@ class Camera:
     distance: float | None = None
     centre: tuple[float, float] | None = None
     radial: tuple[float, float] = (0.0, 0.0)
+    sources: Mapping[str, str] = field(default_factory=dict, hash=False)
 
 
 @dataclass(frozen=True)
@@ -87,11 +92,11 @@ class Rig:
     gravity: Value = field(default_factory=lambda: Value(STANDARD_GRAVITY, 0.02, "standard; anywhere on Earth within 0.3 %"))
     masses: tuple[Masses, ...] = ()
     cord: Literal["wound", "fixed point"] = "wound"
-    cord_tangent: float = 0.0
+    cord_tangent: Value = Value(0.0)
     pulley_torque: Value = Value(0.0)
     pulley_share: Value = Value(0.0)
     compliance: Value = Value(0.0)
-    markers_diameter: float | None = None
-    markers_distance: float | None = None
+    markers_diameter: Value | None = None
+    markers_distance: Value | None = None
     camera: Camera = Camera()
     note: str = ""
