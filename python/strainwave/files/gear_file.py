@@ -6,23 +6,19 @@ with file, table and key. docs/gear-files.md shows the format.
 
 from __future__ import annotations
 
-import dataclasses
-import reprlib
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Protocol, get_type_hints
+from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
 from strainwave.files.described import ParameterField, PartField, all_paths, default_of, own_paths, parameters, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
+from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
 from strainwave.files.writing import replacing
 from strainwave.messages import one_line, quoted
-
-if TYPE_CHECKING:
-    from pydantic_core import ErrorDetails
 
 Sources = dict[str, Entry]
 
@@ -44,7 +40,7 @@ _TEXTS = ("name", "maker", "note")
 def read(path: Path) -> dict[str, Any]:
     """The members of the set in a file; `ValueError` says what is wrong in it, with table and key."""
     content = document(path)
-    _checked(_head_form(), content)
+    checked(_head_form(), content)
     models, sources = _read_models(content)
     with at("[ratings]"):
         ratings = _read_ratings(content.get("ratings", {}))
@@ -169,7 +165,7 @@ def _read_table(table: _Table, content: dict[str, Any] | None) -> tuple[Any, Sou
     sources: Sources = {}
     with at(table.header):
         model, content = _chosen(table, content)
-        members = _checked(_table_form(table.path, model), content)
+        members = checked(_table_form(table.path, model), content)
         for parameter in parameters(model):
             members[parameter.name], its_sources = _read_parameter(table.path, parameter, members[parameter.name])
             sources |= its_sources
@@ -213,9 +209,9 @@ def _choice(table: _Table) -> str:
 
 def _read_ratings(content: Mapping[str, Any]) -> dict[str, Quantity]:
     examples = {key: f'{key} = {{ value = …, unit = "…", source = "…" }}' for key in content}
-    checked = _checked(_Form("rating", dict[str, _entry_schema("")], examples), content)  # type: ignore[misc]
+    entries = checked(Form("rating", dict[str, entry_schema("")], examples), content)  # type: ignore[misc]
     ratings = {}
-    for key, entry in checked.items():
+    for key, entry in entries.items():
         with at(f"{key}:"):
             ratings[key] = Quantity(**entry)
     return ratings
@@ -233,27 +229,19 @@ def at(place: str) -> Iterator[None]:
 # What may be written where: pydantic types made of the models' fields
 
 
-class _Form(NamedTuple):
-    """What may be written in one place of a file: its type, how each key is written, and what a key is called."""
-
-    noun: str
-    schema: Any
-    examples: Mapping[str, str]
-
-
 @cache
-def _head_form() -> _Form:
+def _head_form() -> Form:
     """The texts and tables of a file."""
     keys: dict[str, Any] = dict.fromkeys(_TEXTS, (str, "")) | {"name": (str, ...), "ratings": (dict[str, Any], {})}
     examples = {key: f'{key} = "…"' for key in _TEXTS} | {"ratings": "[ratings]"}
     for table in _tables():
         keys[table.name] = (dict[str, Any], ... if table.required else {})
         examples[table.name] = f"[{table.name}]" + (f" with {_choice(table)}" if table.kinds else "")
-    return _Form("part of a gear file", _schema("gear file", keys), examples)
+    return Form("part of a gear file", schema("gear file", keys), examples)
 
 
 @cache
-def _table_form(path: str, model: Any) -> _Form:
+def _table_form(path: str, model: Any) -> Form:
     """The keys of a table with the parameters of this class of models."""
     keys: dict[str, Any] = {parameter.name: (_content(parameter), ...) for parameter in parameters(model)}
     examples = {
@@ -263,7 +251,7 @@ def _table_form(path: str, model: Any) -> _Form:
     for inner in _inner(path, model):
         keys[inner.name] = (dict[str, Any], ...) if inner.required else (dict[str, Any] | None, None)
         examples[inner.name] = f"{inner.header} with {_choice(inner)}"
-    return _Form(f"parameter of {model.name}", _schema(model.name, keys), examples)
+    return Form(f"parameter of {model.name}", schema(model.name, keys), examples)
 
 
 def _content(parameter: ParameterField) -> Any:
@@ -271,33 +259,10 @@ def _content(parameter: ParameterField) -> Any:
 
     if parameter.kind == "choice":
         return str
-    number = _entry_schema(parameter.unit)
+    number = entry_schema(parameter.unit)
     if parameter.kind == "sequence":
-        return Annotated[list[number], BeforeValidator(_elements)]  # type: ignore[valid-type]
+        return Annotated[list[number], BeforeValidator(elements)]  # type: ignore[valid-type]
     return number
-
-
-def _elements(content: Any) -> Any:
-    """One entry for each number, where a sequence is written as one entry with a list of numbers."""
-    if isinstance(content, dict) and isinstance(values := content.get("value"), list) and values:
-        return [content | {"value": value} for value in values]
-    return content
-
-
-@cache
-def _entry_schema(unit: str) -> Any:
-    """A number as files give it: the members of a Quantity. Only the unit 1 may be left out."""
-    types = get_type_hints(Quantity)
-    keys = {"value": (types["value"], ...), "unit": (types["unit"], "1" if unit == "1" else ...)}
-    for member in dataclasses.fields(Entry):
-        keys[member.name] = (types[member.name], ... if member.default is dataclasses.MISSING else member.default)
-    return _schema("entry", keys)
-
-
-def _schema(name: str, keys: Mapping[str, Any]) -> Any:
-    from pydantic import ConfigDict, create_model
-
-    return create_model(name, __config__=ConfigDict(strict=True, extra="forbid", allow_inf_nan=False), **keys)
 
 
 def _example(parameter: ParameterField, default: Any) -> str:
@@ -307,50 +272,6 @@ def _example(parameter: ParameterField, default: Any) -> str:
     if parameter.kind == "sequence":
         return f'{{ value = […]{unit}, source = "…" }}, or [] for none'
     return f'{{ value = …{unit}, source = "…" }}'
-
-
-def _checked(form: _Form, content: Mapping[str, Any]) -> dict[str, Any]:
-    """The content as plain dictionaries, once it has the form."""
-    from pydantic import TypeAdapter, ValidationError
-
-    adapter = TypeAdapter[Any](form.schema)
-    try:
-        checked: dict[str, Any] = adapter.dump_python(adapter.validate_python(content))
-    except ValidationError as error:
-        # A key that is not known comes first: misspelt, it explains why another one is missing.
-        fault = min(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
-        raise ValueError(_explained(fault, form)) from None
-    return checked
-
-
-_WANTED = {
-    "dict_type": "a table",
-    "finite_number": "finite",
-    "float_type": "a number",
-    "list_type": "a list",
-    "model_type": "a table",
-    "string_type": "a text",
-}
-
-
-def _explained(fault: ErrorDetails, form: _Form) -> str:
-    """What pydantic found, in the words of the file: key, value, what is allowed."""
-    kind, given = fault["type"], fault["input"]
-    key, *inner = fault["loc"]
-    attribute = next((name for name in inner if isinstance(name, str)), "")
-    where = str(key) + "".join(f"[{index}]" for index in inner if isinstance(index, int))
-    if kind == "extra_forbidden" and not attribute:
-        return f"{key}: not a {form.noun}; it has {', '.join(form.examples)}"
-    hint = f"write {form.examples[str(key)]}"
-    if kind == "extra_forbidden":
-        return f"{where}: an entry has no {attribute}; {hint}"
-    number = given.get("value") if isinstance(given, dict) else given
-    if kind in ("missing", "model_type") and type(number) in (int, float):
-        hint = hint.replace("value = …", f"value = {number}")
-    if kind == "missing":
-        return f"{where} has no {attribute}; {hint}" if attribute else f"{where} is missing; {hint}"
-    what = f"{where}.{attribute}".removesuffix(".value").removesuffix(".")
-    return f"{what} = {reprlib.repr(given)} must be {_WANTED[kind]}; {hint}"
 
 
 # Writing
@@ -370,7 +291,7 @@ def text(gear_set: Contents) -> str:
     if gear_set.ratings:
         ratings = document["ratings"] = tomlkit.table()
         for name, rating in gear_set.ratings.items():
-            ratings.add(name, _inline(rating.value, rating.unit, rating))
+            ratings.add(name, inline(rating.value, rating.unit, rating))
     return tomlkit.dumps(document)
 
 
@@ -400,7 +321,7 @@ def _written(table: _Table, model: Any, sources: Mapping[str, Entry]) -> Any:
             entries = [sources[f"{place}[{i}]"] for i in range(len(value))]
             written.add(name, _inline_sequence(value, unit, entries))
         else:
-            written.add(name, _inline(value, unit, sources[place]))
+            written.add(name, inline(value, unit, sources[place]))
     for inner in _inner(table.path, model):
         if not _is_left_out(inner, part := getattr(model, inner.name), sources):
             written.add(inner.name, _written(inner, part, sources))
@@ -412,17 +333,8 @@ def _inline_sequence(values: Sequence[float], unit: str, entries: Sequence[Entry
     import tomlkit
 
     if len(set(entries)) == 1:
-        return _inline(list(values), unit, entries[0])
+        return inline(list(values), unit, entries[0])
     array = tomlkit.array().multiline(len(values) > 0)
     for value, entry in zip(values, entries, strict=True):
-        array.append(_inline(value, unit, entry))
+        array.append(inline(value, unit, entry))
     return array
-
-
-def _inline(value: Any, unit: str, entry: Entry) -> Any:
-    import tomlkit
-
-    known = {key: known for key, known in dataclasses.asdict(entry).items() if known is not None}
-    inline = tomlkit.inline_table()
-    inline.update({"value": value, "unit": unit} | known)
-    return inline

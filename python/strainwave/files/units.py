@@ -53,6 +53,7 @@ _DEFINITIONS = (
     "henry = volt * second / ampere = H",
     "weber = volt * second = Wb",
     "degree_Celsius = kelvin; offset: 273.15 = degC",
+    "pixel = [pixel] = px",  # of an image
 )
 
 _LONGEST = 100  # characters of a unit: a bound for the work that a text from outside can cause
