@@ -223,7 +223,7 @@ def _blurred(share: Array, taps: Array) -> Array:
 def _covered(edge: _Edge, x: NDArray[np.int_], y: NDArray[np.int_]) -> Array:
     """The share of each cell of these pixels that the marker covers, shape (FINE len(y), FINE len(x))."""
     depth, _ = edge.inside(*np.broadcast_arrays(x.astype(float), y[:, None].astype(float)))
-    share = np.kron(depth > 0.0, np.ones((FINE, FINE)))
+    share: Array = np.repeat(np.repeat((depth > 0.0).astype(np.float64), FINE, axis=0), FINE, axis=1)
     row, column = np.nonzero(np.abs(depth) < 1.5)
     within = (np.arange(FINE) + 0.5) / FINE - 0.5
     fine_x = np.broadcast_to(x[column][:, None, None] + within, (len(row), FINE, FINE))
