@@ -1,0 +1,314 @@
+"""Figures of the report of a torsion test."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.report import figures
+from strainwave.report.figures import LIGHT
+from strainwave.report.typeset import number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+COLOURS = {
+    "positive unloading": "measured",
+    "negative loading": "model",
+    "negative unloading": "held-out",
+    "positive loading": "earlier",
+}
+MARKS = ("o", "s", "^", "D", "v", "P")
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A regime of a loop, in the order measured.
+
+    Attributes:
+        name: of the regime
+        angle, torque: its points [deg], [N.m], those shared with the neighbours too
+    """
+
+    name: str
+    angle: Array
+    torque: Array
+
+
+@dataclass(frozen=True)
+class Width:
+    """A width of the loop, from one branch to the other.
+
+    Attributes:
+        name: which
+        angle: its two ends [deg]
+        torque: at which [N.m], of each end
+    """
+
+    name: str
+    angle: tuple[float, float]
+    torque: tuple[float, float]
+
+
+def loop_figure(
+    branches: Sequence[Branch],
+    widths: Sequence[Width],
+    names: tuple[str, str],
+    output_arcmin: float | None,
+    name: str,
+    title: str,
+) -> str:
+    """A loop, its regimes coloured, an arrow for the sense of each, and its widths.
+
+    Args:
+        branches: the regimes
+        widths: to be drawn across
+        names: of angle and torque
+        output_arcmin: at the output for a degree at the input, for a second scale; None for none
+        name: of the drawing, alone on its page
+        title: what it is
+    """
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        axes.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
+        for branch in branches:
+            _branch(axes, branch)
+        for place, width in enumerate(widths):
+            _dimension(axes, width, place)
+        figures.label_axes(axes, f"{names[1]} [N·m]", "1", f"{names[0]} [°]", "1")
+        if output_arcmin is not None:
+            second = axes.secondary_xaxis("top", functions=(lambda x: x * output_arcmin, lambda x: x / output_arcmin))
+            second.set_xlabel("divided by the ratio: at the output [arcmin]", color=LIGHT["muted"])
+        figures.legend(figure, axes)
+
+    return figures.inline(draw, (figures.WIDTH, 4.9 if output_arcmin is not None else 4.2), name, title)
+
+
+def _branch(axes: Axes, branch: Branch) -> None:
+    colour = LIGHT[COLOURS.get(branch.name, "ink")]
+    few = len(branch.angle) <= figures.MARKED
+    axes.plot(
+        branch.angle, branch.torque, color=colour, linewidth=1.3, marker="o" if few else "", markersize=2.6, label=branch.name
+    )
+    if len(branch.angle) < 2:
+        return
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(_unit(np.diff(branch.angle)), _unit(np.diff(branch.torque))))))
+    tail, head = (
+        tuple(float(np.interp(share * way[-1], way, series)) for series in (branch.angle, branch.torque))
+        for share in (0.45, 0.55)
+    )
+    axes.annotate(
+        "",
+        xy=head,
+        xytext=tail,
+        arrowprops={"arrowstyle": "-|>", "color": colour, "mutation_scale": 13, "shrinkA": 0, "shrinkB": 0},
+    )
+
+
+def _unit(steps: Array) -> Array:
+    extent = float(np.abs(steps).sum())
+    return steps / extent if extent > 0.0 else steps
+
+
+def _dimension(axes: Axes, width: Width, place: int) -> None:
+    """A double arrow between two branches, with its letter."""
+    letter, ink = "abc"[place], LIGHT["ink"]
+    ends = tuple(zip(width.angle, width.torque, strict=True))
+    arrow: dict[str, Any] = {
+        "arrowstyle": "<|-|>",
+        "color": ink,
+        "linewidth": 0.9,
+        "mutation_scale": 7,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
+    axes.annotate("", xy=ends[0], xytext=ends[1], arrowprops=arrow)
+    share = (0.5, 0.62, 0.38)[place]
+    at = [(1.0 - share) * start + share * stop for start, stop in zip(*ends, strict=True)]
+    axes.annotate(letter, at, (0.0, 2.5), textcoords="offset points", ha="center", va="bottom", color=ink, fontweight="bold")
+    axes.plot([], [], color=ink, linewidth=0.9, label=f"{letter}: {width.name}")
+
+
+@dataclass(frozen=True)
+class StiffnessCurve:
+    """Local stiffness along a regime.
+
+    Attributes:
+        regime: its name
+        torque: where [N.m]
+        stiffness: there [N.m/rad]
+        low, high: ends of its interval [N.m/rad]
+        regression: stiffness of the whole regime [N.m/rad]
+        band: torques between which the gear is soft [N.m], or None
+    """
+
+    regime: str
+    torque: Array
+    stiffness: Array
+    low: Array
+    high: Array
+    regression: float
+    band: tuple[float, float] | None = None
+
+
+def stiffness_figure(curves: Sequence[StiffnessCurve], name: str, title: str) -> str:
+    """Local stiffness over torque: a panel for unloading, one for loading, and where the gear is soft."""
+    unloading = [curve for curve in curves if curve.regime.endswith("unloading")]
+    panels = [panel for panel in (unloading, [curve for curve in curves if curve not in unloading]) if panel]
+
+    def draw(figure: Figure) -> None:
+        every = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, panel in zip(every, panels, strict=True):
+            for curve in panel:
+                _stiffness(axes, curve)
+            _stiffness_axis(axes, panel)
+            figures.label_axes(axes, "local stiffness [N·m/rad]", "1")
+        every[-1].set_xlabel("torque [N·m]")
+        _common_legend(figure, every)
+
+    return figures.inline(draw, (figures.WIDTH, 1.2 + 1.75 * len(panels)), name, title)
+
+
+def _stiffness(axes: Axes, curve: StiffnessCurve) -> None:
+    colour, order = LIGHT[COLOURS.get(curve.regime, "ink")], np.argsort(curve.torque, kind="stable")
+    torque = curve.torque[order]
+    if curve.band is not None:
+        axes.axvspan(*curve.band, facecolor=colour, alpha=0.15, linewidth=0.0, label="soft spot")
+    axes.fill_between(torque, curve.low[order], curve.high[order], color=colour, alpha=0.18, linewidth=0.0)
+    axes.plot(torque, curve.stiffness[order], color=colour, marker="o", markersize=2.6, label=curve.regime)
+    ends = [float(torque[0]), float(torque[-1])]
+    axes.plot(ends, 2 * [curve.regression], color=colour, linewidth=0.9, linestyle="--", label="regression over the regime")
+
+
+def _stiffness_axis(axes: Axes, panel: Sequence[StiffnessCurve]) -> None:
+    """From zero, or logarithmic where stiff and soft stretches would not both be seen."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    values = np.concatenate([curve.stiffness for curve in panel])
+    values = values[np.isfinite(values) & (values > 0.0)]
+    if values.size and values.max() > 5.0 * values.min():
+        axes.set_yscale("log")
+        axes.set_ylim(0.6 * values.min(), 1.7 * values.max())
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value, 3)))
+        axes.yaxis.set_minor_formatter(NullFormatter())
+    elif values.size:
+        axes.set_ylim(0.0, 1.3 * values.max())
+
+
+def _common_legend(figure: Figure, every: Sequence[Axes] | Any) -> None:
+    """One legend for several panels, each label once; what is shared by all regimes is drawn in ink."""
+    shown: dict[str, Any] = {}
+    for axes in every:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            shown.setdefault(label, handle)
+    columns = 2
+    figure.legend(list(shown.values()), list(shown), loc="outside upper left", ncols=columns, borderpad=0.0, columnspacing=1.2)
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """What the photographs of a test were like, in their order.
+
+    Attributes:
+        sigma: of the angle of each [arcsec], not-a-number where it told none
+        residual: rms distance of a marker's edge from the fitted curve [px], shape (n, 2), not-a-number likewise
+        limit: of the residual, beyond which a photograph is doubted [px], or None
+    """
+
+    sigma: Array
+    residual: Array
+
+
+def quality_figure(pictures: Pictures, name: str, title: str) -> str:
+    """Uncertainty of the angle and fit of both markers, image by image; a line where an image told nothing."""
+    image = np.arange(1, len(pictures.sigma) + 1)
+    lost = image[np.isnan(pictures.sigma)]
+
+    def draw(figure: Figure) -> None:
+        sigma, residual = figure.subplots(2, 1, sharex=True)
+        sigma.plot(image, pictures.sigma, "o", color=LIGHT["measured"], markersize=2.8)
+        for marker, (colour, mark) in enumerate((("measured", "o"), ("model", "s"))):
+            residual.plot(
+                image, pictures.residual[:, marker], mark, color=LIGHT[colour], markersize=2.8, label=f"marker {marker + 1}"
+            )
+        for place, each in enumerate(lost):
+            label = "" if place else "image of no use"
+            residual.axvline(each, color=LIGHT["ink"], linewidth=0.9, linestyle=":", label=label)
+            sigma.axvline(each, color=LIGHT["ink"], linewidth=0.9, linestyle=":")
+        for axes, values in ((sigma, pictures.sigma), (residual, pictures.residual)):
+            axes.set_ylim(0.0, 1.15 * float(np.nanmax(values, initial=1e-9)))
+        figures.label_axes(sigma, "standard deviation of the angle [arcsec]", "1")
+        figures.label_axes(residual, "rms distance of the edge from its fit [px]", "1", "image, in the order taken", "1")
+        figures.legend(figure, residual)
+
+    return figures.inline(draw, (figures.WIDTH, 3.4), name, title)
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One quantity over several loops.
+
+    Attributes:
+        name: of the quantity, with its unit in brackets
+        values: of each loop
+        half_widths: of the interval of 95 % of each
+        document: what document T's table has beside each, or None
+    """
+
+    name: str
+    values: Array
+    half_widths: Array
+    document: Array | None = None
+
+
+def comparison_figure(rows: Sequence[Compared], labels: Sequence[str], what: str, name: str, title: str) -> str:
+    """Quantities of several loops beside each other, each with its interval."""
+    place = np.arange(len(labels))
+
+    def draw(figure: Figure) -> None:
+        every = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, row in zip(every, rows, strict=True):
+            error = np.where(np.isfinite(row.half_widths), row.half_widths, 0.0)
+            axes.errorbar(
+                place,
+                row.values,
+                yerr=error,
+                fmt="o",
+                color=LIGHT["measured"],
+                markersize=4.0,
+                capsize=4.0,
+                elinewidth=1.1,
+                label="measured",
+            )
+            axes.axhline(float(np.mean(row.values)), color=LIGHT["muted"], linewidth=0.8, linestyle="--", label="mean")
+            figures.label_axes(axes, row.name, "1")
+        every[-1].set_xticks(place, labels)
+        every[-1].set_xlim(-0.5, len(labels) - 0.5)
+        every[-1].set_xlabel(what)
+
+    return figures.inline(draw, (figures.WIDTH, 0.7 + 1.05 * len(rows)), name, title)
+
+
+def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, str], name: str, title: str) -> str:
+    """Several loops in one picture: angles [deg] and torques [N.m] by label."""
+    colours, lines = list(COLOURS.values()), ("-", "--", ":", "-.")
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        axes.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
+        for place, (label, (angle, torque)) in enumerate(loops.items()):
+            colour, line = colours[place % len(colours)], lines[place // len(colours) % len(lines)]
+            figures.curve(axes, angle, torque, color=LIGHT[colour], linestyle=line, linewidth=1.1, label=label)
+        figures.label_axes(axes, f"{names[1]} [N·m]", "1", f"{names[0]} [°]", "1")
+        figures.legend(figure, axes)
+
+    return figures.inline(draw, (figures.WIDTH, 3.6), name, title)
