@@ -40,7 +40,7 @@ a3 = { value = 2e6, unit = "N.m/rad3", source = "torsion loop" }
 """
 
 # Examples may share one folder; the first of them pays for the imports.
-untimed = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+untimed = settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 
 
 def exactly(message: str) -> str:
