@@ -40,8 +40,8 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
         draft.put()
 
 
-def write_all(contents: Mapping[Path, str]) -> None:
-    """Writes texts to files, all or none: every one is complete beside its place before the first is put there.
+def write_all(contents: Mapping[Path, str | bytes]) -> None:
+    """Writes texts or bytes to files, all or none: every one is complete beside its place before the first is put there.
 
     Who else writes to the same folders in this way waits, so that the files of two writers are not mixed.
 
@@ -53,7 +53,7 @@ def write_all(contents: Mapping[Path, str]) -> None:
         for path, content in contents.items():
             with _named(path):
                 drafts[path] = stack.enter_context(_draft(path))
-                drafts[path].file.write(content.encode())
+                drafts[path].file.write(content.encode() if isinstance(content, str) else content)
                 drafts[path].complete()
         for folder in sorted({path.parent.resolve() for path in contents}):
             stack.enter_context(_locked(folder, fcntl.LOCK_EX))

@@ -265,7 +265,7 @@ def test_many_writers_of_one_file_leave_what_one_of_them_wrote(tmp_path: Path) -
 
 def test_either_all_files_are_written_or_none(tmp_path: Path) -> None:
     one, other = tmp_path / "one", tmp_path / "other"
-    write_all({one: "1", other: "2"})
+    write_all({one: "1", other: b"2"})
     assert (one.read_text(), other.read_text()) == ("1", "2")
     other.unlink()
     other.mkdir()
