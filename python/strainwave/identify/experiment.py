@@ -18,6 +18,7 @@ from strainwave.identify.branches import monotone, slid, thinned, turning_points
 from strainwave.messages import listed, quoted
 from strainwave.simulation import scenario
 from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.resolution import fine_enough
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import command_unit, controls_position, outputs
@@ -30,7 +31,10 @@ STILL = 1e-3  # of the range measured: what moves less stands still
 TABLE = 1_000  # speeds of either sign in a table, at most
 SENSIBLE = (1e-9, 1e9)  # the largest of a quantity that was measured on a gear, in SI units, lies between
 COMPARED = 20_000  # samples of a log, at most: of a longer one every so many, the command in full
-STEP = 2e-4  # s, of the simulation; what was recorded more often is taken every so many rows
+STEP = 2e-4  # s, of the simulation; what was recorded more often is compared every so many rows
+SHORTEST = 1e-5  # s, of a step that a fit takes without being asked to
+SHORTER = 0.25  # of the step that a drive needs at the start of a fit: one on the way that needs less is not taken
+STRAIGHT = 1e-6  # of the range of a command, a resolution of 20 bits: what deviates less from a line is one
 STEPS = 100_000  # of a log, at most: of a longer one the beginning is taken
 
 
@@ -278,7 +282,7 @@ class DriveLog(ComparedByFields):
         time: instants to compare at [s], beginning with 0, shape (n,)
         channels: names of the columns to compare, as `simulate` names them
         measured: their values in the units of a simulation, shape (channels, n)
-        dt: step of the simulation [s]
+        dt: largest step of the simulation [s]; down to a quarter of it for a model that needs that
         samples: how many were measured; of more than are compared, every so many is
         initial: what is known of its beginning; at rest if not given
     """
@@ -303,8 +307,9 @@ class DriveLog(ComparedByFields):
     ) -> DriveLog:
         """From columns time, command and outputs; all that a simulation has too, unless `channels` names some.
 
-        Steps of 0.2 ms, or the sample interval if that is a little shorter. Of a long log the first 100 000 steps are taken,
-        20 s; of one that was recorded more often than the model steps, every so many rows.
+        Steps of 0.2 ms, or the sample interval if that is a little shorter, or as short as the drive needs, down to 0.01 ms. Of
+        a long log the first 100 000 steps are taken, 20 s; of one that was recorded more often than every 0.2 ms, every so many
+        rows are compared. The command is taken in full, but for rows on the line between their neighbours.
         """
         check_recording("recording", recording)
         arguments.drive(drive)
@@ -328,18 +333,20 @@ class DriveLog(ComparedByFields):
         measured = np.stack([_sensible(recording, name, known[name]) for name in chosen])
         if initial is None:
             _check_rest(time, dict(zip(chosen, measured, strict=True)))
-        step = STEP if dt is None else arguments.seconds("dt", dt)
+        step = fine_enough(drive, STEP, SHORTEST) if dt is None else arguments.seconds("dt", dt)
         interval = float(np.min(np.diff(time)))
-        rows = slice(None, int(np.searchsorted(time, STEPS * step, "right")), max(1, int(STEP / interval)))
-        time, command, measured = time[rows], command[rows], measured[:, rows]
-        every = -(-len(time) // COMPARED)
+        end = int(np.searchsorted(time, STEPS * step, "right"))
+        knots = _knots(time[:end], command[:end], max(1, int(min(step, STEP) / interval)))
+        rows = slice(None, end, max(1, int(STEP / interval)))
+        time_compared, measured = time[rows], measured[:, rows]
+        every = -(-len(time_compared) // COMPARED)
         return cls(
-            scenario.table(time, command),
-            time[::every],
+            scenario.table(time[knots], command[knots]),
+            time_compared[::every],
             chosen,
             tuple(known[name] for name in chosen),
             measured[:, ::every],
-            min(step, interval) if dt is None and interval > STEP / 2.0 else step,
+            min(step, interval) if dt is None and interval > step / 2.0 else step,
             len(recording),
             initial,
         )
@@ -358,14 +365,20 @@ class DriveLog(ComparedByFields):
     def beginning(self, duration: float) -> DriveLog:
         """The log up to a time [s]."""
         taken = self.time <= duration
-        steps = np.arange(0.0, float(self.time[taken][-1]) + self.dt, self.dt)
-        command = scenario.table(steps, self.command.value(np.minimum(steps, self.command.duration)))
+        end = float(self.time[taken][-1])
+        early = self.command.start < end
+        pieces = {name: getattr(self.command, name)[early] for name in ("start", "level", "slope")}
+        command = replace(self.command, duration=end, **pieces)
         return replace(self, command=command, time=self.time[taken], measured=self.measured[:, taken])
 
     @property
     def interval(self) -> float:
         """The shortest time between two instants compared [s]."""
         return float(np.min(np.diff(self.time)))
+
+    def step(self, model: Drive) -> float:
+        """The largest step of a simulation of a model [s]."""
+        return fine_enough(model, self.dt, SHORTER * self.dt)
 
     def stands_still(self, predicted: Array) -> bool:
         """Whether a prediction, shape (channels, n), has no motion where the measurement has some."""
@@ -375,7 +388,7 @@ class DriveLog(ComparedByFields):
 
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         names = list(outputs(model))
-        run, slopes = differentiate(model, Excitation(self.command), numbers, self.dt, self.time, self.initial)
+        run, slopes = differentiate(model, Excitation(self.command), numbers, self.step(model), self.time, self.initial)
         predicted = np.stack([run[name] for name in self.channels])
         by_zero = np.zeros((len(nuisances), *predicted.shape))
         encoders = [row for row, name in enumerate(self.channels) if name in ENCODERS and self.initial is None]
@@ -383,6 +396,18 @@ class DriveLog(ComparedByFields):
             predicted[row] += zero
             by_zero[unknown, row] = 1.0
         return predicted, np.concatenate((slopes[:, [names.index(name) for name in self.channels]], by_zero))
+
+
+def _knots(time: Array, command: Array, every: int) -> NDArray[np.intp]:
+    """Rows between which a command runs straight: every so many, and where it bends between those half as many, down to all."""
+    rows = np.arange(len(time))
+    knots = np.union1d(rows[::every], rows[-1:])
+    while (bent := np.abs(command - np.interp(time, time[knots], command[knots])) > STRAIGHT * np.ptp(command)).any():
+        every = max(1, every // 2)
+        stretch = np.searchsorted(knots, rows, "right")
+        within = rows[::every][np.isin(stretch[::every], stretch[bent])]
+        knots = np.union1d(knots, within)
+    return knots
 
 
 def _sensible(recording: Recording, name: str, unit: str) -> Array:

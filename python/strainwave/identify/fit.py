@@ -147,7 +147,7 @@ def fit(
         free: paths of parameters, as "gear.friction_input.coulomb" of a drive or "friction_input.coulomb" of a gear;
             "hysteresis.stiffness[2]" is one element, "hysteresis.stiffness" all of them
         channels: columns of a drive log to compare; all that a simulation has too if not given
-        dt: step of the simulation [s]
+        dt: largest step of the simulation [s], shorter where the drive needs it; 0.2 ms if not given
         initial: of a drive log that does not begin at rest, what is known of its beginning, as for `simulate`; encoders then
             count from where they say
         training: which samples take part, shape (n,); all if not given
@@ -192,7 +192,7 @@ def fit(
         start = found
     result = problem.fit(found, weights)
     if isinstance(experiment, DriveLog):
-        warn_of_bristles(result.model, experiment.dt)
+        warn_of_bristles(result.model, experiment.step(result.model))
     return result
 
 

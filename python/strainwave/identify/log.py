@@ -63,7 +63,10 @@ def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
         if wanted is None or abs(innermost(law).breakaway - wanted) <= FOLLOWED * wanted:
             break
         follows = _changed(law, methodcaller("replace", breakaway=wanted))
-        found = fit(found.model.replace(gear=found.gear.replace(friction_input=follows)), log, free, training=training)
+        model = found.model.replace(gear=found.gear.replace(friction_input=follows))
+        if not _moves(log, model):
+            break
+        found = fit(model, log, free, training=training)
     found = _within_a_turn(found)
     return LogFit(found, found.rms(held_out=True))
 
@@ -126,13 +129,18 @@ def prepared(log: DriveLog, drive: Drive, *, friction_known: bool) -> Drive:
 
 def _set_in_motion(log: DriveLog, drive: Drive) -> Drive:
     """The drive with so little dry friction that it moves under the command of the log; as it is, if it never does."""
-    zeros = np.array([nuisance.start for nuisance in log.nuisances])
     tried = drive
     for _ in range(HALVINGS):
-        if not log.stands_still(log.predict(tried, [], zeros)[0]):
+        if _moves(log, tried):
             return tried
         tried = tried.replace(gear=tried.gear.replace(friction_input=_changed(tried.gear.friction_input, _halved)))
     return drive
+
+
+def _moves(log: DriveLog, drive: Drive) -> bool:
+    """Whether a drive moves under the command of the log."""
+    zeros = np.array([nuisance.start for nuisance in log.nuisances])
+    return not log.stands_still(log.predict(drive, [], zeros)[0])
 
 
 def _halved(law: Any) -> Any:

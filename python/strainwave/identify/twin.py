@@ -370,7 +370,8 @@ def _load(evidence: Evidence) -> Recording:
     """
     experiment = evidence.fit.experiment
     if isinstance(experiment, DriveLog):
-        run = simulate(evidence.fit.model, experiment.command, experiment.dt, sample=experiment.interval)
+        model = evidence.fit.model
+        run = simulate(model, experiment.command, experiment.step(model), sample=experiment.interval)
         return Recording(run.columns, run.units, evidence.source)
     assert isinstance(experiment, TorsionLoop | FrictionTable)
     columns = {"torque": experiment.torque}

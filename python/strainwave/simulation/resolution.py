@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core
 from strainwave.messages import listed
+from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
 COARSEST = 1.0  # step times angular frequency of a drive's own motion
@@ -39,6 +40,15 @@ def check_resolution(drive: Drive, dt: float, twist: float, temperature: float) 
     fastest = _core.max_rate(drive, twist, temperature)
     if fastest * dt > COARSEST:
         raise FloatingPointError(too_coarse(dt, twist, fastest, fastest_part(drive, twist, temperature, fastest)))
+
+
+def fine_enough(drive: Drive, dt: float, shortest: float) -> float:
+    """The step `dt` [s], or half, a quarter … of it where a drive at room temperature needs that; `shortest` at the least.
+
+    By halves, so that drives that differ little take the same steps.
+    """
+    needed = COARSEST / _core.max_rate(drive, 0.0, ROOM_TEMPERATURE)
+    return dt if dt <= needed else max(dt * 0.5 ** np.ceil(np.log2(dt / needed)), shortest)
 
 
 def fastest_part(drive: Drive, twist: float, temperature: float, fastest: float) -> str:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
-from strainwave.identify.experiment import TorsionLoop
+from strainwave.identify.experiment import DriveLog, TorsionLoop
 
 from tests.strategies import built
 
@@ -59,3 +59,36 @@ def test_the_derivative_by_the_zero_of_the_twist_is_what_differences_show(
     size = np.abs(fine).max()
     assert np.all(np.abs(slopes[1, 0] - fine) <= 1e-6 * size + unsure)
     assert np.mean(unsure < 1e-4 * size) > 0.9
+
+
+FINE = np.linspace(0.0, 0.1, 2001)  # s: a row every 0.05 ms
+LINES, JUMPS = st.lists(st.floats(-5.0, 5.0), min_size=2, max_size=6), st.lists(st.floats(0.0, 0.1), max_size=6)
+
+
+def log_of(command: Array) -> DriveLog:
+    columns = {"time": FINE, "command": command, "output_angle": np.sin(20.0 * FINE) ** 2}
+    return DriveLog.of(sw.Recording(columns, {"time": "s", "command": "V", "output_angle": "rad"}), sw.Drive())
+
+
+@given(lines=LINES, jumps=JUMPS)
+def test_a_command_recorded_finer_than_the_steps_keeps_all_its_bends(lines: list[float], jumps: list[float]) -> None:
+    command = np.interp(FINE, np.linspace(0.0, 0.1, len(lines)), lines) + sum(jump < FINE for jump in jumps)
+    assert log_of(command).command.value(FINE) == pytest.approx(command, abs=1e-6 * max(float(np.ptp(command)), 1e-9))
+
+
+@pytest.mark.parametrize(("frequency", "apart"), [(12.0, 2e-4), (24.0, 1e-4), (80.0, 5e-5)])
+def test_of_a_command_recorded_finer_than_the_steps_no_more_rows_are_taken_than_its_bends_need(
+    frequency: float, apart: float
+) -> None:
+    """A chord of a sine of amplitude A lies up to A w^2 h^2 / 8 beside it: for 1e-6 A a chord may be h = 2.8e-3 / w long."""
+    knots = log_of(np.sin(frequency * FINE)).command.start
+    assert np.median(np.diff(knots)) == pytest.approx(apart)
+
+
+@given(duration=st.floats(1e-3, 0.1))
+def test_the_beginning_of_a_log_has_the_command_that_the_log_has_there(duration: float) -> None:
+    whole = log_of(np.sin(20.0 * FINE) + (FINE > 0.0301))
+    early = whole.beginning(duration)
+    time = FINE[early.command.duration >= FINE]
+    assert early.command.duration == early.time[-1] <= duration
+    assert early.command.value(time).tolist() == whole.command.value(time).tolist()

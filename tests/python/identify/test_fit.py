@@ -121,6 +121,45 @@ def test_a_density_within_preisachs_law_comes_back_from_a_log(density: Any, free
         assert getattr(found.gear.hysteresis.density, name) == pytest.approx(getattr(density, name), rel=1e-5)
 
 
+def actuator(**changes: float) -> sw.Drive:
+    """Document A's actuator, whose stages need steps of 37 us, measured without noise; with other numbers at paths."""
+    seen = sw.load("tilt-actuator").sensors
+    without_noise = seen.replace(current=seen.current.law, input_speed=seen.input_speed.law, output_angle=seen.output_angle.law)
+    return sw.load("tilt-actuator").replace({"sensors": without_noise} | changes)
+
+
+def actuator_log() -> sw.Recording:
+    """A ramp with jerks of 0.4 ms, recorded every 0.04 ms, with noise; integrated adaptively."""
+    time = np.linspace(0.0, 0.05, 1251)
+    jerk = (np.abs(time - 0.02023) < 2e-4) | (np.abs(time - 0.03531) < 2e-4)
+    run = sw.simulate_adaptively(actuator(), sw.scenario.table(time, 0.3 * time + 4e-3 * jerk), rtol=1e-9, sample=4e-5)
+    run = run.select(["time", "command", *ACTUATOR_NOISE])
+    random = np.random.default_rng(0)
+    columns = {name: run[name] + ACTUATOR_NOISE.get(name, 0.0) * random.normal(size=len(run)) for name in run.names}
+    return sw.Recording(columns, {name: run.unit(name) for name in run.names})
+
+
+ACTUATOR_NOISE = {"input_angle": 1e-5, "output_angle": 1e-6, "torque": 5e-3}  # rad, rad, N.m
+
+
+def test_jerks_as_short_as_two_usual_steps_tell_spring_and_load_of_a_drive_with_fast_stages() -> None:
+    truth = {"gear.stiffness.k": 2e4, "load.inertia": 0.6}
+    found = sw.fit(actuator(**{path: 1.1 * value for path, value in truth.items()}), actuator_log(), list(truth))
+    assert found.rms() == pytest.approx(list(ACTUATOR_NOISE.values()), rel=0.1)
+    for estimate in found.estimates[:2]:
+        low, high = estimate.interval(0.95)
+        assert low < truth[estimate.path] < high
+        assert high - low < 0.05 * truth[estimate.path]
+
+
+def test_a_drive_that_turns_out_faster_than_its_start_is_followed() -> None:
+    """The soft mesh of the start allows steps of 0.1 ms, those of the truth must be a quarter as long."""
+    found = sw.fit(actuator(**{"gear.structure.mesh_stiffness": 8e6}), actuator_log(), ["gear.structure.mesh_stiffness"])
+    low, high = found.estimates[0].interval(0.95)
+    assert low < 1e8 < high
+    assert high - low < 0.05 * 1e8
+
+
 def test_noise_in_two_channels_of_different_size_is_weighed_by_itself() -> None:
     found = sw.fit(drive(a1=1.2e4), drive_log(noise=1e-3), ["gear.stiffness.a1", "gear.friction_input.coulomb"])
     assert found.rms() == pytest.approx([1e-3, 1e-5], rel=0.1)
