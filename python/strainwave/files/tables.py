@@ -297,6 +297,14 @@ class CsvTable:
                 reason = f": {one_line(str(error))}"
         raise ValueError(f"{self.file}{self._fault(sources) or reason}")
 
+    def texts(self) -> Iterator[tuple[int, list[str]]]:
+        """Line and cells of each row, as they stand; a row with another number of cells than the header is refused."""
+        self._check_quotes()
+        for line, text in self._rows():
+            if len(cells := self._cells(line, text)) != len(self.labels):
+                raise ValueError(f"{self.file} line {line}: {self._miscounted(cells)}")
+            yield line, [cell.strip(" \t") for cell in cells]
+
     def place(self, row: int) -> str:
         """Where a row of numbers stands in the file."""
         line, _ = next(islice(self._rows(), row, None))
@@ -338,7 +346,7 @@ class CsvTable:
                 return f" line {line} has {length} bytes; at most {_BLOCK} can be read"
             cells = self._cells(line, text)
             if len(cells) != len(self.labels):
-                return f" line {line}: the number of cells is {len(cells)}; the header has {len(self.labels)}"
+                return f" line {line}: {self._miscounted(cells)}"
             for source in sources:
                 cell = cells[source.position].strip(" \t")
                 number = _NUMBER.fullmatch(cell)
@@ -346,6 +354,9 @@ class CsvTable:
                     return f" line {line}, column {quoted(source.label)}: {_not_a_number(cell, marks)}"
                 marks = number[1] or marks
         return None
+
+    def _miscounted(self, cells: Sequence[str]) -> str:
+        return f"the number of cells is {len(cells)}; the header has {len(self.labels)}"
 
     def _rows(self) -> Iterator[tuple[int, str]]:
         """Line and text of each row, one at a time: slow, but it knows where it is."""

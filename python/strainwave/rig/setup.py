@@ -2,52 +2,73 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
-from strainwave.rig.loop import Side
+from strainwave import arguments
+from strainwave.files.entries import NOT_GIVEN, check_line
+from strainwave.rig.loop import COLUMNS, Side
 
 STANDARD_GRAVITY = 9.80665  # m/s2: CGPM 1901
+Cord = Literal["wound", "fixed point"]
 
 
 @dataclass(frozen=True)
 class Value:
     """A number of the rig with its standard deviation.
 
-    Attributes:
+    Args:
         value: the number, in SI units
         sigma: its standard deviation, in the same unit
         source: where it comes from; "assumed" first if nobody measured it
+
+    Raises:
+        ValueError: a number is not finite, the deviation is negative, or the source is no line of text
     """
 
     value: float
     sigma: float = 0.0
-    source: str = ""
+    source: str = NOT_GIVEN
+
+    def __post_init__(self) -> None:
+        arguments.number("value", self.value)
+        arguments.number("sigma", self.sigma, brackets="[)", low=0.0)
+        check_line("source", self.source)
 
 
 @dataclass(frozen=True)
 class Masses:
     """Equal masses of a set.
 
-    Attributes:
+    Args:
         mass: of each [kg]
         count: how many there are
         sigma: standard deviation of each [kg]
         source: where the numbers come from; "assumed" first if nobody measured them
+
+    Raises:
+        ValueError: the mass is not positive, or there is none of them
     """
 
     mass: float
     count: int
     sigma: float = 0.0
-    source: str = ""
+    source: str = NOT_GIVEN
+
+    def __post_init__(self) -> None:
+        arguments.number("mass", self.mass, "kg", low=0.0)
+        arguments.whole("count", self.count, low=1)
+        arguments.number("sigma", self.sigma, "kg", brackets="[)", low=0.0)
+        check_line("source", self.source)
 
 
 @dataclass(frozen=True)
 class Camera:
     """What the picture of a plane target does to lengths, so that it can be undone; the defaults undo nothing.
 
-    Attributes:
+    Args:
         aspect: width of a pixel over its height [1]
         tilt: angle between the optical axis and the shaft [rad]
         tilt_direction: direction in the image towards which the target recedes [rad], from x towards the top of the image
@@ -55,6 +76,9 @@ class Camera:
         centre: of distortion and perspective [px], x and y; the middle of the image if None
         radial: k1, k2 of the lens [px^-2, px^-4]: a point at r from the centre is seen at r (1 + k1 r^2 + k2 r^4)
         sources: where each of these numbers comes from, by its name
+
+    Raises:
+        ValueError: a number is out of its range
     """
 
     aspect: float = 1.0
@@ -65,12 +89,22 @@ class Camera:
     radial: tuple[float, float] = (0.0, 0.0)
     sources: Mapping[str, str] = field(default_factory=dict, hash=False)
 
+    def __post_init__(self) -> None:
+        arguments.number("aspect", self.aspect, low=0.0)
+        arguments.number("tilt", self.tilt, "rad", low=-0.5 * math.pi, high=0.5 * math.pi)
+        arguments.number("tilt_direction", self.tilt_direction, "rad")
+        if self.distance is not None:
+            arguments.number("distance", self.distance, "px", low=0.0)
+        for name, values in (("centre", self.centre or ()), ("radial", self.radial)):
+            for index, each in enumerate(values):
+                arguments.number(f"{name}[{index}]", each)
+
 
 @dataclass(frozen=True)
 class Rig:
     """A rig that loads one shaft of a gear by masses on two pairs of pans, the other shaft held.
 
-    Attributes:
+    Args:
         name: what it is, one line
         side: the shaft that carries the disk
         disk_radius: at which the cords pull [m]
@@ -84,6 +118,13 @@ class Rig:
         markers_diameter, markers_distance: of the target [m]; the scale of the picture where both are known
         camera: what is known of it
         note: anything else
+
+    Raises:
+        ValueError: a number is out of its range, or a word is not known; says which, the range and the unit
+
+    >>> rig = Rig("bench", "input", disk_radius=Value(0.1, 5e-5, "calliper"))
+    >>> rig.compliance
+    Value(value=0.0, sigma=0.0, source='not given')
     """
 
     name: str
@@ -91,7 +132,7 @@ class Rig:
     disk_radius: Value
     gravity: Value = field(default_factory=lambda: Value(STANDARD_GRAVITY, 0.02, "standard; anywhere on Earth within 0.3 %"))
     masses: tuple[Masses, ...] = ()
-    cord: Literal["wound", "fixed point"] = "wound"
+    cord: Cord = "wound"
     cord_tangent: Value = Value(0.0)
     pulley_torque: Value = Value(0.0)
     pulley_share: Value = Value(0.0)
@@ -100,3 +141,15 @@ class Rig:
     markers_distance: Value | None = None
     camera: Camera = Camera()
     note: str = ""
+
+    def __post_init__(self) -> None:
+        check_line("name", self.name)
+        arguments.one_of("side", self.side, COLUMNS)
+        arguments.one_of("cord", self.cord, get_args(Cord))
+        arguments.text("note", self.note)
+        for name, unit in (("disk_radius", "m"), ("gravity", "m/s2"), ("markers_diameter", "m"), ("markers_distance", "m")):
+            if (number := getattr(self, name)) is not None:
+                arguments.number(name, number.value, unit, low=0.0)
+        for name, unit in (("pulley_torque", "N.m"), ("compliance", "rad/(N.m)")):
+            arguments.number(name, getattr(self, name).value, unit, brackets="[)", low=0.0)
+        arguments.number("pulley_share", self.pulley_share.value, brackets="[)", low=0.0, high=1.0)

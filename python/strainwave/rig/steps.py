@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from strainwave import arguments
+from strainwave.messages import shortened
+
 
 @dataclass(frozen=True)
 class Step:
     """One state of rest of a test.
 
-    Attributes:
+    Args:
         number: in the order made, from 1
         mass_positive: total on the pair of pans that turns the shaft positively [kg]
         mass_negative: total on the other pair [kg]
@@ -20,6 +23,15 @@ class Step:
         temperature: of the gear [K], or None
         position: how far the flexspline was turned in its mount [rad]
         unit: which specimen
+
+    Raises:
+        ValueError: a mass is negative, a number is not finite, or a text has spaces around it or more than one line
+
+    >>> Step(2, mass_positive=0.3).mass_positive
+    0.3
+    >>> Step(3, mass_positive=-0.3)
+    Traceback (most recent call last):
+    ValueError: mass_positive = -0.3 kg must lie in [0, inf)
     """
 
     number: int
@@ -32,3 +44,22 @@ class Step:
     temperature: float | None = None
     position: float = 0.0
     unit: str = ""
+
+    def __post_init__(self) -> None:
+        arguments.whole("number", self.number, low=1)
+        for name in ("mass_positive", "mass_negative"):
+            arguments.number(name, getattr(self, name), "kg", brackets="[)", low=0.0)
+        arguments.number("position", self.position, "rad")
+        _check_name("unit", self.unit)
+        if self.image is not None:
+            _check_name("image", self.image)
+        for name, unit in (("angle", "rad"), ("torque", "N.m"), ("time", "s")):
+            if (value := getattr(self, name)) is not None:
+                arguments.number(name, value, unit)
+        if self.temperature is not None:
+            arguments.number("temperature", self.temperature, "K", low=0.0)
+
+
+def _check_name(name: str, text: str) -> None:
+    if text != arguments.text(name, text).strip() or not text.isprintable():
+        raise ValueError(f"{name} = {shortened(text)} must be one line of text without spaces around it")
