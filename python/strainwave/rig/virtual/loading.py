@@ -228,7 +228,7 @@ def _moved(shaft: _Shaft, rig: Rig, state: _State, weights: _Weights) -> _State:
 
 
 def _followed(shaft: _Shaft, compliance: float, state: _State, weights: _Weights, sense: float) -> _State:
-    """Where the disk comes to rest in the direction that it moves in. The coupling gives way first, then the shaft breaks away."""
+    """Where the disk comes to rest in the direction it moves in. The coupling gives way first, then the shaft breaks away."""
     still = float(shaft.path[-1])
 
     def rest(torque: float, angle: float) -> _State:
