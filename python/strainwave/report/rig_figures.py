@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT
@@ -85,11 +85,16 @@ def loop_figure(
             _dimension(axes, width, place)
         figures.label_axes(axes, f"{names[1]} [N·m]", "1", f"{names[0]} [°]", "1")
         if output_arcmin is not None:
-            second = axes.secondary_xaxis("top", functions=(lambda x: x * output_arcmin, lambda x: x / output_arcmin))
+            second = axes.secondary_xaxis("top", functions=_times(output_arcmin))
             second.set_xlabel("divided by the ratio: at the output [arcmin]", color=LIGHT["muted"])
         figures.legend(figure, axes)
 
     return figures.inline(draw, (figures.WIDTH, 4.9 if output_arcmin is not None else 4.2), name, title)
+
+
+def _times(factor: float) -> tuple[Callable[[ArrayLike], ArrayLike], Callable[[ArrayLike], ArrayLike]]:
+    """The scale of a second axis, there and back."""
+    return (lambda x: np.asarray(x) * factor), (lambda x: np.asarray(x) / factor)
 
 
 def _branch(axes: Axes, branch: Branch) -> None:
@@ -102,7 +107,7 @@ def _branch(axes: Axes, branch: Branch) -> None:
         return
     way = np.concatenate(([0.0], np.cumsum(np.hypot(_unit(np.diff(branch.angle)), _unit(np.diff(branch.torque))))))
     tail, head = (
-        tuple(float(np.interp(share * way[-1], way, series)) for series in (branch.angle, branch.torque))
+        (float(np.interp(share * way[-1], way, branch.angle)), float(np.interp(share * way[-1], way, branch.torque)))
         for share in (0.45, 0.55)
     )
     axes.annotate(
@@ -132,8 +137,10 @@ def _dimension(axes: Axes, width: Width, place: int) -> None:
     }
     axes.annotate("", xy=ends[0], xytext=ends[1], arrowprops=arrow)
     share = (0.5, 0.62, 0.38)[place]
-    at = [(1.0 - share) * start + share * stop for start, stop in zip(*ends, strict=True)]
-    axes.annotate(letter, at, (0.0, 2.5), textcoords="offset points", ha="center", va="bottom", color=ink, fontweight="bold")
+    x, y = ((1.0 - share) * start + share * stop for start, stop in zip(*ends, strict=True))
+    axes.annotate(
+        letter, (x, y), (0.0, 2.5), textcoords="offset points", ha="center", va="bottom", color=ink, fontweight="bold"
+    )
     axes.plot([], [], color=ink, linewidth=0.9, label=f"{letter}: {width.name}")
 
 

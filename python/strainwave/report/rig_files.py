@@ -15,10 +15,19 @@ from typing import Any
 import numpy as np
 
 from strainwave.rig.loop import Loop
-from strainwave.rig.vision.angle import Angles, Marker
+from strainwave.rig.vision.angle import Angles
 
 ANGLE_COLUMNS = ("image", "sha256", "angle [rad]", "angle_sigma [rad]", "fault", "warnings")
-MARKER_COLUMNS = ("x [px]", "y [px]", "radius [px]", "sigma [px]", "residual [px]", "contrast", "blur [px]", "arc")
+MARKER_COLUMNS = {
+    "x": "px",
+    "y": "px",
+    "radius": "px",
+    "sigma": "px",
+    "residual": "px",
+    "contrast": "",
+    "blur": "px",
+    "arc": "",
+}
 
 
 def loop_names(loops: Sequence[Loop]) -> list[str]:
@@ -60,7 +69,8 @@ def angles_csv(angles: Sequence[Angles]) -> str:
     """What each photograph told, a row for each: its angle, both markers, and what is wrong with it."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    markers = [f"marker_{number}_{column}" for number in (1, 2) for column in MARKER_COLUMNS]
+    units = {name: f" [{unit}]" if unit else "" for name, unit in MARKER_COLUMNS.items()}
+    markers = [f"marker_{number}_{name}{units[name]}" for number in (1, 2) for name in MARKER_COLUMNS]
     writer.writerow([*ANGLE_COLUMNS, *markers])
     for each in angles:
         told = {frame.name: (angle, sigma) for frame, angle, sigma in zip(each.useful, each.angle, each.sigma, strict=True)}
@@ -68,12 +78,8 @@ def angles_csv(angles: Sequence[Angles]) -> str:
             angle, sigma = told.get(frame.name, ("", ""))
             row = [frame.name, frame.sha256, angle, sigma, frame.fault, "; ".join(frame.warnings)]
             pair = frame.markers or ()
-            writer.writerow([*row, *(value for marker in pair for value in _numbers(marker))])
+            writer.writerow([*row, *(getattr(marker, name) for marker in pair for name in MARKER_COLUMNS)])
     return text.getvalue()
-
-
-def _numbers(marker: Marker) -> list[float]:
-    return [getattr(marker, field.name) for field in fields(marker)]
 
 
 def results_json(found: Mapping[str, Any]) -> str:

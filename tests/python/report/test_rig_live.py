@@ -1,0 +1,88 @@
+"""What whoever stands at the rig sees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from io import StringIO
+
+import numpy as np
+from rich.console import Console
+from strainwave.report.rig_live import Point, Terminal, live, point_line
+from strainwave.rig.guide import Look
+from strainwave.rig.steps import Step
+
+POINTS = [
+    Point("0001.png", 0.36, Look(0.0, 2e-5)),
+    Point("0002.png", 0.0, Look(-0.08, 2e-5), ("blurred",)),
+    Point("0003.png", -0.36, Look(np.nan, np.nan, "one marker is missing")),
+    Point("0004.png", None, Look(-1.0, 2e-5)),
+]
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.time = 0.0
+
+    def now(self) -> float:
+        return self.time
+
+    def pause(self, seconds: float) -> None:
+        self.time += seconds
+
+
+def watched(terminal: bool, width: int = 80) -> tuple[str, list[Point]]:
+    """What is shown of points that come two at a time, and then none."""
+    text, clock = StringIO(), Clock()
+    come: Iterator[Sequence[Point]] = iter([POINTS[:2], [], POINTS[2:]])
+    console = Console(file=text, force_terminal=terminal, width=width, color_system=None, legacy_windows=False)
+    points = live(console, lambda: next(come, []), idle=5.0, interval=1.0, now=clock.now, pause=clock.pause)
+    assert clock.time == 2.0 + 5.0
+    return text.getvalue(), points
+
+
+def test_a_pipe_gets_a_line_for_each_photograph() -> None:
+    text, points = watched(terminal=False, width=40)
+    assert points == POINTS
+    assert text.splitlines() == [point_line(point) for point in POINTS]
+    assert text.splitlines()[1] == "0002.png  +0.000 N·m  −4.5837° ± 4.1″  DOUBTFUL: blurred"
+    assert text.splitlines()[2] == "0003.png  −0.360 N·m  NO ANGLE: one marker is missing"
+    assert text.splitlines()[3].startswith("0004.png  torque not known  −57.2958°")
+
+
+def test_a_terminal_gets_the_loop_and_the_last_photographs() -> None:
+    text, _ = watched(terminal=True)
+    assert "waiting for photographs" in text
+    assert "torque [N·m]" in text
+    assert "0004.png" in text
+    assert "●" in text
+
+
+def test_a_narrow_terminal_still_gets_the_photographs() -> None:
+    text, _ = watched(terminal=True, width=30)
+    assert "torque [N·m]" not in text
+    assert "0004.png" in text
+
+
+def test_the_guide_says_what_to_do_and_shows_what_came_of_it() -> None:
+    text, answers = StringIO(), iter(["", "t 20", "", ""])
+    console = Console(file=text, force_terminal=True, width=80, color_system=None, legacy_windows=False)
+    terminal = Terminal(
+        console, 3, lambda step, before: f"lay on {step.number}", lambda step: 0.1 * step.number, lambda: next(answers)
+    )
+    turned = Step(3, 0.1, image="3.png", position=np.pi / 3.0, unit="A")
+    steps = [Step(1, 0.3, image="1.png"), Step(2, 0.2, image="2.png"), turned]
+    assert terminal.ask(steps[0], None) == ""
+    assert terminal.ask(steps[1], steps[0]) == "t 20"
+    terminal.seen(Look(0.1, 1e-5))
+    terminal.done(steps[:1], {1: Look(0.0, 1e-5)})
+    terminal.done(steps[:2], {1: Look(0.0, 1e-5), 2: Look(0.5, 1e-5)})
+    terminal.ask(turned, steps[1])
+    terminal.done(steps, {1: Look(0.0, 1e-5), 2: Look(0.5, 1e-5), 3: Look(0.0, 1e-5)})
+    assert terminal.hint("no marker") == ""
+    shown = text.getvalue()
+    assert "Flexspline at 0°" in shown
+    assert "Unit A, flexspline at 60°" in shown
+    assert "Step 2 of 3: lay on 2" in shown
+    assert "2.png  +0.200 N·m  +28.6479° ± 2.1″" in shown
+    assert shown.count("torque [N·m]") == 1  # two points of one position are the first that make a loop
+    assert "no marker" in shown
