@@ -18,6 +18,7 @@ from strainwave.simulation.state import Layout, State, start_of
 
 Array = NDArray[np.float64]
 SLOWLY = 1e30  # s: of a motion that takes so long, friction sees the path alone
+_ROUNDING = 1e-14  # of what cancels
 _NOTHING = 1e-12  # rad/s2, A/s: a term so small takes no part
 OVERFLOW = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
 _FASTEST = 1e9  # rad/s at the input: what nothing has stopped by then, nothing will
@@ -170,11 +171,8 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
         found = _balance(slow, slow.guess())
         last = slow.moved(slow.guess() if found is None else found)
         freed, place = _core.break_away(drive, last, inputs), slow.layout.places
-        if found is None and freed[place["input_slip_direction"]] == 0.0:  # an integral grows until the input gives way
-            rates, control = Rates.of(drive, last, inputs), place["control"]
-            freed[place["input_slip_direction"]] = np.sign(
-                rates.output[actuation(drive).channel, control] @ rates.rate[control]
-            )
+        if found is None:
+            freed = _pushed(drive, last, freed, inputs)
         directions = [place["input_slip_direction"].start, place["output_slip_direction"].start]
         if (freed[directions] == sliding[directions]).all():
             break
@@ -185,6 +183,21 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
     stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST].item()))
     rates = Rates.of(drive, stopped, inputs)
     return stopped if rates.vanishes(slow.rows(rates), 1e-9) else None  # a way without end is none
+
+
+def _pushed(drive: Drive, state: Array, freed: Array, inputs: Array) -> Array:
+    """`freed` with the shaft let go that an integral of the controller, growing on, pushes until it gives way.
+
+    The input, if it sticks; else the output: that of a position loop is held beside its command while the input winds it up.
+    """
+    layout, pushed, rates = Layout(drive), freed.copy(), Rates.of(drive, state, inputs)
+    control = layout.places["control"]
+    push = np.sign(rates.output[actuation(drive).channel, control] @ rates.rate[control])
+    for end, way in (("input", push), ("output", push * np.sign(drive.gear.kinematics.ratio))):
+        if freed[layout.places[f"{end}_slip_direction"]] == 0.0:
+            pushed[layout.places[f"{end}_slip_direction"]] = way
+            break
+    return pushed
 
 
 @dataclass(frozen=True, eq=False)
@@ -413,7 +426,8 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
         if rates.vanishes(rows, 1e-15):
             break
         directions = path.directions(rates)
-        step = directions @ _least(rates.by_numbers[rows] @ directions, -rates.rate[rows])
+        by_directions = _product(rates.by_numbers[rows], directions)
+        step = directions @ _least(by_directions, -rates.rate[rows])
         for share in 0.5 ** np.arange(40):
             trial = Rates.of(path.drive, path.moved(numbers + share * step), path.inputs)
             scale = np.maximum(rates.size, trial.size)
@@ -423,6 +437,12 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
             break
         numbers, rates = numbers + share * step, trial
     return numbers if rates.vanishes(path.rows(rates), 1e-10) else None
+
+
+def _product(left: Array, right: Array) -> Array:
+    """Of two matrices, shapes (m, n) and (n, k); 0 where terms cancel but for rounding, which means no dependence at all."""
+    product: Array = left @ right
+    return np.where(np.abs(product) > _ROUNDING * (np.abs(left) @ np.abs(right)), product, 0.0)
 
 
 def _least(matrix: Array, right: Array) -> Array:

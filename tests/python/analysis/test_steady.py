@@ -9,12 +9,19 @@ import numpy as np
 import pytest
 import strainwave as sw
 from hypothesis import given, reject, settings
+from numpy.typing import NDArray
+from scipy.optimize import fsolve
 from strainwave import _core
 from strainwave.simulation.state import Layout
 
+from tests.actuator_equations import OUT, WG, X2, Y1, Y2, corrected
 from tests.geared import MOTOR, RATIO, K, geared, outputs
 from tests.reference_drive import DRIVE
 from tests.strategies import made, smooth_drives
+from tests.structure.written_down import FIXED, document, start
+
+Array = NDArray[np.float64]
+BREAKAWAY = 4.66  # N.m, of document A's actuator at the output
 
 
 def stays(drive: sw.Drive, state: _core.State, command: float, load_torque: float = 0.0) -> None:
@@ -131,6 +138,49 @@ def test_an_output_that_friction_holds_stays_while_the_input_winds_the_spring() 
     assert found["torque"] == pytest.approx(RATIO * 0.1 * 10.0 / 0.5, rel=1e-12)
     assert found["output_angle"] == pytest.approx(0.0, abs=1e-15)
     assert state.output_slip_direction == 0.0
+
+
+def misaligned(structure: str, fixed: str) -> sw.Drive:
+    """Document A's actuator with ideal sensors, in still air; its position loop closes on the output."""
+    drive = sw.load("tilt-actuator" if structure == "staged" else "tilt-actuator-lumped")
+    gear = drive.gear.replace(kinematics=FIXED[fixed])
+    return drive.replace({"gear": gear, "sensors": sw.Drive().sensors, "load": sw.loads.Inertia(inertia=0.6)})
+
+
+@pytest.mark.parametrize("command", [0.0, 1e-3, -1e-3])
+@pytest.mark.parametrize("fixed", FIXED)
+def test_an_output_held_off_its_command_is_pushed_there_by_the_integral(fixed: str, command: float) -> None:
+    """Document A's equations: the output at its command, its friction against the way there, all within in balance."""
+    drive = misaligned("staged", fixed)
+    gear, way = document(drive.gear), np.sign(command + drive.gear.kinematic_error.error(0.0))
+
+    def forces(places: Array) -> Array:
+        return corrected(gear, np.append(places, command), np.zeros(6))
+
+    def unbalanced(places: Array) -> Array:
+        of_bodies, on_output = forces(places)[[WG, X2, Y1, Y2]], forces(places)[OUT]
+        return np.append(of_bodies, on_output - way * BREAKAWAY)
+
+    scale = np.array([1.0, 1.0, 1e-3, 1e-3, 1e-3])
+    expected = scale * fsolve(lambda q: unbalanced(scale * q), start(gear, 0.0)[:5] / scale, xtol=1e-13)
+    assert np.abs(unbalanced(expected)).max() < 1e-7
+
+    held = sw.equilibrium(drive, command=command)
+    angle = held.input_angle + 2.0 * np.pi * held.turns
+    assert angle == pytest.approx(expected[0], rel=1e-9)
+    assert angle / drive.gear.kinematics.ratio - held.transmission_error == pytest.approx(command, abs=1e-12)
+    assert held["structure.windup"] == pytest.approx(expected[0] - expected[1], rel=1e-7)
+    assert held["motor.current"] * 0.0919 == pytest.approx(-forces(expected)[0], rel=1e-7)
+
+
+@pytest.mark.parametrize("structure", ["staged", "lumped"])
+def test_where_it_was_pushed_to_it_rests(structure: str) -> None:
+    drive = misaligned(structure, "flexspline")
+    held = sw.equilibrium(drive)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 3e-5, start=held, record=["output_angle", "current"])
+    assert run["output_angle"] == pytest.approx(0.0, abs=1e-10)
+    assert run["current"] == pytest.approx(held["motor.current"], rel=1e-6)
+    assert held["motor.current"] < 0.0  # it came from the side of positive angles
 
 
 def test_hysteresis_and_bristles_remember_the_way() -> None:
