@@ -1,0 +1,273 @@
+"""A torsion test that never took place: its folder as a real one leaves it, and beside it the truth."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave._core import Gear
+from strainwave.equality import ComparedByFields
+from strainwave.files.gear_set import save
+from strainwave.files.writing import making, replacing
+from strainwave.rig.rig_file import write_rig
+from strainwave.rig.setup import Rig
+from strainwave.rig.steps import Step
+from strainwave.rig.steps_file import append_step
+from strainwave.rig.virtual.loading import Loading, load_by_steps
+from strainwave.rig.virtual.render import Scene, render
+from strainwave.simulation.run import progressing
+
+Array = NDArray[np.float64]
+Fault = Literal["blurred", "over-exposed", "marker missing", "swapped", "skipped"]
+BLUR, GLARE = 25.0, 8.0  # px; times the exposure: no edge is left to find
+SOURCE = "assumed: the truth of a virtual test"
+
+
+COLUMNS = {
+    "angle": "rad",
+    "applied": "N.m",
+    "shaft": "N.m",
+    "elastic": "N.m",
+    "twist": "rad",
+    "mass_positive": "kg",
+    "mass_negative": "kg",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class VirtualTest(ComparedByFields):
+    """A virtual test and its truth: the steps that its record holds, and of each, shape (n,), what was so.
+
+    Attributes:
+        folder: of the test
+        steps: as recorded
+        angle: of the disk as photographed, from the first step of its specimen [rad]
+        applied: torque of the weights on the disk [N.m]
+        shaft: torque on the shaft, what pulleys hold taken off [N.m]
+        elastic: torque of the gear's springs at that shaft, what its friction holds taken off, too [N.m]
+        twist: of the gear, at its output [rad]
+        mass_positive, mass_negative: true totals on the pans [kg]
+    """
+
+    folder: Path
+    steps: tuple[Step, ...]
+    angle: Array
+    applied: Array
+    shaft: Array
+    elastic: Array
+    twist: Array
+    mass_positive: Array
+    mass_negative: Array
+
+
+def simulate_test(
+    gear: Gear | Callable[[Step], Gear],
+    rig: Rig,
+    steps: Sequence[Step],
+    *,
+    folder: str | Path,
+    scene: Scene | None = None,
+    seed: int = 0,
+    stated: Rig | None = None,
+    wait: float = 60.0,
+    settling: float = 0.0,
+    virgin: bool = False,
+    mass_errors: bool = False,
+    faults: Mapping[int, Fault] | None = None,
+    progress: bool = False,
+) -> VirtualTest:
+    """Runs a torsion test on a virtual rig and writes its folder as a real one leaves it.
+
+    The folder holds `rig.toml`, a photograph `step-001.png` of each step, and `steps.csv`, to which each step is added once its
+    photograph is there: who follows the folder sees a test being run. Beside them, `truth.json` has the true angles, torques
+    and masses, and `truth-1.toml` and so on the true gears. Every file is whole or not there.
+
+    Args:
+        gear: which gear; or for each position and unit another one: a function of a step
+        rig: the rig as it is; the values of its numbers are true
+        steps: what is laid on the pans, as a plan has it; what they lack of times counts on from 0
+        folder: where to write; it must not hold a test yet
+        scene: what the camera sees; two usual markers through the rig's camera if not given
+        seed: of all that is random
+        stated: the rig as `rig.toml` tells it; the true one if not given
+        wait: between the change of the masses and the photograph [s]
+        settling: time constant with which the disk comes to rest [s]; 0 if at once
+        virgin: whether the gear was never loaded before; else it goes through all the steps once beforehand
+        mass_errors: whether each mass of the set is off by an error of its standard deviation, or exactly what it is said to be
+        faults: what goes wrong, by the number of the step: a photograph "blurred", "over-exposed", with a "marker missing" or
+            "swapped" with that of the next step; or a step that is made but "skipped" in the record
+        progress: whether a bar shows how far it is
+
+    Returns:
+        The test and its truth.
+
+    Raises:
+        ValueError: there are no steps, a fault is none or at no step, the folder holds a test, no equilibrium exists
+        OSError: a file cannot be written
+
+    >>> import tempfile
+    >>> import strainwave as sw
+    >>> bench = Rig("bench", "input", disk_radius=sw.rig.Value(0.1, 5e-5))
+    >>> steps = [Step(1, mass_positive=0.35), Step(2, mass_positive=0.3)]
+    >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     test = simulate_test(gear, bench, steps, folder=folder, scene=Scene(size=(160, 120), radius=12.0, distance=70.0))
+    ...     sorted(path.name for path in Path(folder).iterdir())
+    ['rig.toml', 'step-001.png', 'step-002.png', 'steps.csv', 'truth-1.toml', 'truth.json']
+    >>> test.angle.round(6).tolist()
+    [0.0, -0.049033]
+    """
+    arguments.whole("seed", seed, 0)
+    faults = _checked(faults or {}, steps)
+    folder, scene = Path(folder), scene or Scene(camera=rig.camera)
+    recorded = [
+        replace(step, image=f"step-{step.number:03}.png", time=wait * k if step.time is None else step.time)
+        for k, step in enumerate(steps)
+    ]
+    weighed = _weighed(recorded, rig, np.random.default_rng([seed, 0])) if mass_errors else recorded
+    gears, loadings = _loaded(gear, rig, weighed, {"wait": wait, "settling": settling, "virgin": virgin})
+    test = _truth(folder, recorded, weighed, loadings)
+    with making(folder):
+        _check_empty(folder)
+        write_rig(stated or rig, folder / "rig.toml")
+        for number, each in enumerate(gears, 1):
+            save(each, folder / f"truth-{number}.toml", name=f"Gear {number} of a virtual test", source=SOURCE)
+        _write_truth(test, scene, seed, faults)
+        with progressing(progress, len(recorded)) as report:
+            for k, (step, shown) in enumerate(zip(recorded, _shown(recorded, faults), strict=True), 1):
+                fault = faults.get(step.number)
+                if fault != "skipped":
+                    noise = np.random.default_rng([seed, step.number])
+                    _write_picture(render(_faulty(scene, fault), float(test.angle[shown]), noise), folder / str(step.image))
+                    append_step(step, folder)
+                if report is not None:
+                    report(k)
+    return _without_skipped(test, faults)
+
+
+def _checked(faults: Mapping[int, Fault], steps: Sequence[Step]) -> dict[int, Fault]:
+    numbers = [step.number for step in steps]
+    for number, fault in faults.items():
+        arguments.one_of(f"faults[{number}]", fault, get_args(Fault))
+        if number not in numbers:
+            raise ValueError(f"faults: there is no step {number}")
+        if fault == "swapped" and number == numbers[-1]:
+            raise ValueError(f"faults[{number}]: the last step has no next one to be swapped with")
+    return dict(faults)
+
+
+def _check_empty(folder: Path) -> None:
+    for name in ("rig.toml", "steps.csv", "truth.json"):
+        if (folder / name).exists():
+            raise ValueError(f"{folder} holds a test already ({name}); give another folder")
+
+
+# What is true
+
+
+def _weighed(steps: Sequence[Step], rig: Rig, random: np.random.Generator) -> list[Step]:
+    """The steps with the masses that truly lie on the pans: each mass of the set keeps its error through the test."""
+    pieces = [
+        (kind.mass, kind.mass + kind.sigma * random.standard_normal())
+        for kind in sorted(rig.masses, key=lambda kind: -kind.mass)
+        for _ in range(kind.count)
+    ]
+    weighed = []
+    for step in steps:
+        left = list(pieces)
+        positive, negative = _weight(step.mass_positive, left), _weight(step.mass_negative, left)
+        weighed.append(replace(step, mass_positive=positive, mass_negative=negative))
+    return weighed
+
+
+def _weight(said: float, left: list[tuple[float, float]]) -> float:
+    """The true mass of what is said to lie there, made of the largest pieces that are left; a rest has no error."""
+    true, rest = 0.0, said
+    for piece in list(left):
+        if piece[0] <= rest + 1e-9:
+            left.remove(piece)
+            rest, true = rest - piece[0], true + piece[1]
+    return true + max(rest, 0.0)
+
+
+def _loaded(
+    gear: Gear | Callable[[Step], Gear], rig: Rig, steps: Sequence[Step], given: Mapping[str, Any]
+) -> tuple[list[Gear], list[Loading]]:
+    """Of each position and unit in a row the gear and what it did."""
+    gears, loadings = [], []
+    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
+        own = list(group)
+        gears.append(gear if isinstance(gear, Gear) else gear(own[0]))
+        loadings.append(load_by_steps(gears[-1], rig, own, **given))
+    return gears, loadings
+
+
+def _truth(folder: Path, recorded: Sequence[Step], weighed: Sequence[Step], loadings: Sequence[Loading]) -> VirtualTest:
+    if not loadings:
+        raise ValueError("steps: a test needs one step or more")
+    names = ("seen", "applied", "shaft", "elastic", "twist")
+    columns = [np.concatenate([getattr(each, name) for each in loadings]) for name in names]
+    masses = [np.array([getattr(step, name) for step in weighed]) for name in ("mass_positive", "mass_negative")]
+    return VirtualTest(folder, tuple(recorded), *columns, *masses)
+
+
+def _without_skipped(test: VirtualTest, faults: Mapping[int, Fault]) -> VirtualTest:
+    kept = [k for k, step in enumerate(test.steps) if faults.get(step.number) != "skipped"]
+    columns = [getattr(test, name)[kept] for name in COLUMNS]
+    return VirtualTest(test.folder, tuple(test.steps[k] for k in kept), *columns)
+
+
+def _write_truth(test: VirtualTest, scene: Scene, seed: int, faults: Mapping[int, Fault]) -> None:
+    content = {
+        "seed": seed,
+        "units": COLUMNS,
+        "steps": [
+            {"number": step.number}
+            | {name: float(getattr(test, name)[k]) for name in COLUMNS}
+            | {"markers [px]": scene.centres(float(test.angle[k])).tolist()}
+            | ({"fault": faults[step.number]} if step.number in faults else {})
+            for k, step in enumerate(test.steps)
+        ],
+    }
+    with replacing(test.folder / "truth.json") as file:
+        file.write((json.dumps(content, indent=1) + "\n").encode())
+
+
+# Photographs
+
+
+def _shown(steps: Sequence[Step], faults: Mapping[int, Fault]) -> list[int]:
+    """Of each photograph, which state it shows."""
+    shown = list(range(len(steps)))
+    for k, step in enumerate(steps):
+        if faults.get(step.number) == "swapped":
+            shown[k], shown[k + 1] = shown[k + 1], shown[k]
+    return shown
+
+
+def _faulty(scene: Scene, fault: Fault | None) -> Scene:
+    if fault == "blurred":
+        return replace(scene, blur=BLUR)
+    if fault == "over-exposed":
+        return replace(scene, exposure=GLARE * scene.exposure)
+    if fault == "marker missing":
+        return replace(scene, markers=(scene.markers[0], scene.ground))
+    return scene
+
+
+def _write_picture(picture: NDArray[Any], path: Path) -> None:
+    from PIL import Image
+
+    content = io.BytesIO()
+    Image.fromarray(picture).save(content, "png", compress_level=1)
+    with replacing(path) as file:
+        file.write(content.getvalue())
