@@ -1,31 +1,64 @@
 """The torsion test rig: images of two markers and masses on pans in, the loop of a gear, its stiffness and lost motion out."""
 
+from strainwave.rig.analysis import LoopAnalysis, Row, analyse, table
+from strainwave.rig.catalogue_check import CatalogueCheck
+from strainwave.rig.comparison import Compared, Comparison, compare
 from strainwave.rig.loop import Loop
+from strainwave.rig.lost_motion import Width
+from strainwave.rig.regimes import Regime, Segmented, cycles, segment
+from strainwave.rig.result import Result
 from strainwave.rig.rig_file import load, rigs, write_rig
 from strainwave.rig.setup import Camera, Masses, Rig, Value
+from strainwave.rig.sides import friction_at_rest, referred, without_friction
+from strainwave.rig.soft_spot import SoftSpot, soft_spots, words_on_band
 from strainwave.rig.steps import Step
 from strainwave.rig.steps_file import append_step, read_steps, write_steps
+from strainwave.rig.stiffness import LocalStiffness, Stiffness, closure_of_secants, soft_parts
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.render import Scene, render
 from strainwave.rig.virtual.test import VirtualTest, simulate_test
 
 __all__ = [
     "Camera",
+    "CatalogueCheck",
+    "Compared",
+    "Comparison",
     "Loading",
+    "LocalStiffness",
     "Loop",
+    "LoopAnalysis",
     "Masses",
+    "Regime",
+    "Result",
     "Rig",
+    "Row",
     "Scene",
+    "Segmented",
+    "SoftSpot",
     "Step",
+    "Stiffness",
     "Value",
     "VirtualTest",
+    "Width",
+    "analyse",
     "append_step",
+    "closure_of_secants",
+    "compare",
+    "cycles",
+    "friction_at_rest",
     "load",
     "load_by_steps",
     "read_steps",
+    "referred",
     "render",
     "rigs",
+    "segment",
     "simulate_test",
+    "soft_parts",
+    "soft_spots",
+    "table",
+    "without_friction",
+    "words_on_band",
     "write_rig",
     "write_steps",
 ]

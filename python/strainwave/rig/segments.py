@@ -1,0 +1,195 @@
+"""A regime as straight stretches with knees between them, and what its points scatter about these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+from strainwave.rig.result import Result, result
+
+Array = NDArray[np.float64]
+
+KNEES = 2  # at most: stiff, soft, stiff again
+SHORTEST = 0.04  # of the torque of a regime: a shorter stretch is none
+CANDIDATES = 24  # places tried for a knee
+PRICE = 2.0  # per parameter, in logarithms of the number of points: a knee that noise brings forth is to be rare
+ROUNDING = 1e-7  # of the span: what residuals may be by the digits of a file
+ROUNDS = 25  # of Gauss and Newton
+
+
+@dataclass(frozen=True, eq=False)
+class Segments(ComparedByFields):
+    """Angle over torque as a chain of straight lines.
+
+    Attributes:
+        knees: torque where one line passes into the next [N.m], shape (k,), ascending
+        compliances: of each stretch [rad/(N.m)], shape (k + 1,)
+        compliance_sigmas: their standard deviations [rad/(N.m)], shape (k + 1,)
+        knee_results: the knees with their intervals [N.m]
+        low, high: ends of the regime [N.m]
+        scatter: root mean square of the angle about the lines, for the points less the parameters [rad]
+        freedom: points less parameters
+    """
+
+    knees: Array
+    compliances: Array
+    compliance_sigmas: Array
+    knee_results: tuple[Result, ...]
+    low: float
+    high: float
+    scatter: float
+    freedom: int
+
+    @property
+    def softest(self) -> int:
+        """Which stretch has the greatest compliance."""
+        return int(np.argmax(self.compliances))
+
+    def stretch(self, number: int) -> tuple[float, float]:
+        """Torques between which a stretch runs [N.m]."""
+        ends = [self.low, *self.knees.tolist(), self.high]
+        return ends[number], ends[number + 1]
+
+
+def fit_segments(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: Array) -> Segments:
+    """Straight stretches through the points of a regime, with as many knees, up to two, as the points call for.
+
+    A knee is taken where it lowers the sum of squares by more than noise does: by four times the logarithm of the number of
+    points, in variances. Where no errors are stated, the variance is that of the scatter.
+
+    Args:
+        torque, angle: the points, shape (n,), n >= 2, the torque ascending, if not strictly
+        angle_sigma, torque_sigma: standard deviations, shape (n,); all zero where they are not known
+
+    >>> torque = np.linspace(0.0, 0.36, 19)
+    >>> found = fit_segments(torque, torque / 4.0 + np.maximum(torque - 0.1, 0.0) * 3.0, np.zeros(19), np.zeros(19))
+    >>> found.knees.round(6).tolist(), found.compliances.round(6).tolist()
+    ([0.1], [0.25, 3.25])
+    """
+    span = float(torque[-1] - torque[0])
+    variance = _variance(torque, angle, angle_sigma, torque_sigma, np.full(len(torque), np.ptp(angle) / span))
+    stated = bool(np.any(variance > 0.0))
+    tried = [_best(torque, angle, variance if stated else np.ones(len(torque)), knees) for knees in _counts(torque)]
+    n = len(torque)
+    exact = n * (ROUNDING * float(np.ptp(angle))) ** 2
+
+    def price(each: _Chain) -> float:
+        misfit = each.misfit if stated else n * np.log(max(each.misfit, exact) / n)
+        return float(misfit + PRICE * np.log(n) * each.parameters)
+
+    best = min(tried, key=price)
+    if stated and np.any(torque_sigma > 0.0):  # each stretch turns errors of torque into angle by its own compliance
+        local = best.slopes[np.searchsorted(best.knees, torque)]
+        variance = _variance(torque, angle, angle_sigma, torque_sigma, local)
+        best = _refined(torque, angle, variance, best.knees)
+    return best.segments(torque, stated)
+
+
+def _counts(torque: Array) -> range:
+    """Numbers of knees that so many points can tell."""
+    different = len(np.unique(torque))
+    return range(0, min(KNEES, max(0, (different - 2) // 2)) + 1)
+
+
+def _variance(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: Array, compliance: Array) -> Array:
+    variance = angle_sigma**2 + (compliance * torque_sigma) ** 2
+    return np.asarray(np.maximum(variance, 1e-6 * variance.mean()))
+
+
+@dataclass(frozen=True, eq=False)
+class _Chain(ComparedByFields):
+    """A chain of lines fitted: slopes, knees, misfit in variances, derivatives by all parameters, residual."""
+
+    slopes: Array
+    knees: Array
+    misfit: float
+    columns: Array
+    residual: Array
+
+    @property
+    def parameters(self) -> int:
+        return 2 + 2 * len(self.knees)
+
+    def segments(self, torque: Array, stated: bool) -> Segments:
+        freedom = len(torque) - self.parameters
+        scatter = float(np.sqrt(np.sum(self.residual**2) / freedom)) if freedom > 0 else float("nan")
+        size = 1.0 if stated else (self.misfit / freedom if freedom > 0 else float("nan"))
+        covariance = size * np.linalg.pinv(self.columns.T @ self.columns, rcond=1e-12)
+        count = len(self.knees)
+        sums = np.tril(np.ones((count + 1, count + 1)))
+        slopes = sums @ covariance[1 : count + 2, 1 : count + 2] @ sums.T
+        knees = tuple(
+            _knee(torque, float(knee), i, self.knees, float(np.sqrt(covariance[count + 2 + i, count + 2 + i])))
+            for i, knee in enumerate(self.knees)
+        )
+        return Segments(
+            self.knees, self.slopes, np.sqrt(np.diag(slopes)), knees, float(torque[0]), float(torque[-1]), scatter, freedom
+        )
+
+
+def _knee(torque: Array, knee: float, number: int, knees: Array, sigma: float) -> Result:
+    """A knee; beside a stretch of fewer than three points it lies anywhere between its neighbours."""
+    below = torque[(torque < knee) & (torque > (knees[number - 1] if number else -np.inf))]
+    above = torque[(torque > knee) & (torque < (knees[number + 1] if number + 1 < len(knees) else np.inf))]
+    if min(len(below), len(above)) >= 2:
+        return result(knee, "N.m", random=sigma)
+    low, high = float(torque[torque < knee].max(initial=torque[0])), float(torque[torque > knee].min(initial=torque[-1]))
+    return Result(knee, "N.m", (high - low) / 12.0**0.5, 0.0, low, high)
+
+
+def _best(torque: Array, angle: Array, variance: Array, count: int) -> _Chain:
+    if count == 0:
+        return _refined(torque, angle, variance, np.empty(0))
+    span = float(torque[-1] - torque[0])
+    between = np.unique(np.concatenate((torque[1:-1], 0.5 * (torque[1:] + torque[:-1]))))
+    between = between[(between > torque[0] + SHORTEST * span) & (between < torque[-1] - SHORTEST * span)]
+    places = between[np.unique(np.linspace(0, len(between) - 1, CANDIDATES).astype(int))] if len(between) else between
+    chosen = np.array([each for each in combinations(places, count) if np.all(np.diff(each) > SHORTEST * span)])
+    if not len(chosen):
+        return _refined(torque, angle, variance, np.empty(0))
+    weights = 1.0 / np.sqrt(variance)
+    hinges = np.maximum(torque - chosen[:, :, np.newaxis], 0.0) / span
+    lines = np.broadcast_to(np.stack((np.ones_like(torque), torque / span)), (len(chosen), 2, len(torque)))
+    columns = np.concatenate((lines, hinges), axis=1) * weights
+    normal = columns @ columns.transpose(0, 2, 1) + 1e-12 * np.eye(2 + count) * np.sum(weights**2)
+    moments = columns @ (weights * angle)
+    found = np.linalg.solve(normal, moments[:, :, np.newaxis])[:, :, 0]
+    misfit = np.sum((weights * angle - np.einsum("ki,kin->kn", found, columns)) ** 2, axis=1)
+    return _refined(torque, angle, variance, chosen[int(np.argmin(misfit))])
+
+
+def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
+    """Moves the knees to the best place: the lines are linear in the rest, and a knee moves by what its hinge calls for."""
+    span = float(torque[-1] - torque[0])
+    best = _lines(torque, angle, variance, knees)
+    for _ in range(ROUNDS if len(knees) else 0):
+        step = np.linalg.lstsq(best.columns, best.residual / np.sqrt(variance), rcond=1e-10)[0][2 + len(knees) :]
+        scale, better = 1.0, None
+        while better is None and scale > 1e-3:
+            moved = best.knees + scale * step
+            if np.all(np.diff([torque[0], *moved, torque[-1]]) > SHORTEST * span):
+                tried = _lines(torque, angle, variance, moved)
+                better = tried if tried.misfit < best.misfit else None
+            scale *= 0.5
+        if better is None:
+            break
+        done = best.misfit - better.misfit <= 1e-12 * best.misfit
+        best = better
+        if done:
+            break
+    return best
+
+
+def _lines(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
+    weights = 1.0 / np.sqrt(variance)
+    beyond = torque[:, np.newaxis] > knees
+    columns = np.column_stack((np.ones_like(torque), torque, np.where(beyond, torque[:, np.newaxis] - knees, 0.0)))
+    found = np.linalg.lstsq(weights[:, np.newaxis] * columns, weights * angle)[0]
+    residual = angle - columns @ found
+    slopes = np.cumsum(found[1:])
+    columns = np.column_stack((columns, np.where(beyond, -found[2:], 0.0))) * weights[:, np.newaxis]
+    return _Chain(slopes, knees, float(np.sum((weights * residual) ** 2)), columns, residual)
