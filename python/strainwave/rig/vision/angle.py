@@ -2,79 +2,103 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from strainwave.equality import ComparedByFields
+from strainwave.messages import quoted, shortened
+from strainwave.rig.setup import Camera
+from strainwave.rig.vision.camera import PERFECT
+from strainwave.rig.vision.follow import Angles, follow
+from strainwave.rig.vision.frame import Frame, look
+from strainwave.rig.vision.image import VIDEOS, Image, picture_files, video_images
+from strainwave.rig.vision.marker import Marker
 
-Array = NDArray[np.float64]
+__all__ = ["Angles", "Frame", "Marker", "follow", "look", "measure_angles", "turn"]
+
+Source = str | Path | Image
+Point = tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Marker:
-    """A circular marker in an image; x points right, y down, and the middle of the first pixel is 0, 0.
+def measure_angles(
+    images: Source | Iterable[Source],
+    *,
+    camera: Camera = PERFECT,
+    reference: str | None = None,
+    radius: tuple[float, float] | None = None,
+    dark: bool | None = None,
+    progress: Callable[[str], None] = lambda stage: None,
+) -> Angles:
+    """The angles of a target with two round markers, from its photographs in the order of the test.
 
-    Attributes:
-        x, y: its centre [px]
-        radius: mean radius of its edge [px]
-        sigma: standard deviation of each coordinate of the centre [px]
-        residual: rms distance of the edge from the fitted curve [px]
-        contrast: difference of brightness across the edge, of the full scale [1]
-        blur: standard deviation of the edge's spread [px]
-        arc: share of the edge that was seen and used [1]
+    An image that does not show two markers, or cannot be read, has a fault and no angle; the others have theirs. The angle is
+    followed from image to image through any number of turns: by the smaller turn where both markers look alike, which is right
+    up to 90 degrees from one image to the next, else by which marker is the larger one, right up to 180 degrees.
+
+    Args:
+        images: files, or pictures as `read_image` and `as_image` give them; or a folder, or a video
+        camera: what it does to lengths
+        reference: name of the image whose angle is 0; the first that tells one if None
+        radius: the smallest and the largest that a marker may have [px]; from 6 px to half the picture if None
+        dark: whether markers are darker than the ground; either if None
+        progress: told the name of each image as it begins
+
+    Raises:
+        OSError: there is no such folder or video
+        ValueError: no image tells an angle; the reference is none of them, or tells none; a number is out of its range
+        ImportError: a video, and opencv is not installed
+
+    >>> from strainwave.rig.vision.image import as_image
+    >>> from strainwave.rig.virtual.render import Scene, render
+    >>> scene, random = Scene(size=(320, 240), radius=20.0, distance=150.0, noise=0.01), np.random.default_rng(1)
+    >>> pictures = [as_image(f"{degrees}.png", render(scene, np.radians(degrees), random)) for degrees in (0, 50, 100)]
+    >>> np.degrees(measure_angles(pictures).angle).round(1).tolist()
+    [0.0, 50.0, 100.0]
     """
-
-    x: float
-    y: float
-    radius: float
-    sigma: float
-    residual: float
-    contrast: float
-    blur: float
-    arc: float
+    frames = []
+    for source in _sources(images):
+        progress(source.name if isinstance(source, Image) else Path(source).name)
+        frames.append(look(source, camera=camera, radius=radius, dark=dark))
+    return follow(frames, camera=camera, reference=reference)
 
 
-@dataclass(frozen=True)
-class Frame:
-    """What one image told.
+def turn(before: tuple[Point, Point], after: tuple[Point, Point]) -> float:
+    """How far two markers have turned, against the clock as one looks at the picture, within half a turn [rad].
 
-    Attributes:
-        name: of the file
-        sha256: of its bytes
-        markers: both, always in the same order; none if the image was of no use
-        fault: why it was of no use, empty otherwise
-        warnings: what makes it doubtful
+    It is the angle between the vectors from the first marker to the second, by atan2 of their cross and dot products; the
+    difference of two arctangents of slopes wraps (erratum T1).
+
+    Args:
+        before, after: x and y of both markers in the picture, y pointing down
+
+    Raises:
+        ValueError: both markers at the same place
+
+    >>> round(float(np.degrees(turn(((0, 0), (1, 0)), ((0, 0), (0, -1))))), 12)
+    90.0
     """
-
-    name: str
-    sha256: str
-    markers: tuple[Marker, Marker] | None
-    fault: str = ""
-    warnings: tuple[str, ...] = ()
+    (ax, ay), (bx, by) = ((pair[1][0] - pair[0][0], pair[0][1] - pair[1][1]) for pair in (before, after))
+    if (ax == 0.0 and ay == 0.0) or (bx == 0.0 and by == 0.0):
+        raise ValueError("both markers are at the same place; their direction is not defined")
+    return float(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
-@dataclass(frozen=True, eq=False)
-class Angles(ComparedByFields):
-    """Angles of the images that told one, in their order.
-
-    Attributes:
-        frames: every image, useful or not
-        angle: from the reference, positive against the clock [rad], shape (useful frames,)
-        sigma: standard deviation of each [rad], same shape
-        reference: name of the image whose angle is 0
-        centre: about which the shaft turned [px], x and y, and the rms distance of the markers from their circles;
-            None where the turn is too small to tell it
-    """
-
-    frames: tuple[Frame, ...]
-    angle: Array
-    sigma: Array
-    reference: str
-    centre: tuple[float, float, float] | None
-
-    @property
-    def useful(self) -> tuple[Frame, ...]:
-        """The images whose angles these are."""
-        return tuple(frame for frame in self.frames if frame.markers is not None)
+def _sources(images: Source | Iterable[Source]) -> Iterator[Source]:
+    if isinstance(images, Image):
+        yield images
+    elif isinstance(images, str | Path):
+        path = Path(images)
+        if path.is_dir():
+            yield from picture_files(path)
+        elif path.suffix.lower() in VIDEOS:
+            yield from video_images(path)
+        elif not path.exists():
+            raise FileNotFoundError(f"{quoted(str(path))} is no file or folder")
+        else:
+            yield path
+    else:
+        for each in images:
+            if not isinstance(each, str | Path | Image):
+                raise TypeError(f"images must be files or pictures, not {shortened(each)}")
+            yield each

@@ -1,0 +1,117 @@
+"""Where in a picture round spots may be: the coarse search, to a few pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Grey = NDArray[np.float32]
+_BLOCK = 4  # cells of a block, each way, of which the local brightness is taken
+_LEAST = 0.15  # contrast of a spot, of the contrast of the picture
+_NOISE = 4.0  # contrast of a spot, of the noise of a cell
+
+
+@dataclass(frozen=True)
+class Blob:
+    """A connected spot that is darker, or brighter, than what is around it.
+
+    Attributes:
+        x, y: the middle of its box [px]
+        radius: half the geometric mean of the sides of its box [px]
+        dark: whether it is the darker one
+        whole: whether it lies within the picture with all its edge
+    """
+
+    x: float
+    y: float
+    radius: float
+    dark: bool
+    whole: bool
+
+
+def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
+    """Spots whose radius lies between `low` and `high` [px] and whose box and area are not those of anything but a disc.
+
+    A cell is dark if it lies below the middle between the darkest and the brightest block around it, within half the picture.
+    """
+    side = int(np.clip(low / 3.0, 1.0, 8.0))
+    cells = averaged(grey, side)
+    middle, clear = _middle(cells)
+    if middle is None:
+        return []
+    found = []
+    for dark in (True, False):
+        mask = (cells < middle) if dark else (cells > middle)
+        found += list(_spots(mask & clear, side, dark, low, high))
+    return found
+
+
+def averaged(grey: Grey, side: int) -> Grey:
+    """Means over squares of `side` pixels; what is left over at the right and the lower edge is cut off.
+
+    >>> averaged(np.array([[0.0, 1.0, 5.0], [1.0, 2.0, 5.0]], np.float32), 2)
+    array([[1.]], dtype=float32)
+    """
+    if side == 1:
+        return grey
+    height, width = (n // side * side for n in grey.shape)
+    rows = grey[0:height:side, :width].copy()
+    for i in range(1, side):
+        rows += grey[i:height:side, :width]
+    cells = rows[:, 0::side].copy()
+    for i in range(1, side):
+        cells += rows[:, i::side]
+    cells *= np.float32(1.0 / side**2)
+    return cells
+
+
+def _middle(cells: Grey) -> tuple[Grey | None, NDArray[np.bool_]]:
+    """The brightness that parts dark from bright at each cell, and where both are near."""
+    from scipy.ndimage import maximum_filter, minimum_filter
+
+    height, width = cells.shape
+    padded = np.pad(cells, ((0, -height % _BLOCK), (0, -width % _BLOCK)), mode="edge")
+    blocks = averaged(padded, _BLOCK)
+    window = max(3, min(blocks.shape) // 2)
+    brightest, darkest = maximum_filter(blocks, window), minimum_filter(blocks, window)
+    contrast = brightest - darkest
+    least = max(_LEAST * float(blocks.max() - blocks.min()), _NOISE * _noise(cells))
+    if least <= 0.0 or float(contrast.max()) <= least:
+        return None, np.zeros(cells.shape, bool)
+
+    def spread(values: NDArray[np.generic]) -> NDArray[np.generic]:
+        return np.repeat(np.repeat(values, _BLOCK, axis=0), _BLOCK, axis=1)[:height, :width]
+
+    middle: Grey = spread((brightest + darkest) * np.float32(0.5)).astype(np.float32, copy=False)
+    return middle, spread(contrast > least).astype(bool, copy=False)
+
+
+def _noise(cells: Grey) -> float:
+    """Of a cell, from how it differs from its neighbour; edges are few and do not count in a median."""
+    sample = cells[:: max(1, cells.shape[0] // 64)]
+    return float(np.median(np.abs(np.diff(sample, axis=1))) / (0.6745 * np.sqrt(2.0)))
+
+
+def _spots(mask: NDArray[np.bool_], side: int, dark: bool, low: float, high: float) -> Iterator[Blob]:
+    from scipy.ndimage import find_objects, label
+
+    labels, count = label(mask)
+    areas = np.bincount(labels.ravel(), minlength=count + 1)[1:] * side**2
+    rows, columns = mask.shape
+    large = (areas >= 1.2 * low**2) & (areas <= 4.0 * high**2)
+    if not large.any():
+        return
+    boxes = find_objects(labels)
+    for i in np.flatnonzero(large):
+        down, right = boxes[i]
+        height, width = side * (down.stop - down.start), side * (right.stop - right.start)
+        radius, share = np.sqrt(height * width) / 2.0, areas[i] / (height * width)
+        whole = down.start > 0 and right.start > 0 and down.stop < rows and right.stop < columns
+        slender = not 0.4 < width / height < 2.5
+        if not low * 0.8 <= radius <= high * 1.2 + side or (whole and (slender or share < 0.5)) or share < 0.3:
+            continue
+        x, y = (side * (part.start + part.stop) / 2.0 - 0.5 for part in (right, down))
+        yield Blob(x, y, float(radius), dark, whole)

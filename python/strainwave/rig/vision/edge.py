@@ -1,0 +1,242 @@
+"""The edge of a round marker, to some hundredths of a pixel at each of its points.
+
+All pixels near an outline are compared with a sharp edge that is blurred by a Gaussian. Each pixel belongs to the sector of the
+edge that it is nearest to, and each sector, a radial profile of some thirty pixels, tells how far the edge lies from the
+curve. No pixel is interpolated and none is used twice: the errors of the sectors are independent, and their scatter tells how
+well the centre is known. What the sectors share is the brightness inside and outside, a plane each, since light
+changes over a marker; a wrong slope of a plane shifts the whole edge, which is added.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.rig.vision.circle import geometric
+from strainwave.rig.vision.ellipse import Ellipse, circle, fit_ellipse
+from strainwave.rig.vision.outline import Outline, near_curve, turns
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Grey = NDArray[np.float32]
+SECTOR = 3.5  # px of the edge
+_FEWEST, _MOST = 24, 180  # sectors
+_LEAST_USED = 8
+_BAND = 3.5  # of the blur: how far from the edge pixels still tell of it
+_OUTLIER = 4.5  # times the scatter
+_MISFIT = 4.0  # times the usual variance of the pixels of a sector
+_PASSES = 5
+_ROUND = 12.0  # ratio of variances above which points are an ellipse's: 4e-5 of all circles of 70 points reach it
+_WIDE_ARC = 0.6  # share of the edge that an ellipse needs
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """Points of an edge, one of each sector that was seen and is not an outlier.
+
+    Attributes:
+        x, y: of each point [px], shape (n,)
+        curve: the ellipse through them, which is a circle unless they say otherwise
+        covariance: of x and y of its centre [px^2], shape (2, 2)
+        residual: rms distance of the points from the curve [px]
+        inside, outside: brightness of the marker and of the ground around it, of the full scale
+        blur: standard deviation of the edge's spread [px]
+        arc: share of the sectors that are used
+        clipped: share of the pixels about the edge, inside or outside, that are at an end of the scale
+    """
+
+    x: Array
+    y: Array
+    curve: Ellipse
+    covariance: Array
+    residual: float
+    inside: float
+    outside: float
+    blur: float
+    arc: float
+    clipped: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Pixels:
+    """Pixels about a curve, x and y [px], and their brightness."""
+
+    x: Array
+    y: Array
+    value: Array
+
+    def __getitem__(self, chosen: Mask) -> _Pixels:
+        return _Pixels(self.x[chosen], self.y[chosen], self.value[chosen])
+
+
+def edge(grey: Grey, found: Outline) -> Edge | None:
+    """The edge near an outline, or None where there is none."""
+    curve = found.curve
+    width = min(_BAND * found.blur + 1.0, 0.6 * curve.radius)
+    around, distance = _around(grey, curve, width + max(4.0, 0.25 * curve.radius))
+    inside = around[distance < -width]
+    outside = around[distance > width]
+    if len(inside.x) < 12:
+        inside = around[distance < -0.5 * curve.radius]
+    if len(inside.x) < 4 or len(outside.x) < 12:
+        return None
+    levels = _level(inside, curve), _level(outside, curve)
+    try:
+        fit = _fitted(around[np.abs(distance) < width], levels, found)
+    except (np.linalg.LinAlgError, ValueError):
+        return None
+    step = levels[1].middle - levels[0].middle
+    if fit is None or step == 0.0:
+        return None
+    curve, covariance, residual = fit_points(fit.x, fit.y, fit.arc)
+    shift = np.sqrt(np.pi) * fit.blur * curve.radius / step  # of the centre, by a slope of either plane
+    covariance = covariance + shift**2 * (levels[0].slopes_covariance + levels[1].slopes_covariance)
+    clipped = _clipped(inside, outside, float(grey.max()))
+    return Edge(fit.x, fit.y, curve, covariance, residual, levels[0].middle, levels[1].middle, fit.blur, fit.arc, clipped)
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """Points of the edge [px], its blur [px], and the share of the sectors that have one."""
+
+    x: Array
+    y: Array
+    blur: float
+    arc: float
+
+
+def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fit | None:
+    """The edge among the pixels near it; None where too few sectors show one."""
+    curve, blur = found.curve, found.blur
+    sectors = int(np.clip(2.0 * np.pi * curve.radius / SECTOR, _FEWEST, _MOST))
+    low, high = (level.at(band.x, band.y) for level in levels)
+    for _ in range(_PASSES):
+        before, blur_before = curve, blur
+        profiles = _profiles(band, low, high - low, curve, blur, sectors)
+        if np.count_nonzero(profiles.good) < _LEAST_USED:
+            return None
+        x, y, good, blur = profiles.x, profiles.y, profiles.good, profiles.blur
+        for _ in range(2):
+            curve = near_curve(x[good], y[good], float(np.mean(good)), curve)
+            off = np.abs(curve.distances(x, y)[0])
+            good = good & (off <= max(_OUTLIER * float(np.median(off[good])) / 0.6745, 1e-3))
+            if np.count_nonzero(good) < _LEAST_USED:
+                return None
+        if np.hypot(curve.x - before.x, curve.y - before.y) < 0.05 and abs(blur / blur_before - 1.0) < 0.01:
+            break
+    return _Fit(x[good], y[good], blur, float(np.mean(good)))
+
+
+def _around(grey: Grey, curve: Ellipse, reach: float) -> tuple[_Pixels, Array]:
+    """The pixels of the picture within a box about a curve, and how far outside of it each lies."""
+    half = curve.half_axes[0] + reach
+    height, width = grey.shape
+    left, right = max(int(curve.x - half), 0), min(int(curve.x + half) + 2, width)
+    top, bottom = max(int(curve.y - half), 0), min(int(curve.y + half) + 2, height)
+    x, y = np.meshgrid(np.arange(left, right, dtype=np.float64), np.arange(top, bottom, dtype=np.float64))
+    distance = curve.distances(x, y)[0]
+    near = distance < reach
+    pixels = _Pixels(x[near], y[near], grey[top:bottom, left:right][near].astype(np.float64))
+    return pixels, distance[near]
+
+
+@dataclass(frozen=True, eq=False)
+class _Level:
+    """Brightness on one side of an edge: a plane, since light changes over a marker."""
+
+    x: float
+    y: float
+    middle: float
+    slopes: Array
+    slopes_covariance: Array
+
+    def at(self, x: Array, y: Array) -> Array:
+        level: Array = self.middle + self.slopes[0] * (x - self.x) + self.slopes[1] * (y - self.y)
+        return level
+
+
+def _level(pixels: _Pixels, curve: Ellipse) -> _Level:
+    """The plane through brightness at the centre of a curve; pixels that do not belong to it have no weight."""
+    columns = np.column_stack((np.ones(len(pixels.x)), pixels.x - curve.x, pixels.y - curve.y))
+    middle = float(np.median(pixels.value))
+    rest, plane, inverse, variance = pixels.value - middle, np.array([middle, 0.0, 0.0]), np.zeros((3, 3)), 0.0
+    for _ in range(2):
+        spread = np.abs(rest)
+        used = spread <= max(_OUTLIER * float(np.median(spread[::4])) / 0.6745, 1e-6)
+        if np.count_nonzero(used) < 12:
+            break
+        matrix = columns[used]
+        inverse[:] = np.linalg.inv(matrix.T @ matrix)
+        plane = inverse @ (matrix.T @ pixels.value[used])
+        rest = pixels.value - columns @ plane
+        variance = float(np.mean(rest[used] ** 2))
+    return _Level(curve.x, curve.y, float(plane[0]), plane[1:], inverse[1:, 1:] * variance)
+
+
+@dataclass(frozen=True, eq=False)
+class _Profiles:
+    """A point of the edge in each sector [px], which sectors are seen and look like an edge, and the blur [px]."""
+
+    x: Array
+    y: Array
+    good: Mask
+    blur: float
+
+
+def _profiles(band: _Pixels, low: Array, step: Array, curve: Ellipse, blur: float, sectors: int) -> _Profiles:
+    """One step of Gauss-Newton in how far the edge lies from the curve in each sector, and in the blur of all."""
+    from scipy.special import ndtr
+
+    turn, scaled = curve.turns(band.x, band.y), curve.distances(band.x, band.y)[0] / blur
+    sector = np.minimum(((turn + np.pi) * (sectors / (2.0 * np.pi))).astype(np.intp), sectors - 1)
+    rest = band.value - low - step * ndtr(scaled)
+    slope = np.exp(-0.5 * scaled**2) * step * (-1.0 / (blur * np.sqrt(2.0 * np.pi)))  # as the edge moves outwards
+    square = slope * slope
+
+    def total(values: Array) -> Array:
+        sums: Array = np.bincount(sector, weights=values, minlength=sectors).astype(np.float64, copy=False)
+        return sums
+
+    known, told, count = total(square), total(slope * rest), np.bincount(sector, minlength=sectors)
+    seen = (known > 0.5 * np.median(known)) & (count > 2)
+    known[~seen] = 1.0
+    move = told / known
+    misfit = (total(rest * rest) - told * move) / np.maximum(count - 1, 1)
+    good = seen & (misfit <= max(_MISFIT * float(np.median(misfit[seen])), 1e-6)) if np.any(seen) else seen
+    x, y = curve.points(np.where(seen, total(square * turn) / known, turns(sectors)))
+    _, right, down = curve.distances(x, y)
+    widening = slope * scaled
+    weight = float(np.sum((widening * widening)[good[sector]]))
+    wider = float(np.sum((widening * rest)[good[sector]])) / weight if weight > 0.0 else 0.0
+    return _Profiles(x + move * right, y + move * down, good, float(np.clip(blur + wider, 0.6 * blur, 1.7 * blur)))
+
+
+def fit_points(x: Array, y: Array, arc: float) -> tuple[Ellipse, Array, float]:
+    """The circle through points by distance, or the ellipse where they clearly are one's.
+
+    Args:
+        x, y: of the points [px], shape (n,)
+        arc: share of the edge that they cover
+
+    Returns:
+        the curve, the covariance of its centre [px^2], the rms distance of the points from it [px]
+    """
+    n = len(x)
+    fit = geometric(x, y)
+    plain = circle(fit.x, fit.y, fit.radius), fit.covariance[:2, :2], fit.rms
+    if arc < _WIDE_ARC or n < 10:
+        return plain
+    curve, shape = fit_ellipse(x, y, plain[0])
+    rest = float(np.sum(curve.distances(x, y)[0] ** 2))
+    if (n * fit.rms**2 - rest) / 2.0 <= _ROUND * rest / (n - 5):
+        return plain
+    return curve, shape * (rest / (n - 5)), float(np.sqrt(rest / n))
+
+
+def _clipped(inside: _Pixels, outside: _Pixels, top: float) -> float:
+    """The larger of both shares of pixels that are black, or as bright as the picture can be."""
+    bits = np.log2(top * 65535.0 + 1.0) if top < 1.0 else 16.0
+    full = top if top >= 1.0 or (bits >= 10.0 and abs(bits - round(bits)) < 1e-6) else np.inf
+    return max(float(np.mean((part.value <= 0.0) | (part.value >= full))) for part in (inside, outside))

@@ -1,0 +1,265 @@
+"""Angles along a sequence of images: which marker is which, how far the target has turned, and about what."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+from strainwave.messages import quoted
+from strainwave.rig.setup import Camera
+from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, slopes_at
+from strainwave.rig.vision.frame import Frame
+from strainwave.rig.vision.image import by_number
+from strainwave.rig.vision.marker import Marker
+
+Array = NDArray[np.float64]
+_OTHER = 0.05  # relative difference of radii or distances that is no error of measurement, nor a tilted view
+_NEAR = 15.0  # degrees from where the direction of a turn cannot be told
+_LEAST_TURN = np.radians(2.0)  # between images, to tell about what they turned
+_BLURRED = 1.5  # times the usual blur
+_ROUGH = 3.0  # times the usual residual
+_ASKEW = 6.0  # standard errors
+
+
+@dataclass(frozen=True, eq=False)
+class Angles(ComparedByFields):
+    """Angles of the images that told one, in their order.
+
+    Attributes:
+        frames: every image, useful or not
+        angle: from the reference, positive against the clock [rad], shape (useful frames,)
+        sigma: standard deviation of each by itself [rad], same shape; the difference of two angles has the root of the sum
+            of both squares, and so has the angle of an image from the reference
+        reference: name of the image whose angle is 0
+        centre: about which the shaft turned [px], x and y, and the rms distance of the markers from their circles;
+            None where the turn is too small to tell it
+        remarks: what holds for all images and makes the angles doubtful
+    """
+
+    frames: tuple[Frame, ...]
+    angle: Array
+    sigma: Array
+    reference: str
+    centre: tuple[float, float, float] | None
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def useful(self) -> tuple[Frame, ...]:
+        """The images whose angles these are."""
+        return tuple(frame for frame in self.frames if frame.markers is not None)
+
+
+def follow(
+    frames: Sequence[Frame],
+    *,
+    camera: Camera = PERFECT,
+    reference: str | None = None,
+) -> Angles:
+    """The angles of images, of which `look` has found the markers, in the order of the test.
+
+    Args:
+        frames: of the images
+        camera, reference: as `measure_angles` takes them
+
+    Raises:
+        ValueError: no image tells an angle; the reference is none of them, or tells none
+    """
+    frames = _out_of_order(_of_one_target(list(frames), camera))
+    useful = [i for i, frame in enumerate(frames) if frame.markers is not None]
+    if not useful:
+        raise ValueError(_no_angle(frames))
+    told = _chosen(frames, useful, reference)
+    sights = [_Sight.of(frames[i], camera) for i in useful]
+    apart = _by_radius(sights)
+    angle = np.zeros(len(useful))
+    for k, i in enumerate(useful):
+        swapped, step = _step(sights[k - 1] if k else None, sights[k], apart)
+        if swapped:
+            sights[k] = sights[k].swapped()
+        angle[k] = angle[k - 1] + step if k else 0.0
+        ordered = (sights[k].markers[0], sights[k].markers[1])
+        frames[i] = replace(
+            frames[i], markers=ordered, warnings=frames[i].warnings + _uncertain(step, apart, frames[useful[k - 1]].name)
+        )
+    for i, doubts in zip(useful, _unlike(sights), strict=True):
+        frames[i] = replace(frames[i], warnings=frames[i].warnings + doubts)
+    angle -= angle[told]
+    sigma = np.array([sight.sigma for sight in sights])
+    return Angles(tuple(frames), angle, sigma, frames[useful[told]].name, _centre(sights, angle), _askew(sights, camera))
+
+
+@dataclass(frozen=True, eq=False)
+class _Sight:
+    """Both markers of an image, their centres in the plane of the target, shape (2, 2), and those's covariances, (2, 2, 2)."""
+
+    markers: tuple[Marker, Marker]
+    centres: Array
+    covariances: Array
+
+    @classmethod
+    def of(cls, frame: Frame, camera: Camera) -> _Sight:
+        assert frame.markers is not None
+        points = np.array([[each.x, each.y] for each in frame.markers])
+        shape = (frame.size[1], frame.size[0])
+        covariances = np.array([[each.covariance[:2], each.covariance[1:]] for each in frame.markers])
+        if changes_nothing(camera):
+            return cls(frame.markers, points, covariances)
+        slopes = np.array([slopes_at(point, camera, shape) for point in points])
+        return cls(frame.markers, flat(points, camera, shape), slopes @ covariances @ slopes.transpose(0, 2, 1))
+
+    def swapped(self) -> _Sight:
+        return _Sight((self.markers[1], self.markers[0]), self.centres[::-1], self.covariances[::-1])
+
+    @property
+    def vector(self) -> Array:
+        """From the first to the second, right and up."""
+        right, down = self.centres[1] - self.centres[0]
+        return np.array([right, -down])
+
+    @property
+    def distance(self) -> float:
+        return float(np.hypot(*self.vector))
+
+    @property
+    def sigma(self) -> float:
+        """Of the direction [rad]."""
+        along = (self.centres[1] - self.centres[0]) / self.distance
+        across = np.array([-along[1], along[0]])
+        return float(np.sqrt(across @ self.covariances.sum(axis=0) @ across)) / self.distance
+
+    @property
+    def difference(self) -> float:
+        """Of the radii, relative to their mean."""
+        one, other = (marker.radius for marker in self.markers)
+        return 2.0 * (one - other) / (one + other)
+
+
+def _step(before: _Sight | None, now: _Sight, apart: bool) -> tuple[bool, float]:
+    """Whether the markers change places, and the turn since the image before."""
+    swapped = apart and now.difference < 0.0
+    if before is None:
+        return swapped, 0.0
+    a, b = before.vector, now.vector * (-1.0 if swapped else 1.0)
+    if not apart and a @ b < 0.0:
+        swapped, b = True, -b
+    return swapped, float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
+
+
+def _by_radius(sights: Sequence[_Sight]) -> bool:
+    """Whether the radii tell the markers apart in every image."""
+    return min(abs(sight.difference) for sight in sights) > _OTHER
+
+
+def _uncertain(step: float, apart: bool, before: str) -> tuple[str, ...]:
+    limit, why = (180.0, "the direction") if apart else (90.0, "which of two like markers is which")
+    degrees = abs(np.degrees(step))
+    if degrees < limit - _NEAR:
+        return ()
+    return (f"turned by {degrees:.1f} degrees since {quoted(before)}, or more: beyond {limit:g} degrees {why} cannot be told",)
+
+
+def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:
+    """Images whose markers are not those of most images have a fault."""
+    sights = {i: _Sight.of(frame, camera) for i, frame in enumerate(frames) if frame.markers is not None}
+    if len(sights) < 3:
+        return frames
+    for what, told in (("apart", lambda sight: sight.distance), ("in radius", lambda sight: _mean_radius(sight))):
+        sizes = {i: told(sight) for i, sight in sights.items()}
+        usual = float(np.median(list(sizes.values())))
+        for i, size in sizes.items():
+            if abs(size / usual - 1.0) > _OTHER and not frames[i].fault:
+                text = f"not the markers of the other images: {size:.1f} px {what}, {usual:.1f} px in most of them"
+                frames[i] = replace(frames[i], markers=None, fault=text)
+    return frames
+
+
+def _mean_radius(sight: _Sight) -> float:
+    return 0.5 * (sight.markers[0].radius + sight.markers[1].radius)
+
+
+def _out_of_order(frames: list[Frame]) -> list[Frame]:
+    """Warns of images whose name or time tells another order than the one given, and of those that are there twice."""
+    known: dict[str, str] = {}
+    for i, frame in enumerate(frames):
+        doubts = []
+        if i and by_number(frame.name) < by_number(frames[i - 1].name):
+            doubts.append(f"stands after {quoted(frames[i - 1].name)}, before it by its name")
+        earlier = next((each for each in reversed(frames[:i]) if each.taken is not None), None)
+        if earlier is not None and frame.taken is not None and earlier.taken is not None and frame.taken < earlier.taken:
+            doubts.append(f"stands after {quoted(earlier.name)}, but was taken before it, at {frame.taken}")
+        if frame.sha256 and frame.sha256 in known:
+            doubts.append(f"is the same picture as {quoted(known[frame.sha256])}")
+        known.setdefault(frame.sha256, frame.name)
+        if doubts:
+            frames[i] = replace(frame, warnings=(*frame.warnings, *doubts))
+    return frames
+
+
+def _unlike(sights: Sequence[_Sight]) -> list[tuple[str, ...]]:
+    """What each image has worse than the others."""
+    doubts: list[list[str]] = [[] for _ in sights]
+    if len(sights) >= 3:
+        for place in range(2):
+            for what, factor, values in (
+                ("blur", _BLURRED, [sight.markers[place].blur for sight in sights]),
+                ("residual", _ROUGH, [sight.markers[place].residual for sight in sights]),
+            ):
+                usual = float(np.median(values))
+                for texts, value in zip(doubts, values, strict=True):
+                    if value > factor * usual:
+                        texts.append(f"marker {place + 1}: {what} {value:.2g} px, {usual:.2g} px in most images")
+    return [tuple(each) for each in doubts]
+
+
+def _centre(sights: Sequence[_Sight], angle: Array) -> tuple[float, float, float] | None:
+    """The point of the plane about which the markers turned: least squares of p = centre + R(angle) a, of both."""
+    if np.ptp(angle) < _LEAST_TURN:
+        return None
+    cosine, sine = np.cos(angle), np.sin(angle)
+    one, none = np.ones_like(angle), np.zeros_like(angle)
+    right = np.column_stack((one, none, cosine, sine))  # of a turn against the clock, y pointing down
+    down = np.column_stack((none, one, -sine, cosine))
+    empty = np.zeros((len(angle), 2))
+    rows, values = [], []
+    for marker in range(2):
+        for axis, block in ((0, right), (1, down)):
+            parts = (block[:, :2], block[:, 2:], empty) if marker == 0 else (block[:, :2], empty, block[:, 2:])
+            rows.append(np.column_stack(parts))
+            values.append([sight.centres[marker, axis] for sight in sights])
+    matrix, target = np.concatenate(rows), np.concatenate(values)
+    found, *_ = np.linalg.lstsq(matrix, target)
+    rest = target - matrix @ found
+    rms = float(np.sqrt(np.sum(rest**2) / (2 * len(sights))))
+    return float(found[0]), float(found[1]), rms
+
+
+def _askew(sights: Sequence[_Sight], camera: Camera) -> tuple[str, ...]:
+    """Whether the camera looks at the target at an angle that it does not know of."""
+    ratio = float(np.median([marker.ratio for sight in sights for marker in sight.markers]))
+    if ratio > 0.999:
+        return ()
+    tilt, error = np.degrees(np.arccos(ratio)), 0.5 * (1.0 - ratio)
+    seen = f"the markers are ellipses of axis ratio {ratio:.4f}, as if seen {tilt:.1f} degrees askew"
+    return (f"{seen}: angles are in error by up to {error:.2g} rad unless the camera's tilt, or aspect, is given",)
+
+
+def _chosen(frames: Sequence[Frame], useful: Sequence[int], reference: str | None) -> int:
+    if reference is None:
+        return 0
+    places = [i for i, frame in enumerate(frames) if frame.name == reference]
+    if not places:
+        raise ValueError(f"reference = {quoted(reference)} is none of the {len(frames)} images")
+    if places[0] not in useful:
+        raise ValueError(f"reference = {quoted(reference)} tells no angle: {frames[places[0]].fault}")
+    return useful.index(places[0])
+
+
+def _no_angle(frames: Sequence[Frame]) -> str:
+    if not frames:
+        return "there is no image"
+    first = frames[0]
+    return f"none of {len(frames)} images tells an angle; {quoted(first.name)}: {first.fault}"

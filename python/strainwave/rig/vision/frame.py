@@ -1,0 +1,135 @@
+"""What one photograph of the target tells."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+
+from strainwave.messages import one_line
+from strainwave.rig.setup import Camera
+from strainwave.rig.vision.camera import PERFECT
+from strainwave.rig.vision.image import Grey, Image, read_image
+from strainwave.rig.vision.marker import Marker, found_and_partial
+
+_WHOLE = 0.9  # share of an edge below which it is said how much was seen
+_CLIPPED = 0.02  # share of pixels about an edge at an end of the scale, above which it is said
+_MOST_SHOWN = 4
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What one image told.
+
+    Attributes:
+        name: of the file
+        sha256: of its bytes
+        markers: both, always in the same order; none if the image was of no use
+        fault: why it was of no use, empty otherwise
+        warnings: what makes it doubtful
+        size: width and height [px]; 0, 0 if it could not be read
+        taken: when, as the file tells it, or None
+    """
+
+    name: str
+    sha256: str
+    markers: tuple[Marker, Marker] | None
+    fault: str = ""
+    warnings: tuple[str, ...] = ()
+    size: tuple[int, int] = (0, 0)
+    taken: datetime | None = None
+
+
+def look(
+    source: str | Path | Image,
+    *,
+    camera: Camera = PERFECT,
+    radius: tuple[float, float] | None = None,
+    dark: bool | None = None,
+) -> Frame:
+    """Finds both markers in an image. What cannot be read, or shows any other number of markers, has a fault that says so.
+
+    Args:
+        source: a file, or a picture as `read_image` and `as_image` give it
+        camera, radius, dark: as `measure_angles` takes them
+
+    Raises:
+        ValueError: a number is out of its range
+
+    >>> look("missing.png").fault
+    'cannot be read: No such file or directory'
+    """
+    if isinstance(source, Image):
+        image = source
+    else:
+        path = Path(source)
+        try:
+            image = read_image(path)
+        except (OSError, ValueError) as error:
+            reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
+            return Frame(path.name, _digest(path), None, one_line(f"cannot be read: {reason}"))
+    found, partial = found_and_partial(image.grey, radius, dark, camera)
+    pair, fault = _pair(found, partial)
+    if not found:
+        fault = _nothing(image.grey, partial)
+    size = (image.grey.shape[1], image.grey.shape[0])
+    warnings = tuple(text for i, each in enumerate(pair or (), 1) for text in _doubts(i, each))
+    return Frame(image.name, image.sha256, pair, fault, warnings, size, image.taken)
+
+
+def _digest(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return ""
+
+
+def _pair(found: Sequence[Marker], partial: Sequence[Marker]) -> tuple[tuple[Marker, Marker] | None, str]:
+    """The two markers; or why there are not two."""
+    groups = [[each for each in found if each.dark == dark] for dark in (True, False)]
+    groups.sort(key=len, reverse=True)
+    most, fewer = groups
+    if len(most) == 2 and all(_holds(each, most) for each in fewer):
+        return (most[0], most[1]), ""
+    if len(found) == 1:
+        rest = f"; of another, {_place(partial[0])}, {partial[0].arc:.0%} of the edge is seen" if partial else ""
+        return None, f"one marker instead of two: {_place(found[0])}{rest}"
+    told = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MOST_SHOWN])
+    more = f", and {len(found) - _MOST_SHOWN} more" if len(found) > _MOST_SHOWN else ""
+    return None, f"{len(found)} markers instead of two: {told}{more}; say which by radius=(least, most) in px, or by dark"
+
+
+def _holds(disc: Marker, markers: Sequence[Marker]) -> bool:
+    """Whether a disc is what the markers are on."""
+    return all(math.hypot(disc.x - each.x, disc.y - each.y) + each.radius < disc.radius for each in markers)
+
+
+def _nothing(grey: Grey, partial: Sequence[Marker]) -> str:
+    if partial:
+        return f"no marker: of one {_place(partial[0])} only {partial[0].arc:.0%} of the edge is seen"
+    low, high = (float(each) for each in np.percentile(grey[::2, ::2], (1.0, 99.0)))
+    if low >= 0.99:
+        return "no marker: over-exposed, nearly all pixels are at full scale"
+    if high - low < 0.01:
+        return f"no marker: the picture is even, {low:.1%} to {high:.1%} of full scale"
+    bright = float(np.mean(grey >= 1.0))
+    more = f"; over-exposed, {bright:.0%} of the pixels are at full scale" if bright > 0.2 else ""
+    return f"no marker: nothing round with a clear edge{more}"
+
+
+def _doubts(number: int, marker: Marker) -> list[str]:
+    doubts = []
+    if marker.arc < _WHOLE:
+        doubts.append(f"marker {number}: {marker.arc:.0%} of the edge is seen")
+    if marker.clipped > _CLIPPED:
+        doubts.append(f"marker {number}: {marker.clipped:.0%} of the pixels about its edge are black or at full scale")
+    return doubts
+
+
+def _place(marker: Marker) -> str:
+    return f"at x = {marker.x:.0f}, y = {marker.y:.0f} px with radius {marker.radius:.1f} px"

@@ -1,0 +1,155 @@
+"""Circular markers in a picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.rig.setup import Camera
+from strainwave.rig.vision.blob import blobs
+from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, in_picture
+from strainwave.rig.vision.edge import Edge, edge, fit_points
+from strainwave.rig.vision.outline import Grey, outline
+
+Array = NDArray[np.float64]
+SMALLEST_RADIUS = 6.0  # px, unless another is given
+_LEAST_ARC = 0.5
+_ROUNDEST, _ROUGHEST = 0.02, 0.5  # residual of a circle: of its radius, and px
+
+
+@dataclass(frozen=True)
+class Marker:
+    """A circular marker in an image; x points right, y down, and the middle of the first pixel is 0, 0.
+
+    Attributes:
+        x, y: its centre [px]
+        radius: mean radius of its edge [px]
+        covariance: of x with itself, of x with y, of y with itself [px^2]
+        residual: rms distance of the edge from the fitted curve [px]
+        contrast: difference of brightness across the edge, of the full scale [1]
+        blur: standard deviation of the edge's spread [px]
+        arc: share of the edge that was seen and used [1]
+        dark: whether it is darker than the ground
+        ratio: of the shorter axis to the longer, where the camera is known after its tilt was undone [1]
+        short_direction: of the shorter axis, from x towards the top of the image [rad]
+        clipped: share of the pixels inside or outside of the edge that are at an end of the scale [1]
+    """
+
+    x: float
+    y: float
+    radius: float
+    covariance: tuple[float, float, float]
+    residual: float
+    contrast: float
+    blur: float
+    arc: float
+    dark: bool = True
+    ratio: float = 1.0
+    short_direction: float = 0.0
+    clipped: float = 0.0
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of a coordinate of the centre [px]: root of the mean of both variances."""
+        return math.sqrt(0.5 * (self.covariance[0] + self.covariance[2]))
+
+
+def find_markers(
+    grey: Grey,
+    *,
+    radius: tuple[float, float] | None = None,
+    dark: bool | None = None,
+    camera: Camera = PERFECT,
+) -> list[Marker]:
+    """All round markers of a picture, the larger before the smaller.
+
+    Spots are searched for by local brightness. The edge of each is found by radial profiles, outliers left out, and a circle
+    fitted by distance: an ellipse where its points clearly say so. With a camera that is known, the points are first brought
+    into the plane of the target, where the edge is a circle again, whose centre an ellipse does not show.
+
+    Args:
+        grey: brightness, of the full scale, shape (height, width)
+        radius: the smallest and the largest that a marker may have [px]; from 6 px to half the picture if None
+        dark: whether markers are darker than the ground; either if None
+        camera: what it does to lengths
+
+    Raises:
+        ValueError: a radius out of order; a camera that cannot have taken this picture
+
+    >>> from strainwave.rig.virtual.render import Scene, render
+    >>> scene = Scene(size=(320, 240), radius=20.0, distance=150.0, blur=1.0)
+    >>> picture = render(scene, 0.0, np.random.default_rng(1)).astype(np.float32) / 255.0
+    >>> [(round(marker.x, 1), round(marker.y, 1), round(marker.radius, 1)) for marker in find_markers(picture)]
+    [(84.5, 119.5, 20.0), (234.5, 119.5, 20.0)]
+    """
+    return found_and_partial(grey, radius, dark, camera)[0]
+
+
+def found_and_partial(
+    grey: Grey, radius: tuple[float, float] | None, dark: bool | None, camera: Camera
+) -> tuple[list[Marker], list[Marker]]:
+    """Markers, and what looks like one of which less than half of the edge is seen."""
+    low, high = _limits(grey.shape, radius)
+    found: list[Marker] = []
+    for blob in blobs(grey, low, high):
+        if dark is not None and blob.dark != dark:
+            continue
+        rough = outline(grey, blob.x, blob.y, blob.radius, blob.dark)
+        if rough is None or rough.arc < 0.25 or not 0.8 * low <= rough.curve.radius <= 1.2 * high:
+            continue
+        fine = edge(grey, rough)
+        if fine is not None and _is_round(fine, blob.dark) and low <= fine.curve.radius <= high:
+            found.append(_marker(fine, camera, grey.shape, blob.dark))
+    found = _without_rings(sorted(found, key=lambda each: (-round(each.radius), each.x, each.y)))
+    return [each for each in found if each.arc >= _LEAST_ARC], [each for each in found if each.arc < _LEAST_ARC]
+
+
+def _limits(shape: tuple[int, ...], radius: tuple[float, float] | None) -> tuple[float, float]:
+    if radius is None:
+        return SMALLEST_RADIUS, 0.5 * min(shape)
+    low = arguments.number("radius[0]", radius[0], "px", brackets="[)", low=2.0)
+    return low, arguments.number("radius[1]", radius[1], "px", low=low)
+
+
+def _is_round(fine: Edge, dark: bool) -> bool:
+    longer, shorter = fine.curve.half_axes
+    smooth = fine.residual <= max(_ROUNDEST * fine.curve.radius, _ROUGHEST)
+    return smooth and shorter > 0.4 * longer and (fine.outside > fine.inside) == dark
+
+
+def _marker(fine: Edge, camera: Camera, shape: tuple[int, ...], dark: bool) -> Marker:
+    curve, covariance = fine.curve, fine.covariance
+    x, y, radius = curve.x, curve.y, curve.radius
+    if not changes_nothing(camera):
+        size = (shape[0], shape[1])
+        points = flat(np.column_stack((fine.x, fine.y)), camera, size)
+        curve, _, _ = fit_points(points[:, 0], points[:, 1], fine.arc)
+        (x, y), _ = in_picture(np.array([curve.x, curve.y]), camera, size, np.array([x, y]))
+    longer, shorter = curve.half_axes
+    return Marker(
+        x=float(x),
+        y=float(y),
+        radius=radius + 0.5 * fine.blur**2 / radius,  # the blurred edge of a disc lies that far inside
+        covariance=(float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])),
+        residual=fine.residual,
+        contrast=abs(fine.outside - fine.inside),
+        blur=fine.blur,
+        arc=fine.arc,
+        dark=dark,
+        ratio=shorter / longer,
+        short_direction=curve.short_direction,
+        clipped=fine.clipped,
+    )
+
+
+def _without_rings(markers: list[Marker]) -> list[Marker]:
+    """Of what has the same centre, the outermost: a marker may have a ring or a hole."""
+    kept: list[Marker] = []
+    for marker in markers:
+        if all(math.hypot(marker.x - each.x, marker.y - each.y) > 0.5 * each.radius for each in kept):
+            kept.append(marker)
+    return kept
