@@ -1,6 +1,7 @@
 """The torsion test rig: images of two markers and masses on pans in, the loop of a gear, its stiffness and lost motion out."""
 
 from strainwave.rig.analysis import LoopAnalysis, Row, analyse, table
+from strainwave.rig.budget import Budget, Contribution, angle_budget, stiffness_budget, torque_budget
 from strainwave.rig.catalogue_check import CatalogueCheck
 from strainwave.rig.comparison import Compared, Comparison, compare
 from strainwave.rig.loop import Loop
@@ -14,15 +15,18 @@ from strainwave.rig.soft_spot import SoftSpot, soft_spots, words_on_band
 from strainwave.rig.steps import Step
 from strainwave.rig.steps_file import append_step, read_steps, write_steps
 from strainwave.rig.stiffness import LocalStiffness, Stiffness, closure_of_secants, soft_parts
+from strainwave.rig.torque import Torque, arm, blank, torque_of
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.render import Scene, render
 from strainwave.rig.virtual.test import VirtualTest, simulate_test
 
 __all__ = [
+    "Budget",
     "Camera",
     "CatalogueCheck",
     "Compared",
     "Comparison",
+    "Contribution",
     "Loading",
     "LocalStiffness",
     "Loop",
@@ -37,11 +41,15 @@ __all__ = [
     "SoftSpot",
     "Step",
     "Stiffness",
+    "Torque",
     "Value",
     "VirtualTest",
     "Width",
     "analyse",
+    "angle_budget",
     "append_step",
+    "arm",
+    "blank",
     "closure_of_secants",
     "compare",
     "cycles",
@@ -56,7 +64,10 @@ __all__ = [
     "simulate_test",
     "soft_parts",
     "soft_spots",
+    "stiffness_budget",
     "table",
+    "torque_budget",
+    "torque_of",
     "without_friction",
     "words_on_band",
     "write_rig",
