@@ -1,0 +1,250 @@
+"""Whether a measured quantity depends on what was varied: regressions, and tests corrected for their number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+
+Array = NDArray[np.float64]
+Law = Literal["power", "exponential", "linear"]
+
+LEVEL = 0.05  # of significance, of all tests of a series together
+SHUFFLES = 1999
+SEED = 20240229  # of the shuffles: the same series gives the same numbers
+TOGETHER = 0.95  # share of a factor's variance that others explain, beyond which its effect is not its own
+
+
+@dataclass(frozen=True)
+class Slope:
+    """A coefficient of a regression.
+
+    Attributes:
+        value: the coefficient; not a number where the data cannot tell it
+        sigma: its standard deviation
+        freedom: degrees of freedom that the residuals have
+        p: probability of a coefficient as far from zero, were it zero (t-test); 1 where the data cannot tell
+    """
+
+    value: float
+    sigma: float
+    freedom: int
+    p: float
+
+    @property
+    def half_width(self) -> float:
+        """Of the 95 % interval."""
+        from scipy.stats import t
+
+        return float(t.ppf(0.975, self.freedom) * self.sigma)
+
+
+@dataclass(frozen=True)
+class Trend:
+    """How a quantity depends on a factor, the other factors and the units taken out.
+
+    Attributes:
+        factor: what was varied
+        quantity: what was measured
+        law: power, quantity ~ factor^value; exponential, quantity ~ exp(value factor); linear, where a quantity is not
+            positive throughout: its change per factor
+        slope: the coefficient with its t-test
+        shuffled: probability by shuffling the residuals (Freedman and Lane 1983), which needs no normal distribution
+        corrected: the t-test's probability times as many as Holm's method asks for, over all tests of the series
+        together_with: factors that were varied along with this one, so that the effect may be theirs
+        points: how many measurements
+    """
+
+    factor: str
+    quantity: str
+    law: Law
+    slope: Slope
+    shuffled: float
+    corrected: float
+    together_with: tuple[str, ...]
+    points: int
+
+    @property
+    def significant(self) -> bool:
+        """Whether there is an effect, at 5 % for all tests of the series together."""
+        return self.corrected < LEVEL
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % interval of the coefficient, for this test by itself."""
+        return self.slope.value - self.slope.half_width, self.slope.value + self.slope.half_width
+
+
+def regress(columns: Array, values: Array) -> list[Slope]:
+    """Least squares of values on columns, each with the t-test of its coefficient.
+
+    Args:
+        columns: shape (n, m); those that are sums of others get no coefficient
+        values: shape (n,)
+
+    Raises:
+        ValueError: there are not more values than columns
+
+    >>> import numpy as np
+    >>> x = np.array([0.0, 1.0, 2.0, 3.0])
+    >>> constant, slope = regress(np.column_stack((np.ones(4), x)), np.array([0.0, 1.1, 1.9, 3.0]))
+    >>> round(slope.value, 6), round(slope.half_width, 6)
+    (0.98, 0.182546)
+    """
+    n, m = columns.shape
+    if n <= m:
+        raise ValueError(f"{n} measurements do not tell {m} coefficients with an interval; {m + 1} or more are needed")
+    size = np.linalg.norm(columns, axis=0)
+    basis, triangle = np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))
+    if np.abs(np.diag(triangle)).min() < 1e-9:
+        return [_untold(n - m)] * m
+    solution = np.linalg.solve(triangle, basis.T @ values)
+    residual = values - basis @ (basis.T @ values)
+    variance = float(residual @ residual) / (n - m)
+    inverse = np.linalg.inv(triangle)
+    sigmas = np.sqrt(variance * np.sum(inverse**2, axis=1)) / size
+    return [_slope(float(value), float(sigma), n - m) for value, sigma in zip(solution / size, sigmas, strict=True)]
+
+
+def _untold(freedom: int) -> Slope:
+    return Slope(float("nan"), float("inf"), freedom, 1.0)
+
+
+def _slope(value: float, sigma: float, freedom: int) -> Slope:
+    from scipy.stats import t
+
+    if sigma <= 1e-12 * abs(value):
+        return Slope(value, sigma, freedom, 0.0 if value else 1.0)
+    return Slope(value, sigma, freedom, float(2.0 * t.sf(abs(value) / sigma, freedom)))
+
+
+def holm(probabilities: Sequence[float]) -> list[float]:
+    """Probabilities corrected for their number (Holm 1979): the chance of one false alarm or more is kept.
+
+    >>> holm([0.01, 0.04, 0.03])
+    [0.03, 0.06, 0.06]
+    """
+    corrected, highest = [0.0] * len(probabilities), 0.0
+    for rank, place in enumerate(sorted(range(len(probabilities)), key=lambda each: probabilities[each])):
+        highest = max(highest, min(1.0, (len(probabilities) - rank) * probabilities[place]))
+        corrected[place] = highest
+    return corrected
+
+
+def shuffled(others: Array, factor: Array, values: Array, shuffles: int = SHUFFLES, seed: int = SEED) -> float:
+    """Probability that shuffled residuals show a dependence on the factor as strong (Freedman and Lane 1983).
+
+    Args:
+        others: columns of what else the values depend on, shape (n, m)
+        factor: shape (n,)
+        values: shape (n,)
+        shuffles: how many are drawn
+        seed: which
+
+    Returns:
+        At least 1 / (shuffles + 1).
+    """
+    basis = np.linalg.qr(others)[0]
+    own, residual = factor - basis @ (basis.T @ factor), values - basis @ (basis.T @ values)
+    random = np.random.default_rng(seed)
+    drawn = random.permuted(np.tile(residual, (shuffles, 1)), axis=1)
+    drawn -= (drawn @ basis) @ basis.T
+    strengths = _strengths(drawn, own)
+    here = _strengths(residual[np.newaxis], own)[0]
+    return float((1 + np.sum(strengths >= here * (1.0 - 1e-12))) / (shuffles + 1))
+
+
+def _strengths(residuals: Array, factor: Array) -> Array:
+    """Squares of the correlations of residuals with a factor, shape (k,)."""
+    sizes = np.sum(residuals**2, axis=1) * float(factor @ factor)
+    return np.asarray((residuals @ factor) ** 2 / np.where(sizes > 0.0, sizes, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Design(ComparedByFields):
+    """What was varied: a column for each factor as its law takes it, and which specimen.
+
+    Args:
+        laws: of each factor
+        columns: of each factor, as measured, shape (n,)
+        units: which specimen each measurement is of, n texts; each has a level of its own
+    """
+
+    laws: Mapping[str, Law]
+    columns: Mapping[str, Array]
+    units: tuple[str, ...]
+
+    def taken(self, factor: str) -> Array:
+        """The column of a factor: its logarithm where the law is a power."""
+        column = self.columns[factor]
+        return np.log(column) if self.laws[factor] == "power" else column - column.mean()
+
+    def levels(self) -> Array:
+        """Columns of the level of each specimen, shape (n, units)."""
+        names = sorted(set(self.units))
+        return np.array([[float(each == name) for name in names] for each in self.units])
+
+    def others(self, factor: str) -> Array:
+        """All columns but that of a factor."""
+        rest = [self.taken(each) for each in self.columns if each != factor]
+        return np.column_stack((self.levels(), *rest))
+
+    def together(self, factor: str) -> tuple[str, ...]:
+        """Which other factors changed along with one: each explains nearly all of it, or all of them do."""
+        alone = [each for each in self.columns if each != factor and _explained(self, factor, [each]) > TOGETHER]
+        rest = [each for each in self.columns if each != factor]
+        return tuple(alone) or (tuple(rest) if rest and _explained(self, factor, rest) > TOGETHER else ())
+
+
+def _explained(design: Design, factor: str, by: Sequence[str]) -> float:
+    """Share of a factor's variance within specimens that others explain."""
+    levels = np.linalg.qr(design.levels())[0]
+
+    def within(column: Array) -> Array:
+        return np.asarray(column - levels @ (levels.T @ column))
+
+    column = within(design.taken(factor))
+    others = np.column_stack([within(design.taken(each)) for each in by])
+    left = column - others @ np.linalg.lstsq(others, column)[0]
+    total = float(column @ column)
+    return 1.0 - float(left @ left) / total if total > 0.0 else 1.0
+
+
+def trends(design: Design, quantities: Mapping[str, Array]) -> list[Trend]:
+    """Fits each quantity to all factors at once, and tests each dependence.
+
+    A quantity that is positive throughout is fitted by its logarithm: the law of a factor then is a power or an exponential,
+    and scatter counts relative to the size.
+
+    Args:
+        design: what was varied, one factor or more
+        quantities: measured values by name, shape (n,)
+
+    Raises:
+        ValueError: too few measurements
+    """
+    found = [trend for name, values in quantities.items() for trend in _of_quantity(design, name, values)]
+    corrected = holm([each.slope.p for each in found])
+    return [replace(each, corrected=value) for each, value in zip(found, corrected, strict=True)]
+
+
+def _of_quantity(design: Design, name: str, values: Array) -> list[Trend]:
+    positive = bool(np.all(values > 0.0))
+    fitted = np.log(values) if positive else values
+    if not positive:
+        design = replace(design, laws=dict.fromkeys(design.laws, "linear"))
+    factors = list(design.columns)
+    levels = design.levels()
+    slopes = regress(np.column_stack((levels, *[design.taken(each) for each in factors])), fitted)[levels.shape[1] :]
+    found = []
+    for factor, slope in zip(factors, slopes, strict=True):
+        told = bool(np.isfinite(slope.value))
+        p = shuffled(design.others(factor), design.taken(factor), fitted) if told else 1.0
+        together = design.together(factor)
+        found.append(Trend(factor, name, design.laws[factor], slope, p, slope.p, together, len(values)))
+    return found
