@@ -32,6 +32,7 @@ DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 USUAL = "one of the models whose drives run in code of their own, for speed"
 SERIES = "stages become one spring, with which runs are faster"
+PRINTED = "of a gear that a printed table of four stiffnesses is made into"
 AT_REST = "friction whose breakaway a torsion loop from the input can tell"
 ELSEWHERE = {
     "Fourier": {
@@ -99,7 +100,14 @@ ELSEWHERE = {
         "specialised.hpp": USUAL,
         "identify/experiment.py": "a run under gravity starts hanging, so must the log that it is fitted to",
     },
-    "Linear": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE, "studies/actuator_ramp.py": SERIES},
+    "Linear": {
+        "specialised.hpp": USUAL,
+        "identify/torsion.py": TORSION_CURVE,
+        "studies/actuator_ramp.py": SERIES,
+        "rig/virtual/printed.py": PRINTED,
+    },
+    "PlainRatio": {"rig/virtual/printed.py": PRINTED},
+    "Regimes": {"rig/virtual/printed.py": PRINTED, "rig/specimen.py": PRINTED},
     "Piecewise": {"specialised.hpp": USUAL},
     "ThreeSegment": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
     "Cubic": {

@@ -65,7 +65,7 @@ def load_by_steps(
     Args:
         gear: which gear
         rig: which rig; the values of its numbers are taken to be true
-        steps: as made; a torque measured otherwise is taken as applied, whatever the arm
+        steps: as made; a torque measured otherwise is taken as that of the shaft, without cords and pulleys
         wait: between the change of the masses and the photograph, where steps do not tell their times [s]
         settling: time constant with which the disk comes to rest [s]; 0 if at once
         virgin: whether the gear was never loaded before; else it goes through all the steps once beforehand
@@ -164,6 +164,8 @@ class _Weights:
     def behind_pulleys(self, disk: Array, sense: float) -> Array:
         """Torque that arrives at the shaft while the disk turns in a sense."""
         torque = self.torque(disk)
+        if self.step.torque is not None:
+            return torque
         return torque - sense * (self.rig.pulley_torque.value + self.rig.pulley_share.value * np.abs(torque))
 
 

@@ -1,0 +1,84 @@
+"""Gears whose loop is a row of a printed table: four stiffnesses and a width, but no points."""
+
+from __future__ import annotations
+
+import math
+
+from strainwave import arguments, hysteresis, kinematics, stiffness
+from strainwave._core import Gear
+
+# Document T, Table 2: degrees of the flexspline in its mount: N.m/rad of positive unloading, negative loading, negative
+# unloading and positive loading; width in degrees. All at the input of a gear 1:100, up to +-0.36 N.m.
+TABLE_2 = {
+    0: (4.51, 0.31, 4.85, 0.30, 50.5),
+    60: (4.36, 0.29, 3.59, 0.33, 51.9),
+    120: (4.19, 0.32, 5.08, 0.33, 49.4),
+}
+PEAK = 0.36  # N.m
+ONSET = 0.03  # N.m, assumed: where the soft regimes set in, of which the table says nothing (erratum E-T4)
+NOTHING = 1e-6  # N.m/rad, of a spring beside which all of the gear's torque is the hysteresis's
+
+
+def printed_gear(position: int) -> Gear:
+    """The gear of document T with its flexspline turned by 0, 60 or 120 degrees, as Table 2 prints it.
+
+    The printed stiffnesses are read as slopes between the knees of the loop (erratum E-T4). The gear is 1:100.
+
+    Raises:
+        ValueError: no row of the table
+
+    >>> round(math.degrees(printed_gear(60).hysteresis.lost_motion * 100.0), 9)
+    51.9
+    """
+    if position not in TABLE_2:
+        raise ValueError(f"position = {position} degrees must be 0, 60 or 120: the rows of document T's Table 2")
+    *slopes, width = TABLE_2[position]
+    return gear_of_regimes(*slopes, width=math.radians(width), peak=PEAK)
+
+
+def gear_of_regimes(
+    positive_unloading: float,
+    negative_loading: float,
+    negative_unloading: float,
+    positive_loading: float,
+    *,
+    width: float,
+    peak: float,
+    onset: float = ONSET,
+    ratio: float = 100.0,
+) -> Gear:
+    """The gear whose loop at the input, output held, has these stiffnesses in its four regimes and this width.
+
+    Args:
+        positive_unloading, negative_loading, negative_unloading, positive_loading: slopes at the input [N.m/rad]
+        width: of the loop at zero torque [rad]
+        peak: largest torque of the loop at the input [N.m]
+        onset: torque at the input at which the soft regimes set in [N.m]
+        ratio: of the gear, input over output angle [1]
+
+    Raises:
+        ValueError: a number out of its range; or the soft regimes take more torque than the peak has: no loop is so wide
+
+    Source:
+        document T, Table 2, and erratum E-T4
+
+    >>> gear = gear_of_regimes(4.51, 0.31, 4.85, 0.30, width=math.radians(50.5), peak=0.36)
+    >>> gear.hysteresis.positive_unloading, gear.hysteresis.onset
+    (45100.0, 3.0)
+    """
+    width, ratio = arguments.number("width", width, "rad", brackets="[)", low=0.0), arguments.number("ratio", ratio, low=0.0)
+    law = hysteresis.Regimes(
+        positive_unloading=positive_unloading * ratio**2,
+        negative_loading=negative_loading * ratio**2,
+        negative_unloading=negative_unloading * ratio**2,
+        positive_loading=positive_loading * ratio**2,
+        onset=onset * ratio,
+        lost_motion=width / ratio,
+    )
+    for loading, unloading in ((positive_loading, positive_unloading), (negative_loading, negative_unloading)):
+        if (needed := onset + width / (1.0 / loading - 1.0 / unloading)) > peak:
+            raise ValueError(
+                f"width = {width:g} rad asks for {needed:.3g} N.m at a loading stiffness of {loading:g} N.m/rad; "
+                f"the peak of {peak:g} N.m does not reach that"
+            )
+    return Gear(kinematics=kinematics.PlainRatio(reduction=ratio), stiffness=stiffness.Linear(k=NOTHING), hysteresis=law)
