@@ -17,6 +17,7 @@ from strainwave.rig.steps_file import append_step, read_steps, write_steps
 from strainwave.rig.stiffness import LocalStiffness, Stiffness, closure_of_secants, soft_parts
 from strainwave.rig.torque import Torque, arm, blank, torque_of
 from strainwave.rig.virtual.loading import Loading, load_by_steps
+from strainwave.rig.virtual.printed import gear_of_regimes, printed_gear
 from strainwave.rig.virtual.render import Scene, render
 from strainwave.rig.virtual.test import VirtualTest, simulate_test
 
@@ -54,8 +55,10 @@ __all__ = [
     "compare",
     "cycles",
     "friction_at_rest",
+    "gear_of_regimes",
     "load",
     "load_by_steps",
+    "printed_gear",
     "read_steps",
     "referred",
     "render",
