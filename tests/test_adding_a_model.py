@@ -107,7 +107,7 @@ ELSEWHERE = {
         "rig/virtual/printed.py": PRINTED,
     },
     "PlainRatio": {"rig/virtual/printed.py": PRINTED},
-    "Regimes": {"rig/virtual/printed.py": PRINTED, "rig/specimen.py": PRINTED},
+    "Regimes": {"rig/virtual/printed.py": PRINTED},
     "Piecewise": {"specialised.hpp": USUAL},
     "ThreeSegment": {"specialised.hpp": USUAL, "identify/torsion.py": TORSION_CURVE},
     "Cubic": {
