@@ -6,6 +6,7 @@ from strainwave.rig.catalogue_check import CatalogueCheck
 from strainwave.rig.comparison import Compared, Comparison, compare
 from strainwave.rig.loop import Loop
 from strainwave.rig.lost_motion import Width
+from strainwave.rig.plan import Plan, Stage, plan, reachable, task
 from strainwave.rig.regimes import Regime, Segmented, cycles, segment
 from strainwave.rig.result import Result
 from strainwave.rig.rig_file import load, rigs, write_rig
@@ -33,6 +34,7 @@ __all__ = [
     "Loop",
     "LoopAnalysis",
     "Masses",
+    "Plan",
     "Regime",
     "Result",
     "Rig",
@@ -40,6 +42,7 @@ __all__ = [
     "Scene",
     "Segmented",
     "SoftSpot",
+    "Stage",
     "Step",
     "Stiffness",
     "Torque",
@@ -58,7 +61,9 @@ __all__ = [
     "gear_of_regimes",
     "load",
     "load_by_steps",
+    "plan",
     "printed_gear",
+    "reachable",
     "read_steps",
     "referred",
     "render",
@@ -69,6 +74,7 @@ __all__ = [
     "soft_spots",
     "stiffness_budget",
     "table",
+    "task",
     "torque_budget",
     "torque_of",
     "without_friction",
