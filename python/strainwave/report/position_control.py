@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import Drive
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
@@ -280,9 +281,9 @@ def numbers(sets: Mapping[str, GearSet]) -> Iterator[Number]:
 
 
 def _of_set(model: str, gear_set: GearSet) -> Iterator[Number]:
-    drive = gear_set.drive
-    for part in parts(drive):
-        yield from _of_part(model, gear_set, part.name, getattr(drive, part.name))
+    for part in parts(Drive()):
+        if (chosen := getattr(gear_set, part.name)) is not None:
+            yield from _of_part(model, gear_set, part.name, chosen)
 
 
 def _of_part(model: str, gear_set: GearSet, path: str, part: Any) -> Iterator[Number]:
@@ -291,7 +292,7 @@ def _of_part(model: str, gear_set: GearSet, path: str, part: Any) -> Iterator[Nu
         several = field.kind == "sequence"
         entry = gear_set.sources.get(f"{place}[0]" if several else place)
         if entry is not None and entry.source != NOT_GIVEN and not entry.source.startswith("assumed: the default"):
-            values = np.atleast_1d(attrgetter(place)(gear_set.drive))
+            values = np.atleast_1d(attrgetter(place)(gear_set))
             source = entry.source.removeprefix("assumed: ")
             yield Number(place, _values(values), unit(field.unit), model, source, entry.assumed)
     for inner in parts(part):
