@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.files.tables import open_csv
+from strainwave.files.units import convert
 from strainwave.messages import listed, quoted
 from strainwave.rig.analysis import analyse
 from strainwave.rig.loop import COLUMNS, Loop
@@ -179,18 +181,34 @@ def read_series(path: str | Path) -> Series:
     return Series(factors, quantities, texts.get("unit", ()), Path(path).name, (Path(path), *files))
 
 
-def series_of(conditions: Sequence[Mapping[str, float]], paths: Sequence[Path]) -> Series:
-    """The series of loop files, the condition of each given by name in the units of `FACTORS`.
+def series_of(loops: Sequence[str]) -> Series:
+    """The series of loop files, each with what was varied: `"cold.csv,temperature=5 degC"`.
+
+    Args:
+        loops: for each loop its file, then factors by name; a number without a unit is in that of `FACTORS`
 
     Raises:
-        ValueError: a file cannot be read, or a loop lacks a condition that another has
+        ValueError: a text is not of this form, a file cannot be read, or a loop lacks a factor that another has
     """
+    paths, conditions = zip(*[_with_condition(each) for each in loops], strict=True)
     names = list(dict.fromkeys(name for each in conditions for name in each))
     for path, each in zip(paths, conditions, strict=True):
         if missing := [name for name in names if name not in each]:
             raise ValueError(f"{path} has no {missing[0]}, which other loops have; give it as {missing[0]}=…")
     factors = {name: [each[name] for each in conditions] for name in names}
     return Series(factors, figures_of([read_loop(path) for path in paths]), name=f"{len(paths)} loops", files=paths)
+
+
+def _with_condition(text: str) -> tuple[Path, dict[str, float]]:
+    path, *said = [each.strip() for each in text.split(",")]
+    condition = {}
+    for each in said:
+        found = re.fullmatch(r"(\w+)\s*=\s*([-+.\deE]*\d\.?)\s*(\D.*)?", each)
+        if found is None or found[1] not in FACTORS:
+            raise ValueError(f"{quoted(each)} of the loop {path} must be name=number, with one of {listed(FACTORS)}")
+        value, unit = float(found[2]), FACTORS[found[1]].unit
+        condition[found[1]] = convert(value, found[3], unit) if found[3] and unit else value
+    return Path(path), condition
 
 
 def _values(numbers: Recording, name: str, unit: str) -> Array:
