@@ -1,6 +1,7 @@
 #pragma once
 #include <strainwave/any.hpp>
 
+#include <charconv>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -91,12 +92,32 @@ std::vector<Parameter> parameters_of(const M& model) {
     return list;
 }
 
+/// What a model says of a contradiction between its numbers; empty if there is none.
+inline std::string told(const char* problem) { return problem ? problem : ""; }
+inline std::string told(const Contradiction<double>& problem) {
+    std::string text = told(problem.text);
+    std::size_t from = 0;
+    for (const double number : {problem.first, problem.second}) {
+        const std::size_t place = text.find("{}", from);
+        if (place == std::string::npos) break;
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, number);
+        text.replace(place, 2, digits, end.ptr - digits);
+        from = place + (end.ptr - digits);
+    }
+    return text;
+}
+template <class M>
+std::string own_problem_of(const M& model) {
+    if constexpr (requires { model.problem(); })
+        if (const std::string problem = told(model.problem()); !problem.empty()) return std::string(M::name) + ": " + problem;
+    return {};
+}
+
 /// What is wrong with how the numbers of a model, or of one of its parts, relate to each other; empty if nothing is.
 template <class M>
 std::string problem_of(const M& model) {
-    std::string found;
-    if constexpr (requires { model.problem(); })
-        if (const char* problem = model.problem()) found = std::string(M::name) + ": " + problem;
+    std::string found = own_problem_of(model);
     const auto look = [&]<class T>(const T& member, const Field&) {
         if (!found.empty()) return;
         if constexpr (is_choice<T>)

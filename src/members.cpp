@@ -28,8 +28,7 @@ void set_members(void* model, const nb::kwargs& values, const Description& descr
 }
 
 void check_relations(const void* model, const Description& description) {
-    if (!description.problem) return;
-    if (const char* problem = description.problem(model)) throw nb::value_error((description.name + ": " + problem).c_str());
+    if (const std::string problem = description.problem(model); !problem.empty()) throw nb::value_error(problem.c_str());
 }
 
 /// Adds the values of members that follow a given one; returns the names of those that are required and not given.

@@ -239,7 +239,7 @@ struct Description {
     const void* defaults;                        ///< a model as C++ makes it
     void (*copy)(void* to, const void* from);    ///< to where none is yet
     nb::object (*cast)(const void* model);       ///< a copy for Python
-    const char* (*problem)(const void* model);   ///< how its numbers contradict each other; null if nothing can
+    std::string (*problem)(const void* model);   ///< how its numbers contradict each other; empty if they do not
     void (*check_passivity)(const void* model);  ///< null if it cannot create energy
     nb::handle (*python_type)();
     std::vector<Parameter> (*parameters)(const void* model);  ///< every number of it and of its parts
@@ -262,8 +262,7 @@ const Description& description_of(const char* python_name, const std::string& na
         made.defaults = &defaults;
         made.copy = [](void* to, const void* from) { new (to) M(*static_cast<const M*>(from)); };
         made.cast = [](const void* model) { return nb::cast(*static_cast<const M*>(model)); };
-        if constexpr (requires { defaults.problem(); })
-            made.problem = [](const void* model) { return static_cast<const M*>(model)->problem(); };
+        made.problem = [](const void* model) { return own_problem_of(*static_cast<const M*>(model)); };
         if constexpr (requires { defaults.passivity(); })
             made.check_passivity = [](const void* model) { check_passivity(static_cast<const M*>(model)->passivity(), M::name); };
         made.python_type = [] { return nb::type<M>(); };

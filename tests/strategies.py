@@ -46,10 +46,23 @@ def made(model: Any, **changed: Any) -> Any:
 
 
 def suited(part: Any, kinematics: Any) -> Any:
-    """A part of a gear as the gear takes it: with its ratio, if the part, or the spring behind its play, asks for one."""
-    if type(part) is sw.stiffness.Backlash:
-        return part.replace(law=suited(part.law, kinematics))
-    return part.replace(reduction=max(1.0, abs(kinematics.ratio))) if type(part) is sw.stiffness.MultiCompliance else part
+    """A part of a gear as the gear takes it: with its ratio and its teeth, where the part or what it holds asks for them."""
+    for name in ("law", "springs"):
+        if hasattr(part, name):
+            part = part.replace(**{name: suited(getattr(part, name), kinematics)})
+    if type(part) is sw.stiffness.MultiCompliance:
+        return part.replace(reduction=max(1.0, abs(kinematics.ratio)))
+    return with_teeth_of(kinematics, part) if type(part) is sw.kinematic_error.ToothErrors else part
+
+
+def with_teeth_of(kinematics: Any, error: Any) -> Any:
+    """The error of these teeth; none where a gear has none, or meshes at one lobe."""
+    if type(kinematics) is not sw.kinematics.StrainWave or (kinematics.circular_spline_teeth - kinematics.flexspline_teeth) % 2:
+        return sw.kinematic_error.Fourier()
+    return error.replace(**{field["name"]: getattr(kinematics, field["name"]) for field in kinematics.fields})
+
+
+SUITED = ("kinematic_error", "stiffness", "hysteresis")  # parts of a gear that may be told what its kinematics are
 
 
 def log_uniform(low: float, high: float) -> st.SearchStrategy[float]:
@@ -117,7 +130,7 @@ def drawn(draw: st.DrawFn, model: Any) -> Any:
         length = draw(st.integers(0, 8))
         members = {field["name"]: draw(values(field, length)) for field in model.fields}
         if "kinematics" in members:
-            members["stiffness"] = suited(members["stiffness"], members["kinematics"])
+            members |= {name: suited(members[name], members["kinematics"]) for name in SUITED}
         try:
             with warnings.catch_warnings(action="ignore", category=_core.PassivityWarning):
                 return model(**members)

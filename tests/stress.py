@@ -33,7 +33,7 @@ from strainwave.simulation.run import METHODS
 from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import has_memory, passive, speeds
-from tests.strategies import AROUND_ONE, TYPICAL, Field, kinds_of, suited
+from tests.strategies import AROUND_ONE, SUITED, TYPICAL, Field, kinds_of, suited
 from tests.workers import answers
 
 STEPS = 100
@@ -85,7 +85,7 @@ def model(kind: Any, random: np.random.Generator) -> Any:
         length = int(random.integers(0, 9))
         members = {field["name"]: value(field, length, random) for field in kind.fields}
         if "kinematics" in members:
-            members["stiffness"] = suited(members["stiffness"], members["kinematics"])
+            members |= {name: suited(members[name], members["kinematics"]) for name in SUITED}
         try:
             return kind(**members)
         except ValueError:

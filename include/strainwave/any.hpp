@@ -495,11 +495,6 @@ struct DiscreteOf<S, Choice<S, Law...>> {
 };
 }  // namespace control::detail
 
-template <class S, class... Spring>
-constexpr S reduction_of(const Choice<S, Spring...>& spring) {
-    return spring.visit([](const auto& chosen) { return reduction_of<S>(chosen); });
-}
-
 template <class S>
 using AnyGear =
     Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,

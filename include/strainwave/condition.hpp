@@ -13,6 +13,14 @@ struct Condition {
     const char* unit;
 };
 
+/// How the numbers of a set contradict each other; nothing does where there is no text. Each {} in it stands for a number.
+template <class S>
+struct Contradiction {
+    const char* text{nullptr};
+    S first{};
+    S second{};
+};
+
 /// Where a law is valid: `value` within [low, high].
 template <class S>
 struct Domain {

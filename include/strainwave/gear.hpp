@@ -1,5 +1,7 @@
 #pragma once
 #include <strainwave/compiled.hpp>
+#include <strainwave/condition.hpp>
+#include <strainwave/facts.hpp>
 #include <strainwave/field.hpp>
 #include <strainwave/kinematic_error/error.hpp>
 #include <strainwave/math.hpp>
@@ -7,15 +9,6 @@
 #include <strainwave/variation/constant.hpp>
 
 namespace strainwave {
-
-/// What a spring takes the ratio of its gear for, without sign; 0 if it does not ask.
-template <class S, class Spring>
-constexpr S reduction_of(const Spring& spring) {
-    if constexpr (requires { spring.reduction; })
-        return spring.reduction;
-    else
-        return S(0.0);
-}
 
 template <class S, class Kinematics, class KinematicError, class KinematicNoise, class Stiffness, class Hysteresis,
           class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Structure = structure::Lumped<S>,
@@ -57,6 +50,8 @@ struct Gear {
         Where the stiffness varies with the angle of the wave generator, the energy in the spring turns the wave generator, too.
         A ``structure`` says whether the bodies within the gear move by themselves, between input shaft and output shaft.
 
+        What two parts are told alike must agree: the ratio, the teeth, and, with stages, pitch radius and pressure angle.
+
         Every part is a law of its own, from the ideal gear to one with all effects over the whole envelope of speed, load and
         temperature; change one with ``gear.replace(hysteresis=...)``.
 
@@ -82,13 +77,31 @@ struct Gear {
         visit(SW_PART(m, structure, "What moves within the gear by itself"));
     }
 
-    constexpr const char* problem() const {
-        const S told = reduction_of<S>(stiffness), ratio = abs(kinematics.ratio()), rounding(1e-9);
-        if (!all((told == S(0.0)) | (abs(told - ratio) <= rounding * ratio)))
-            return "stiffness.reduction must be the ratio of kinematics, without its sign; give both";
-        return structure.rigid() || all(input_inertia > S(0.0))
-                   ? nullptr
-                   : "input_inertia must exceed 0 with this structure: the wave generator turns by itself";
+    /// What its parts are told twice must agree.
+    constexpr Contradiction<S> problem() const {
+        const S ratio = abs(kinematics.ratio());
+        const S of_stiffness = facts::reduction<S>(stiffness), of_hysteresis = facts::reduction<S>(hysteresis);
+        if (!facts::agree(of_stiffness, ratio))
+            return {"stiffness.reduction = {} must be {}, the ratio of kinematics without its sign; give both alike", of_stiffness,
+                    ratio};
+        if (!facts::agree(of_hysteresis, ratio))
+            return {"hysteresis.springs.reduction = {} must be {}, the ratio of kinematics without its sign; give both alike",
+                    of_hysteresis, ratio};
+        const S radius = facts::pitch_radius<S>(kinematic_error), own_radius = facts::pitch_radius<S>(structure);
+        if (!facts::agree(radius, own_radius))
+            return {"the pitch_radius of kinematic_error, {} m, must be that of structure, {} m; give both alike", radius,
+                    own_radius};
+        const S angle = facts::pressure_angle<S>(kinematic_error), own_angle = facts::pressure_angle<S>(structure);
+        if (!facts::agree(angle, own_angle))
+            return {"the pressure_angle of kinematic_error, {} rad, must be that of structure, {} rad; give both alike", angle,
+                    own_angle};
+        const Contradiction<S> of_teeth = problem_of_teeth(ratio);
+        if (of_teeth.text) return of_teeth;
+        if (!structure.rigid() && !all(input_inertia > S(0.0)))
+            return {
+                "input_inertia = {} kg.m2 must exceed 0 with stages, where the wave generator turns by itself; give its inertia",
+                input_inertia};
+        return {};
     }
 
     /// Every part as the integrator wants it.
@@ -244,6 +257,27 @@ struct Gear {
     }
 
 private:
+    /// Teeth that the kinematic error is told are those of the kinematics, or have its ratio where it is told no teeth.
+    constexpr Contradiction<S> problem_of_teeth(const S& ratio) const {
+        const facts::Teeth told = facts::teeth(kinematic_error), own = facts::teeth(kinematics);
+        if (told.flexspline == 0) return {};
+        if (own.flexspline == 0)
+            return facts::agree(S(told.ratio()), ratio)
+                       ? Contradiction<S>{}
+                       : Contradiction<S>{"the teeth of kinematic_error have the ratio {}, kinematics has {}; give both alike",
+                                          S(told.ratio()), ratio};
+        if (told.flexspline != own.flexspline)
+            return {"the flexspline_teeth of kinematic_error, {}, must be those of kinematics, {}; give both alike",
+                    S(told.flexspline), S(own.flexspline)};
+        if (told.circular_spline != own.circular_spline)
+            return {"the circular_spline_teeth of kinematic_error, {}, must be those of kinematics, {}; give both alike",
+                    S(told.circular_spline), S(own.circular_spline)};
+        if (told.fixed == own.fixed) return {};
+        return {own.fixed == kinematics::Fixed::flexspline
+                    ? "kinematic_error has the circular_spline fixed, kinematics the flexspline; give both alike"
+                    : "kinematic_error has the flexspline fixed, kinematics the circular_spline; give both alike"};
+    }
+
     /// The error where the gear stands, and what it leaves of the gap.
     struct Engaged {
         kinematic_error::Error<S> error;

@@ -93,6 +93,8 @@ class Gear:
     Where the stiffness varies with the angle of the wave generator, the energy in the spring turns the wave generator, too.
     A ``structure`` says whether the bodies within the gear move by themselves, between input shaft and output shaft.
 
+    What two parts are told alike must agree: the ratio, the teeth, and, with stages, pitch radius and pressure angle.
+
     Every part is a law of its own, from the ideal gear to one with all effects over the whole envelope of speed, load and
     temperature; change one with ``gear.replace(hysteresis=...)``.
 

@@ -105,9 +105,9 @@ class Misalignment:
     with theta the input angle, a = major_radius, b = minor_radius, alpha_t = pressure_angle, r_g = pitch_radius. The wave
     generator is an elliptic cylinder with half axes a, b. The plane normal to the input shaft at h = offset from the point
     about which things tilt cuts it in the ellipse of centre c and matrix Q, both turning with theta; rho is the ellipse's
-    polar radius about the axis of the circular spline, delta_A and delta_B are the displacements of the two lobes. The input
-    shaft stands off the axis of the circular spline by e_1 = housing_eccentricity towards beta_1 = housing_direction and
-    leans towards x and y by beta_2 = housing_tilt_x, beta_3 = housing_tilt_y, all at rest in the housing; the generator
+    polar radius about the axis of the circular spline, delta_A and delta_B are the displacements of the two lobes. The
+    input shaft stands off the axis of the circular spline by e_1 = housing_eccentricity towards beta_1 = housing_direction
+    and leans towards x and y by beta_2 = housing_tilt_x, beta_3 = housing_tilt_y, all at rest in the housing; the generator
     stands on the shaft with e_2 = generator_eccentricity, alpha_1 = generator_direction, alpha_2 = generator_tilt_x,
     alpha_3 = generator_tilt_y, all turning with it. ``combine`` is ``single`` (delta_A: one tooth pair carries), ``mean``
     (two equally stiff lobes) or ``max`` (the lobe further out carries, and the slope jumps where the lobes change).
@@ -127,9 +127,10 @@ class Misalignment:
     ``max`` alone, which compares it with m: odd orders appear, and once c_x outgrows m the lobes change no more and what
     remains is that of ``single``.
 
-    Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. Document A takes e r_g for the
-    radial displacement, of Eq. (2)'s sign; the displacement acts through the flank, with factor tan(alpha_t) / r_g, and
-    against it (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
+    Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. In eq. (2) document A takes e r_g
+    for the radial displacement; but the displacement acts through the flank, with the factor tan(alpha_t) / r_g, and
+    against the output (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
+    In a gear of stages, pitch radius and pressure angle must be those of its structure.
 
     >>> from strainwave.kinematic_error import Misalignment
     >>> law = Misalignment(major_radius=25.25e-3, minor_radius=24.75e-3, pitch_radius=25e-3, housing_eccentricity=20e-6,
@@ -141,7 +142,7 @@ class Misalignment:
     ----------
     major_radius: Major half axis a of the wave generator [m], in (0, inf); required
     minor_radius: Minor half axis b of the wave generator [m], in (0, inf); required
-    pitch_radius: Pitch radius r_g [m], in (0, inf); required
+    pitch_radius: Pitch radius r_g [m], in (0, 1]; required
     pressure_angle: Pressure angle alpha_t of the teeth [rad], in (0, 1.5]; default 0.3490658503988659
     offset: Axial distance h of the section from the centre of tilt [m]; default 0.0
     housing_eccentricity: Distance e_1 of the input shaft from the axis of the circular spline [m], in [0, inf); default 0.0
@@ -290,36 +291,36 @@ class ToothErrors:
     .. math:: \\bar F(\\lambda) = \\sum_n s_n \\, W\\!\\left(\\frac{\\pi n \\, \\eta \\, z_f}{2 z}\\right) A_n \\sin(n \\lambda + \\varphi_n),
               \\qquad W(x) = \\frac{\\sin x}{x \\, (1 - x^2 / \\pi^2)}
 
-    with theta the input angle, r_g = pitch_radius, z_f and z_c the teeth, and z, in W, those of the spline whose mean it is.
-    F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at the angle phi along
-    the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is closed, so its orders n
-    are whole. A_n is the n-th number of flexspline_amplitude or circular_spline_amplitude, phi_n of the phases; ``[0, 4e-6]``
-    has order 2 alone. phi counts from the tooth that is under the first lobe at input angle 0.
+    with theta the input angle, r_g = pitch_radius, z_f and z_c the teeth, and z, in W, those of the spline whose mean it
+    is. F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at the angle phi
+    along the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is closed, so its
+    orders n are whole. A_n is the n-th number of flexspline_amplitude or circular_spline_amplitude, phi_n of the phases;
+    ``[0, 4e-6]`` has order 2 alone. phi counts from the tooth that is under the first lobe at input angle 0.
 
     In the frame of each spline the first lobe stands at an angle lambda. Both splines pass the lobe tooth by tooth, so that
-    z_f lambda_f = z_c lambda_c. In the frame of the ``fixed`` spline lambda is theta. In that of the output it is
-    theta z_c / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole orders, and
-    the output gives broken orders close to them, such as the review's 2 z_c / z_f. Order n of both beats n times in a turn of
+    z_f lambda_f = z_c lambda_c. In the frame of the ``fixed`` spline lambda is theta. In that of the output it is theta z_c
+    / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole orders, and the
+    output gives broken orders close to them, such as the review's 2 z_c / z_f. Order n of both beats n times in a turn of
     the output.
 
     Without torque the output stands where the forces of all engaged teeth balance. Then e is the mean of their deviations,
-    weighted by stiffness. Of the flexspline's teeth the share eta = engaged_share is engaged, half of it under each lobe. The
-    stiffness is taken to fall as 1 + cos from the major axis to zero at the ends of a zone; W is what this mean leaves of
-    order n. The first lobe has the share p = first_lobe of the stiffness of all engaged teeth: s_n = 1 for even n, 2 p - 1 for
-    odd n. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one (n = 2)
-    gives all of its own. Torque winds up all pairs alike and does not change e.
+    weighted by stiffness. Of the flexspline's teeth the share eta = engaged_share is engaged, half of it under each lobe.
+    The stiffness is taken to fall as 1 + cos from the major axis to zero at the ends of a zone; W is what this mean leaves
+    of order n. The first lobe has the share p = first_lobe of the stiffness of all engaged teeth: s_n = 1 for even n, 2 p -
+    1 for odd n. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one
+    (n = 2) gives all of its own. Torque winds up all pairs alike and does not change e.
 
     A Fourier series over the teeth turns a measured chart of index deviations into amplitudes and phases. Where only a
-    tolerance class is known, give flexspline_deviation and circular_spline_deviation, the total cumulative pitch deviation F_p
-    of a typical part; the class states the largest one allowed. They add a random chart with amplitudes
-    sqrt(2 / pi) F_p / (pi n) and phases that ``seed`` draws: the mean spectrum of pitches that are cut independently of each
-    other and whose range over the turn is F_p in the mean (Feller1951). The 16 orders kept have nine tenths of that range.
+    tolerance class is known, give flexspline_deviation and circular_spline_deviation, the total cumulative pitch deviation
+    F_p of a typical part; the class states the largest one allowed. They add a random chart with amplitudes sqrt(2 / pi)
+    F_p / (pi n) and phases that ``seed`` draws: the mean spectrum of pitches that are cut independently of each other and
+    whose range over the turn is F_p in the mean (Feller1951). The 16 orders kept have nine tenths of that range.
 
-    Assumed are: a linear stiffness of each pair, which teeth are engaged, how their stiffness falls, and one pitch radius for
-    both splines. Leaves out single teeth as they come and go (orders near the number of teeth), deviations of flank and of
-    thickness, teeth that lose contact, load and speed, the radial part of an eccentricity (see Misalignment), runout of the
-    output shaft, and deviations of order above 16, of which the engaged teeth leave little. A gear does not check that the
-    teeth and the fixed member are those of its kinematics: give the same.
+    Assumed are: a linear stiffness of each pair, which teeth are engaged, how their stiffness falls, and one pitch radius
+    for both splines. Leaves out single teeth as they come and go (orders near the number of teeth), deviations of flank and
+    of thickness, teeth that lose contact, load and speed, the radial part of an eccentricity (see Misalignment), runout of
+    the output shaft, and deviations of order above 16, of which the engaged teeth leave little. A gear refuses teeth and a
+    fixed member that are not those of its kinematics, and a pitch radius that is not that of its stages.
 
     >>> from strainwave.kinematic_error import ToothErrors
     >>> gear = dict(flexspline_teeth=200, circular_spline_teeth=202, pitch_radius=25e-3, engaged_share=0.3)
@@ -338,7 +339,7 @@ class ToothErrors:
     flexspline_teeth: Teeth of the flexspline z_f, in [2, 100000]; required
     circular_spline_teeth: Teeth of the circular spline z_c, in [3, 100000]; required
     fixed: The member that does not turn; the other spline is the output, one of ('circular_spline', 'flexspline'); default 'circular_spline'
-    pitch_radius: Pitch radius r_g [m], in (0, inf); required
+    pitch_radius: Pitch radius r_g [m], in (0, 1]; required
     engaged_share: Share eta of the flexspline's teeth that is engaged, at both lobes together, in [0, 1]; required
     first_lobe: Share p of the first lobe in the stiffness of all engaged teeth, in [0, 1]; default 0.5
     flexspline_amplitude: Amplitudes A_n of the flexspline's deviation, orders 1, 2, ... [m], in [0, 0.001]; default ()
@@ -465,16 +466,18 @@ class Scaled:
 
     .. math:: e(\\theta, T) = e_0(\\theta)\\, \\frac{e^{-\\kappa_d d}}{1 + \\kappa_T |T|}
 
-    with e_0 the law, T the torque of the gear's law of stiffness at that twist, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
-    depth_sensitivity. The twist is what solves delta + e(theta, T(delta)) = theta_in / i - theta_out, and both shafts feel
-    the torque through how it changes with their angles: what the error does under load neither takes energy nor gives any.
-    The sensitivities are the user's: no catalogue gives them. The product of load_sensitivity, error and stiffness must stay
-    below 0.8: a run that exceeds it is refused. ``error`` and ``slope`` are those without load.
+    with theta the input angle, e_0 the error of ``law``, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
+    depth_sensitivity, and T the torque that the ``stiffness`` of the gear has at the twist delta. The twist solves delta +
+    e(theta, T(delta)) = theta_in / i - theta_out. Both shafts feel the torque through how the twist follows their angles,
+    so that the change of the error under load neither takes energy nor gives any. No catalogue gives the sensitivities:
+    measure them, or assume them. The product of load_sensitivity, error and stiffness must stay below 0.8, so that one
+    twist belongs to each pair of angles: a run that exceeds it is refused. ``error`` and ``slope`` are those without load,
+    at the insertion depth.
 
     >>> from strainwave.kinematic_error import Fourier, Scaled
     >>> law = Scaled(law=Fourier(order=[2], amplitude=[3e-4], phase=[0.0]), load_sensitivity=0.01)
-    >>> law.slope(0.0)
-    0.0006
+    >>> law.slope(0.0), round(law.replace(insertion_depth=5e-4, depth_sensitivity=200.0).slope(0.0), 9)
+    (0.0006, 0.000542902)
 
     Parameters
     ----------

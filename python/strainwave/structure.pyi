@@ -11,12 +11,13 @@ class Lumped:
 
     .. math:: T_{out} = T, \\qquad T_{in} = T\\,(1/i - e'(\\theta_{in}))
 
-    with T the torque of the spring, its hysteresis and damping. The wave generator turns with the input shaft, the mesh and
-    the bearings are as stiff as ``stiffness`` says for all together. Valid where the bodies within the gear vibrate much
-    faster than what is looked at.
+    with T_out the torque on the output, T_in the one that holds the input back, T the torque of the spring, its hysteresis
+    and damping, i the ratio, e' the derivative of the kinematic error by the input angle. The wave generator turns with the
+    input shaft. The ``stiffness`` of the gear is that of flexspline, mesh and bearings in series. Valid for what is slow
+    against the vibration of the bodies within the gear, some 1e4 rad/s; Staged has these bodies.
 
     >>> import strainwave as sw
-    >>> sw.Gear().structure
+    >>> sw.Gear(stiffness=sw.stiffness.Linear(k=16e3)).structure
     Lumped()
 
     Parameters
@@ -71,36 +72,43 @@ class Staged:
     .. math:: F_m r_g \\cos\\alpha_t = T_{FS}(y_1 / r_g) + J_{FS} \\ddot y_1 / r_g = J_{CS}\\ddot\\theta_{CS} + T_{CS}, \\qquad
               T_{CS} = K_{CS}(\\theta_{CS} - \\theta_{out}) + c_{CS}(\\dot\\theta_{CS} - \\dot\\theta_{out})
 
-    with r_g = pitch_radius, alpha_t = pressure_angle, x_1 = r_g tan(alpha_n) theta_WG, tan(alpha_n) = 1 / (i tan(alpha_t)),
-    y_2 = r_g theta_CS, and i the ratio. K_WG, c_WG = coupling_stiffness, coupling_damping join the motor shaft to the wave
-    generator; K_b, c_b are those of its bearing, K_m, c_m those of the mesh, K_CS, c_CS = circular_spline_stiffness,
-    circular_spline_damping join the circular spline to the output shaft and its position sensor. The parts of the gear tell
-    the rest: J_WG is its input_inertia, T_FS the torque of its stiffness, hysteresis and damping, delta = -e r_g /
-    tan(alpha_t) its kinematic error as a radial displacement of the wave generator. m_r = radial_mass and J_FS =
-    flexspline_inertia are those of the flexspline's toothed ring, J_CS = circular_spline_inertia.
+    with theta_in, theta_WG, theta_CS, theta_out the angles of input shaft, wave generator, circular spline and output
+    shaft, x_2 the radial and y_1 the tangential displacement of the flexspline, r_g = pitch_radius, alpha_t =
+    pressure_angle, x_1 = r_g tan(alpha_n) theta_WG, tan(alpha_n) = 1 / (i tan(alpha_t)), y_2 = r_g theta_CS, and i the
+    ratio. K_WG, c_WG = coupling_stiffness, coupling_damping join the motor shaft to the wave generator; K_b, c_b are those
+    of its bearing, K_m, c_m those of the mesh, K_CS, c_CS = circular_spline_stiffness, circular_spline_damping join the
+    circular spline to the output shaft and its position sensor. The parts of the gear tell the rest: J_WG is its
+    input_inertia, T_FS the torque of its stiffness, hysteresis and damping, delta = -e r_g / tan(alpha_t) its kinematic
+    error as a radial displacement of the wave generator. m_r = radial_mass and J_FS = flexspline_inertia are those of the
+    flexspline's toothed ring, J_CS = circular_spline_inertia.
 
     This is the gear with its flexspline fixed: its ratio is positive. Where the circular spline is fixed the ratio is
     negative, and the two exchange their places: T_CS holds the circular spline to the housing, and T_FS, over the twist of
     the flexspline against the output shaft, is the torque on it.
 
-    Each stiffness may vary as the wave generator turns. The torque with which such a spring turns the wave generator is part
-    of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
+    Each stiffness may vary as the wave generator turns. The torque with which such a spring turns the wave generator is
+    part of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
 
-    Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), by which the gear gives more power than it takes
-    (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), gives the error the opposite sign of its own
-    eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
+    Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), by which the gear gives more power than it
+    takes (E-A2), damps the mesh by a rate that is not that of its deformation (E-A3), gives the error the opposite sign of
+    its own eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and says three where there are four degrees of
     freedom (E-A6). Its x_1 is linear in theta_WG: the equations say nothing of the cyclic deformation of the flexspline.
 
-    Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as A has it: that the held
-    ring's turn reaches the output in the ratio of the teeth, 1 percent from 1, is left out (E-A12).
+    Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as A has it: a turn
+    of the held ring turns the output as far, where the ratio of the teeth would make it 1 percent more or less (E-A12).
 
-    With the circular spline fixed, x_1, x_2 and the forces have the sign of the output's motion, y_1 is the twist of the flexspline
-    against the output shaft times r_g, and y_2 counts against the output's sense.
+    With the circular spline fixed, x_1, x_2 and the forces have the sign of the output's motion, y_1 is the twist of the
+    flexspline against the output shaft times r_g, and y_2 counts against the output's sense.
 
     Output as A has it: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
     ``circular_spline_displacement`` y_2, ``bearing_force`` F_b, ``mesh_force`` F_m, ``wave_generator_torque`` T_WG,
-    ``circular_spline_torque`` T_CS, and ``output_torque`` T = torque - friction_output. Fixed steps must follow the fastest
-    mode, some 1e4 to 1e5 rad/s.
+    ``circular_spline_torque`` T_CS, and ``output_torque`` T = torque - friction_output.
+
+    Valid for deformations that are small against r_g. Leaves out clearance of mesh and bearing (stiffness.Backlash has play
+    in the flexspline's spring alone) and every mode of the flexspline beside torsion and the radial one. The wave generator
+    needs an input_inertia. Where the kinematic error has a pitch radius and a pressure angle, too, they must be those of
+    the stages. No catalogue gives these stiffnesses: they are calculated, or assumed. Fixed steps must follow the fastest
+    mode, some 1e4 to 1e5 rad/s: a run with longer ones is refused, and told how long they may be.
 
     >>> import strainwave as sw
     >>> structure = sw.structure.Staged(pitch_radius=25e-3, bearing_stiffness=5e7, mesh_stiffness=1e8,
@@ -112,7 +120,7 @@ class Staged:
 
     Parameters
     ----------
-    pitch_radius: Pitch radius r_g [m], in (0, inf); required
+    pitch_radius: Pitch radius r_g [m], in (0, 1]; required
     pressure_angle: Pressure angle alpha_t of the teeth [rad], in [0.01, 1.5]; default 0.3490658503988659
     coupling_stiffness: Stiffness K_WG between input shaft and wave generator [N.m/rad], in (0, inf); required
     coupling_damping: Damping c_WG there [N.m.s/rad], in [0, inf); default 0.0

@@ -11,7 +11,7 @@ class Constant:
     """
     A stiffness that does not change with the angle.
 
-    .. math:: k(\\theta) = k
+    .. math:: k(\\theta) = k_0
 
     >>> from strainwave.variation import Constant
     >>> Constant()
@@ -72,12 +72,13 @@ class Periodic:
     """
     A stiffness that changes as the wave generator turns: more or fewer teeth carry, the ball bearing rolls under the load.
 
-    .. math:: k(\\theta) = k \\left(1 + \\sum_h a_h \\sin(B_h \\theta + \\varphi_h)\\right)
+    .. math:: k(\\theta) = k_0 \\left(1 + \\sum_h a_h \\sin(B_h \\theta + \\varphi_h)\\right)
 
-    with theta the angle of the wave generator, a_h = amplitude, B_h = order, phi_h = phase, up to 8 harmonics. A spring that
-    holds the energy V(x, theta) turns the wave generator with the torque -dV/dtheta: without it energy would come from
-    nowhere, and with it a stiffness that varies shows in the motor current even where nothing moves the output. The
-    amplitudes must add up to less than 1, so that the stiffness stays positive.
+    with k_0 the stiffness that its law gives, theta the angle of the wave generator, a_h = amplitude, B_h = order, phi_h =
+    phase, up to 8 harmonics. Two lobes make order 2. A spring that holds the energy V(x, theta), x its deformation, turns
+    the wave generator with the torque -dV/dtheta. Without this torque energy would come from nowhere. With it, a stiffness
+    that varies shows in the motor current even where the output stands still. The amplitudes must add up to less than 1, so
+    that the stiffness stays positive.
 
     >>> from strainwave.variation import Periodic
     >>> Periodic(order=[2], amplitude=[0.05], phase=[0.0]).amplitude

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.friction import LuGre, MixedLubrication, PositionDependent
-from strainwave.kinematic_error import Fourier, Misalignment, Stochastic, ToothErrors
+from strainwave.kinematic_error import Fourier, Misalignment, Scaled, Stochastic, ToothErrors
 from strainwave.simulation.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
-from tests.strategies import built, drives, gears, made, models, suited
+from tests.strategies import SUITED, built, drives, gears, made, models, suited
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,11 @@ temperatures = st.floats(250.0, 350.0)
 
 reducers = models("kinematics").filter(lambda kinematics: 1.0 <= abs(kinematics.ratio) <= 1e3)
 reduced_gears = st.builds(
-    lambda gear, kinematics: gear.replace(kinematics=kinematics, stiffness=suited(gear.stiffness, kinematics)), gears, reducers
+    lambda gear, kinematics: gear.replace(
+        kinematics=kinematics, **{name: suited(getattr(gear, name), kinematics) for name in SUITED}
+    ),
+    gears,
+    reducers,
 )
 
 
@@ -149,9 +153,21 @@ def error_slope(gear: sw.Gear, run: sw.Recording) -> Array:
     return slope + np.array([gear.kinematic_noise.slope(angle, torque=t, speed=v) for angle, t, v in places])
 
 
+def relief(gear: sw.Gear, run: sw.Recording) -> tuple[Array, Array]:
+    """What load leaves of the error, and how the twist follows the gap between the shafts: delta + f(T(delta)) e = gap."""
+    law, twist = gear.kinematic_error, run["twist"]
+    if not isinstance(law, Scaled):
+        return np.ones_like(twist), np.ones_like(twist)
+    torque = gear.stiffness.torque(twist)
+    depth, load = np.exp(-law.depth_sensitivity * law.insertion_depth), 1.0 + law.load_sensitivity * np.abs(torque)
+    fall = -law.load_sensitivity * np.sign(torque) * depth / load**2 * gear.stiffness.tangent(twist)
+    return 1.0 / load, 1.0 / (1.0 + law.law.error(run["input_angle"]) * fall)
+
+
 def speeds(gear: sw.Gear, run: sw.Recording) -> dict[str, Array]:
     """How fast each place of friction moves [rad/s]."""
-    mesh = run["input_speed"] * (1.0 / gear.kinematics.ratio - error_slope(gear, run))
+    left, followed = relief(gear, run)
+    mesh = followed * run["input_speed"] * (1.0 / gear.kinematics.ratio - left * error_slope(gear, run))
     return dict(zip(PLACES, (run["input_speed"], mesh, run["output_speed"]), strict=True))
 
 
@@ -220,7 +236,7 @@ def balance(drive: Drive, run: sw.Recording) -> tuple[Array, Array, float]:
     gear, step = drive.gear, run["time"][1]
     moving = speeds(gear, run)
     put_in = drive.motor.torque_constant * run["current"] * run["input_speed"] - run["load_torque"] * run["output_speed"]
-    twist_rate = moving["friction_mesh"] - run["output_speed"]
+    twist_rate = moving["friction_mesh"] - relief(gear, run)[1] * run["output_speed"]
     lost = gear.damping * twist_rate**2 + sum(run[place] * moving[place] for place in PLACES)
     inertia = drive.motor.inertia + gear.input_inertia
     kept = 0.5 * (inertia * run["input_speed"] ** 2 + drive.load.inertia * run["output_speed"] ** 2)

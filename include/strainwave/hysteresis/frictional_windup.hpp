@@ -18,17 +18,17 @@ struct FrictionalWindup {
         .. math:: \delta = \delta_f(T) + x(T_w), \qquad |T - T_w| \le F, \qquad T = T_w + F \; (dx > 0), \quad
                   T = T_w - F \; (dx < 0)
 
-        with delta the twist, delta_f and x the shares of flexspline and wave generator, as MultiCompliance has them = springs,
-        T the torque, T_w that of the wave generator's spring, F = friction, at the output. While the wave generator sticks, the
-        gear is as stiff as its flexspline; once it slips, as both in series. A cycle loses the integral of F |dx|, 4 F x(T_m - F)
-        between +-T_m, and leaves the twist x(F) without torque. Exact over any monotone step; minor loops close. Virgin is no
-        twist and no torque.
+        with delta the twist, delta_f and x the shares that flexspline and wave generator have in it, each a spring of
+        MultiCompliance = springs, T the torque, T_w that of the wave generator's spring, F = friction, all at the output. While
+        the wave generator sticks, the gear is as stiff as its flexspline; once it slips, as both in series. A cycle loses the
+        integral of F |dx|, which is 4 F x(T_m - F) between +-T_m; without torque the twist x(F) is left. Exact over any
+        monotone step; minor loops close. It begins without twist and torque.
 
         Document R has the friction at the input's scale, or divides it by N (E-R13), and lets it follow the speed of the input:
         then a torsion test, whose input is held, would show no hysteresis (E-R14).
 
         It is a whole spring: in a gear, the ``stiffness`` acts in parallel, and is what is stiff beside it (Linear with a
-        negligible stiffness if nothing is). The reduction of the springs is to be that of the gear. Where both springs harden,
+        negligible stiffness if nothing is). A gear refuses springs whose reduction is not its ratio. Where both springs harden,
         there is no torque beyond a twist (E-R16); the law is valid as far as MultiCompliance is, and keeps its greatest torque
         from there on.
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/condition.hpp>
 #include <strainwave/kinematic_error/fourier.hpp>
 
 namespace strainwave::kinematic_error {
@@ -73,9 +74,9 @@ struct Misalignment {
         with theta the input angle, a = major_radius, b = minor_radius, alpha_t = pressure_angle, r_g = pitch_radius. The wave
         generator is an elliptic cylinder with half axes a, b. The plane normal to the input shaft at h = offset from the point
         about which things tilt cuts it in the ellipse of centre c and matrix Q, both turning with theta; rho is the ellipse's
-        polar radius about the axis of the circular spline, delta_A and delta_B are the displacements of the two lobes. The input
-        shaft stands off the axis of the circular spline by e_1 = housing_eccentricity towards beta_1 = housing_direction and
-        leans towards x and y by beta_2 = housing_tilt_x, beta_3 = housing_tilt_y, all at rest in the housing; the generator
+        polar radius about the axis of the circular spline, delta_A and delta_B are the displacements of the two lobes. The
+        input shaft stands off the axis of the circular spline by e_1 = housing_eccentricity towards beta_1 = housing_direction
+        and leans towards x and y by beta_2 = housing_tilt_x, beta_3 = housing_tilt_y, all at rest in the housing; the generator
         stands on the shaft with e_2 = generator_eccentricity, alpha_1 = generator_direction, alpha_2 = generator_tilt_x,
         alpha_3 = generator_tilt_y, all turning with it. ``combine`` is ``single`` (delta_A: one tooth pair carries), ``mean``
         (two equally stiff lobes) or ``max`` (the lobe further out carries, and the slope jumps where the lobes change).
@@ -95,9 +96,10 @@ struct Misalignment {
         ``max`` alone, which compares it with m: odd orders appear, and once c_x outgrows m the lobes change no more and what
         remains is that of ``single``.
 
-        Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. Document A takes e r_g for the
-        radial displacement, of Eq. (2)'s sign; the displacement acts through the flank, with factor tan(alpha_t) / r_g, and
-        against it (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
+        Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. In eq. (2) document A takes e r_g
+        for the radial displacement; but the displacement acts through the flank, with the factor tan(alpha_t) / r_g, and
+        against the output (E-A4). It also leaves out h, without which no tilt acts in first order, and how the two lobes share.
+        In a gear of stages, pitch radius and pressure angle must be those of its structure.
 
         >>> from strainwave.kinematic_error import Misalignment
         >>> law = Misalignment(major_radius=25.25e-3, minor_radius=24.75e-3, pitch_radius=25e-3, housing_eccentricity=20e-6,
@@ -109,7 +111,7 @@ struct Misalignment {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_REQUIRED(m, major_radius, "m", "Major half axis a of the wave generator", smallest));
         visit(SW_REQUIRED(m, minor_radius, "m", "Minor half axis b of the wave generator", smallest));
-        visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest));
+        visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest, 1));
         visit(SW_FIELD(m, pressure_angle, "rad", "Pressure angle alpha_t of the teeth", smallest, 1.5));
         visit(SW_FIELD(m, offset, "m", "Axial distance h of the section from the centre of tilt"));
         visit(SW_FIELD(m, housing_eccentricity, "m", "Distance e_1 of the input shaft from the axis of the circular spline", 0));
@@ -123,14 +125,17 @@ struct Misalignment {
         visit(SW_FIELD(m, combine, "1", "How the two lobes decide on the output"));
     }
 
-    constexpr const char* problem() const {
+    constexpr Contradiction<S> problem() const {
         if (!all((major_radius >= minor_radius) & (S(10.0) * minor_radius >= major_radius)))
-            return "major_radius must lie between minor_radius and ten times that";
+            return {"major_radius = {} m must lie between minor_radius = {} m and ten times that", major_radius, minor_radius};
         // A rotation's corner does not stretch, so that this keeps the axis inside the ellipse at every angle.
-        return all(minor_radius > centre().length() + eccentricity().length())
-                   ? nullptr
-                   : "the axis of the circular spline must pass through the wave generator: minor_radius must exceed the "
-                     "eccentricities and the tilts times offset, taken together";
+        const S off = centre().length() + eccentricity().length();
+        if (!all(minor_radius > off))
+            return {
+                "the axis of the circular spline must pass through the wave generator: minor_radius = {} m must exceed the "
+                "eccentricities and the tilts times offset, together {} m",
+                minor_radius, off};
+        return {};
     }
 
     /// Everything in units of the major radius, and less what it is without misalignment: displacements, some 1e-3 of the

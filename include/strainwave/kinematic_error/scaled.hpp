@@ -20,16 +20,18 @@ struct Scaled {
 
         .. math:: e(\theta, T) = e_0(\theta)\, \frac{e^{-\kappa_d d}}{1 + \kappa_T |T|}
 
-        with e_0 the law, T the torque of the gear's law of stiffness at that twist, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
-        depth_sensitivity. The twist is what solves delta + e(theta, T(delta)) = theta_in / i - theta_out, and both shafts feel
-        the torque through how it changes with their angles: what the error does under load neither takes energy nor gives any.
-        The sensitivities are the user's: no catalogue gives them. The product of load_sensitivity, error and stiffness must stay
-        below 0.8: a run that exceeds it is refused. ``error`` and ``slope`` are those without load.
+        with theta the input angle, e_0 the error of ``law``, kappa_T = load_sensitivity, d = insertion_depth, kappa_d =
+        depth_sensitivity, and T the torque that the ``stiffness`` of the gear has at the twist delta. The twist solves delta +
+        e(theta, T(delta)) = theta_in / i - theta_out. Both shafts feel the torque through how the twist follows their angles,
+        so that the change of the error under load neither takes energy nor gives any. No catalogue gives the sensitivities:
+        measure them, or assume them. The product of load_sensitivity, error and stiffness must stay below 0.8, so that one
+        twist belongs to each pair of angles: a run that exceeds it is refused. ``error`` and ``slope`` are those without load,
+        at the insertion depth.
 
         >>> from strainwave.kinematic_error import Fourier, Scaled
         >>> law = Scaled(law=Fourier(order=[2], amplitude=[3e-4], phase=[0.0]), load_sensitivity=0.01)
-        >>> law.slope(0.0)
-        0.0006)";
+        >>> law.slope(0.0), round(law.replace(insertion_depth=5e-4, depth_sensitivity=200.0).slope(0.0), 9)
+        (0.0006, 0.000542902))";
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/condition.hpp>
 #include <strainwave/harmonics.hpp>
 #include <strainwave/kinematic_error/error.hpp>
 #include <strainwave/kinematics.hpp>
@@ -39,36 +40,36 @@ struct ToothErrors {
         .. math:: \bar F(\lambda) = \sum_n s_n \, W\!\left(\frac{\pi n \, \eta \, z_f}{2 z}\right) A_n \sin(n \lambda + \varphi_n),
                   \qquad W(x) = \frac{\sin x}{x \, (1 - x^2 / \pi^2)}
 
-        with theta the input angle, r_g = pitch_radius, z_f and z_c the teeth, and z, in W, those of the spline whose mean it is.
-        F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at the angle phi along
-        the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is closed, so its orders n
-        are whole. A_n is the n-th number of flexspline_amplitude or circular_spline_amplitude, phi_n of the phases; ``[0, 4e-6]``
-        has order 2 alone. phi counts from the tooth that is under the first lobe at input angle 0.
+        with theta the input angle, r_g = pitch_radius, z_f and z_c the teeth, and z, in W, those of the spline whose mean it
+        is. F is the cumulative pitch deviation (index deviation) of a spline: how far the flank of the tooth at the angle phi
+        along the pitch circle stands from its nominal place, positive in the positive sense of rotation. It is closed, so its
+        orders n are whole. A_n is the n-th number of flexspline_amplitude or circular_spline_amplitude, phi_n of the phases;
+        ``[0, 4e-6]`` has order 2 alone. phi counts from the tooth that is under the first lobe at input angle 0.
 
         In the frame of each spline the first lobe stands at an angle lambda. Both splines pass the lobe tooth by tooth, so that
-        z_f lambda_f = z_c lambda_c. In the frame of the ``fixed`` spline lambda is theta. In that of the output it is
-        theta z_c / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole orders, and
-        the output gives broken orders close to them, such as the review's 2 z_c / z_f. Order n of both beats n times in a turn of
+        z_f lambda_f = z_c lambda_c. In the frame of the ``fixed`` spline lambda is theta. In that of the output it is theta z_c
+        / z_f (circular spline fixed) or theta z_f / z_c (flexspline fixed). So the fixed spline gives whole orders, and the
+        output gives broken orders close to them, such as the review's 2 z_c / z_f. Order n of both beats n times in a turn of
         the output.
 
         Without torque the output stands where the forces of all engaged teeth balance. Then e is the mean of their deviations,
-        weighted by stiffness. Of the flexspline's teeth the share eta = engaged_share is engaged, half of it under each lobe. The
-        stiffness is taken to fall as 1 + cos from the major axis to zero at the ends of a zone; W is what this mean leaves of
-        order n. The first lobe has the share p = first_lobe of the stiffness of all engaged teeth: s_n = 1 for even n, 2 p - 1 for
-        odd n. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one (n = 2)
-        gives all of its own. Torque winds up all pairs alike and does not change e.
+        weighted by stiffness. Of the flexspline's teeth the share eta = engaged_share is engaged, half of it under each lobe.
+        The stiffness is taken to fall as 1 + cos from the major axis to zero at the ends of a zone; W is what this mean leaves
+        of order n. The first lobe has the share p = first_lobe of the stiffness of all engaged teeth: s_n = 1 for even n, 2 p -
+        1 for odd n. Where both lobes share equally, odd orders cancel: an eccentric spline (n = 1) gives no error, an oval one
+        (n = 2) gives all of its own. Torque winds up all pairs alike and does not change e.
 
         A Fourier series over the teeth turns a measured chart of index deviations into amplitudes and phases. Where only a
-        tolerance class is known, give flexspline_deviation and circular_spline_deviation, the total cumulative pitch deviation F_p
-        of a typical part; the class states the largest one allowed. They add a random chart with amplitudes
-        sqrt(2 / pi) F_p / (pi n) and phases that ``seed`` draws: the mean spectrum of pitches that are cut independently of each
-        other and whose range over the turn is F_p in the mean (Feller1951). The 16 orders kept have nine tenths of that range.
+        tolerance class is known, give flexspline_deviation and circular_spline_deviation, the total cumulative pitch deviation
+        F_p of a typical part; the class states the largest one allowed. They add a random chart with amplitudes sqrt(2 / pi)
+        F_p / (pi n) and phases that ``seed`` draws: the mean spectrum of pitches that are cut independently of each other and
+        whose range over the turn is F_p in the mean (Feller1951). The 16 orders kept have nine tenths of that range.
 
-        Assumed are: a linear stiffness of each pair, which teeth are engaged, how their stiffness falls, and one pitch radius for
-        both splines. Leaves out single teeth as they come and go (orders near the number of teeth), deviations of flank and of
-        thickness, teeth that lose contact, load and speed, the radial part of an eccentricity (see Misalignment), runout of the
-        output shaft, and deviations of order above 16, of which the engaged teeth leave little. A gear does not check that the
-        teeth and the fixed member are those of its kinematics: give the same.
+        Assumed are: a linear stiffness of each pair, which teeth are engaged, how their stiffness falls, and one pitch radius
+        for both splines. Leaves out single teeth as they come and go (orders near the number of teeth), deviations of flank and
+        of thickness, teeth that lose contact, load and speed, the radial part of an eccentricity (see Misalignment), runout of
+        the output shaft, and deviations of order above 16, of which the engaged teeth leave little. A gear refuses teeth and a
+        fixed member that are not those of its kinematics, and a pitch radius that is not that of its stages.
 
         >>> from strainwave.kinematic_error import ToothErrors
         >>> gear = dict(flexspline_teeth=200, circular_spline_teeth=202, pitch_radius=25e-3, engaged_share=0.3)
@@ -87,7 +88,7 @@ struct ToothErrors {
         visit(SW_REQUIRED(m, flexspline_teeth, "1", "Teeth of the flexspline z_f", 2, 100000));
         visit(SW_REQUIRED(m, circular_spline_teeth, "1", "Teeth of the circular spline z_c", 3, 100000));
         visit(SW_FIELD(m, fixed, "1", "The member that does not turn; the other spline is the output"));
-        visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest));
+        visit(SW_REQUIRED(m, pitch_radius, "m", "Pitch radius r_g", smallest, 1));
         visit(SW_REQUIRED(m, engaged_share, "1", "Share eta of the flexspline's teeth that is engaged, at both lobes together", 0,
                           1));
         visit(SW_FIELD(m, first_lobe, "1", "Share p of the first lobe in the stiffness of all engaged teeth", 0, 1));
@@ -102,15 +103,16 @@ struct ToothErrors {
         visit(SW_FIELD(m, seed, "1", "Whole number that says which of all such random gears it is", 0, 16777215, true));
     }
 
-    constexpr const char* problem() const {
+    constexpr Contradiction<S> problem() const {
         const int more = circular_spline_teeth - flexspline_teeth;
         if (more <= 0 || more % 2 != 0)
-            return "circular_spline_teeth must exceed flexspline_teeth by an even number, for teeth mesh at two lobes";
+            return {"circular_spline_teeth = {} must exceed flexspline_teeth = {} by an even number, for teeth mesh at two lobes",
+                    S(circular_spline_teeth), S(flexspline_teeth)};
         if (flexspline_amplitude.count != flexspline_phase.count)
-            return "flexspline_amplitude and flexspline_phase must have equally many elements";
-        return circular_spline_amplitude.count == circular_spline_phase.count
-                   ? nullptr
-                   : "circular_spline_amplitude and circular_spline_phase must have equally many elements";
+            return {"flexspline_amplitude and flexspline_phase must have equally many elements"};
+        if (circular_spline_amplitude.count != circular_spline_phase.count)
+            return {"circular_spline_amplitude and circular_spline_phase must have equally many elements"};
+        return {};
     }
 
     struct Compiled {

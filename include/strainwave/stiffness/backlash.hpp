@@ -5,9 +5,6 @@
 
 namespace strainwave {
 
-template <class S, class Spring>
-constexpr S reduction_of(const Spring& spring);
-
 namespace stiffness {
 
 template <class S, class Law_ = Cubic<S>>
@@ -24,14 +21,15 @@ struct Backlash {
 
         .. math:: T = T_{law}(\delta - p), \qquad p = \min(\max(\delta, -c/2), c/2)
 
-        with delta the twist, p the play taken up, c = clearance, law any spring without play. Torque, stiffness and energy are 0
-        within the play; the two flanks are c apart at zero torque, which is what a lost-motion test adds to the twist of the
-        spring. The stiffness jumps at the flanks, where it is that of the spring; a torque of exactly 0 has the twist 0. With c =
-        0 it is the spring itself.
+        with delta the twist, p the play taken up, c = clearance, ``law`` any spring without play. Torque, stiffness and energy
+        are 0 within the play; the two flanks are c apart at zero torque, which is what a lost-motion test adds to the twist of
+        the spring. The stiffness jumps at the flanks, where it is that of the spring; a torque of exactly 0 has the twist 0.
+        With c = 0 it is the spring itself.
 
-        Without loss: flanks meet elastically, and what a blow loses is for ``damping`` and friction of the gear, which act within
-        the play, too. Makers call strain wave gears free of backlash, for their teeth are preloaded: this law is for worn ones,
-        for badly fitted ones, and for what else stands between the gear and its load.
+        No energy is lost: flanks meet elastically. What a blow loses belongs to ``damping`` and friction of the gear, which act
+        within the play, too. Steps must be short against the time in which the spring of a flank swings. Makers call strain
+        wave gears free of backlash, for their teeth are preloaded: this law is for worn ones, for badly fitted ones, and for
+        what else stands between the gear and its load.
 
         >>> from strainwave.stiffness import Backlash, Linear
         >>> spring = Backlash(law=Linear(k=1e4), clearance=2e-4)
@@ -60,11 +58,6 @@ struct Backlash {
         Domain<S> valid = strainwave::domain<S>(law, sprung(twist));
         if (!strainwave::bounded<S>(law)) return valid;
         return {valid.name, twist, valid.low - half(), valid.high + half(), valid.unit, valid.remedy};
-    }
-
-    template <class T>
-    friend constexpr T reduction_of(const Backlash& spring) {
-        return reduction_of<T>(spring.law);
     }
 
 private:

@@ -10,7 +10,7 @@ struct Constant {
     static constexpr auto doc = R"(
         A stiffness that does not change with the angle.
 
-        .. math:: k(\theta) = k
+        .. math:: k(\theta) = k_0
 
         >>> from strainwave.variation import Constant
         >>> Constant()

@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/condition.hpp>
 #include <strainwave/harmonics.hpp>
 #include <strainwave/variation/variation.hpp>
 
@@ -19,12 +20,13 @@ struct Periodic {
     static constexpr auto doc = R"(
         A stiffness that changes as the wave generator turns: more or fewer teeth carry, the ball bearing rolls under the load.
 
-        .. math:: k(\theta) = k \left(1 + \sum_h a_h \sin(B_h \theta + \varphi_h)\right)
+        .. math:: k(\theta) = k_0 \left(1 + \sum_h a_h \sin(B_h \theta + \varphi_h)\right)
 
-        with theta the angle of the wave generator, a_h = amplitude, B_h = order, phi_h = phase, up to 8 harmonics. A spring that
-        holds the energy V(x, theta) turns the wave generator with the torque -dV/dtheta: without it energy would come from
-        nowhere, and with it a stiffness that varies shows in the motor current even where nothing moves the output. The
-        amplitudes must add up to less than 1, so that the stiffness stays positive.
+        with k_0 the stiffness that its law gives, theta the angle of the wave generator, a_h = amplitude, B_h = order, phi_h =
+        phase, up to 8 harmonics. Two lobes make order 2. A spring that holds the energy V(x, theta), x its deformation, turns
+        the wave generator with the torque -dV/dtheta. Without this torque energy would come from nowhere. With it, a stiffness
+        that varies shows in the motor current even where the output stands still. The amplitudes must add up to less than 1, so
+        that the stiffness stays positive.
 
         >>> from strainwave.variation import Periodic
         >>> Periodic(order=[2], amplitude=[0.05], phase=[0.0]).amplitude
@@ -37,10 +39,11 @@ struct Periodic {
         visit(SW_FIELD(m, phase, "rad", "Phase phi_h"));
     }
 
-    constexpr const char* problem() const {
+    constexpr Contradiction<S> problem() const {
         if (order.count != amplitude.count || order.count != phase.count)
-            return "order, amplitude and phase must have equally many elements";
-        return all(largest() < S(2.0)) ? nullptr : "amplitude must add up to less than 1";
+            return {"order, amplitude and phase must have equally many elements"};
+        if (!all(largest() < S(2.0))) return {"amplitude must add up to less than 1, not {}", largest() - S(1.0)};
+        return {};
     }
 
     struct Compiled {
