@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from strainwave.messages import listed, one_line, quoted, unquoted, with_options
+from strainwave.rig_command import rig
 from strainwave.study_command import study
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.add_typer(study, name="study")
+app.add_typer(rig, name="rig")
 
 
 def _show_version(wanted: bool) -> None:

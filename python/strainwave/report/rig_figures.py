@@ -25,7 +25,6 @@ COLOURS = {
     "negative unloading": "held-out",
     "positive loading": "earlier",
 }
-MARKS = ("o", "s", "^", "D", "v", "P")
 
 
 @dataclass(frozen=True)
@@ -34,7 +33,7 @@ class Branch:
 
     Attributes:
         name: of the regime
-        angle, torque: its points [deg], [N.m], those shared with the neighbours too
+        angle, torque: its points, in the unit of the figure and [N.m], those shared with the neighbours too
     """
 
     name: str
@@ -47,17 +46,20 @@ class Width:
     """A width of the loop, from one branch to the other.
 
     Attributes:
+        letter: beside the arrow
         name: which
-        angle: its two ends [deg]
-        torque: at which [N.m], of each end
+        angle: its two ends, in the unit of the figure
+        torque: at which [N.m]
     """
 
+    letter: str
     name: str
     angle: tuple[float, float]
-    torque: tuple[float, float]
+    torque: float
 
 
 def loop_figure(
+    whole: tuple[Array, Array],
     branches: Sequence[Branch],
     widths: Sequence[Width],
     names: tuple[str, str],
@@ -68,9 +70,10 @@ def loop_figure(
     """A loop, its regimes coloured, an arrow for the sense of each, and its widths.
 
     Args:
+        whole: angle and torque of all points measured
         branches: the regimes
         widths: to be drawn across
-        names: of angle and torque
+        names: of angle and torque, with their units
         output_arcmin: at the output for a degree at the input, for a second scale; None for none
         name: of the drawing, alone on its page
         title: what it is
@@ -79,11 +82,12 @@ def loop_figure(
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
         axes.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
+        axes.plot(*whole, color=LIGHT["muted"], linewidth=0.7, label="" if branches else "measured")
         for branch in branches:
             _branch(axes, branch)
         for place, width in enumerate(widths):
-            _dimension(axes, width, place)
-        figures.label_axes(axes, f"{names[1]} [N·m]", "1", f"{names[0]} [°]", "1")
+            _dimension(axes, width, (0.5, 0.62, 0.38)[place % 3])
+        figures.label_axes(axes, names[1], "1", names[0], "1")
         if output_arcmin is not None:
             second = axes.secondary_xaxis("top", functions=_times(output_arcmin))
             second.set_xlabel("divided by the ratio: at the output [arcmin]", color=LIGHT["muted"])
@@ -123,10 +127,10 @@ def _unit(steps: Array) -> Array:
     return steps / extent if extent > 0.0 else steps
 
 
-def _dimension(axes: Axes, width: Width, place: int) -> None:
-    """A double arrow between two branches, with its letter."""
-    letter, ink = "abc"[place], LIGHT["ink"]
-    ends = tuple(zip(width.angle, width.torque, strict=True))
+def _dimension(axes: Axes, width: Width, share: float) -> None:
+    """A double arrow from one branch to the other, with its letter."""
+    ink = LIGHT["ink"]
+    start, stop = ((angle, width.torque) for angle in width.angle)
     arrow: dict[str, Any] = {
         "arrowstyle": "<|-|>",
         "color": ink,
@@ -135,13 +139,12 @@ def _dimension(axes: Axes, width: Width, place: int) -> None:
         "shrinkA": 0,
         "shrinkB": 0,
     }
-    axes.annotate("", xy=ends[0], xytext=ends[1], arrowprops=arrow)
-    share = (0.5, 0.62, 0.38)[place]
-    x, y = ((1.0 - share) * start + share * stop for start, stop in zip(*ends, strict=True))
-    axes.annotate(
-        letter, (x, y), (0.0, 2.5), textcoords="offset points", ha="center", va="bottom", color=ink, fontweight="bold"
-    )
-    axes.plot([], [], color=ink, linewidth=0.9, label=f"{letter}: {width.name}")
+    axes.annotate("", xy=start, xytext=stop, arrowprops=arrow)
+    middle = ((1.0 - share) * width.angle[0] + share * width.angle[1], width.torque)
+    place: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "bottom", "fontweight": "bold"}
+    axes.annotate(width.letter, middle, (0.0, 2.5), color=ink, **place)
+    if width.name:
+        axes.plot([], [], color=ink, linewidth=0.9, label=f"{width.letter}: {width.name}")
 
 
 @dataclass(frozen=True)
@@ -267,14 +270,12 @@ class Compared:
     Attributes:
         name: of the quantity, with its unit in brackets
         values: of each loop
-        half_widths: of the interval of 95 % of each
-        document: what document T's table has beside each, or None
+        half_widths: of the interval of 95 % of each, what all share left out
     """
 
     name: str
     values: Array
     half_widths: Array
-    document: Array | None = None
 
 
 def comparison_figure(rows: Sequence[Compared], labels: Sequence[str], what: str, name: str, title: str) -> str:
@@ -306,7 +307,7 @@ def comparison_figure(rows: Sequence[Compared], labels: Sequence[str], what: str
 
 
 def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, str], name: str, title: str) -> str:
-    """Several loops in one picture: angles [deg] and torques [N.m] by label."""
+    """Several loops in one picture: angle and torque by label."""
     colours, lines = list(COLOURS.values()), ("-", "--", ":", "-.")
 
     def draw(figure: Figure) -> None:
@@ -315,7 +316,7 @@ def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, s
         for place, (label, (angle, torque)) in enumerate(loops.items()):
             colour, line = colours[place % len(colours)], lines[place // len(colours) % len(lines)]
             figures.curve(axes, angle, torque, color=LIGHT[colour], linestyle=line, linewidth=1.1, label=label)
-        figures.label_axes(axes, f"{names[1]} [N·m]", "1", f"{names[0]} [°]", "1")
+        figures.label_axes(axes, names[1], "1", names[0], "1")
         figures.legend(figure, axes)
 
     return figures.inline(draw, (figures.WIDTH, 3.6), name, title)

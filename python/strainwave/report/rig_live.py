@@ -123,7 +123,10 @@ class Terminal:
 
     def _read(self, prompt: str) -> str:
         self.console.print(prompt, end="", markup=False, highlight=False)
-        return self.read()
+        try:
+            return self.read()
+        except EOFError:  # nobody is there any more
+            return "q"
 
 
 def _place(step: Step) -> str:

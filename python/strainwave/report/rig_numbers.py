@@ -1,0 +1,50 @@
+"""Numbers of a torsion test in print: a value, and below it the interval that holds the truth with 95 %."""
+
+from __future__ import annotations
+
+from math import floor, isfinite, log10
+from typing import NamedTuple
+
+from strainwave.report.typeset import fixed, number
+from strainwave.rig.result import Result
+
+DIGITS = 4  # of a value whose uncertainty is not known
+FINEST = 6  # digits of a value, however well it is known
+
+
+class Stated(NamedTuple):
+    """A number in print.
+
+    Attributes:
+        value: rounded to what its interval allows
+        interval: both ends, empty where nothing tells the uncertainty
+    """
+
+    value: str
+    interval: str
+
+    def __str__(self) -> str:
+        return f"{self.value} ({self.interval})" if self.interval else self.value
+
+
+def stated(found: Result | None, scale: float = 1.0) -> Stated:
+    """A number times a scale, rounded to the second digit of half its interval.
+
+    >>> str(stated(Result(4.5123, "N.m/rad", 0.04, 0.02, 4.4247, 4.5999)))
+    '4.512 (4.425 to 4.600)'
+    >>> str(stated(Result(0.30634, "J", float("nan"), 0.0, float("nan"), float("nan"))))
+    '0.3063'
+    >>> str(stated(None))
+    '—'
+    """
+    if found is None or not isfinite(found.value):
+        return Stated("—", "")
+    value, low, high = (scale * each for each in (found.value, found.low, found.high))
+    if not (isfinite(high - low) and high > low):
+        return Stated(number(value, DIGITS), f"{number(low, DIGITS)} to {number(high, DIGITS)}" if high > low else "")
+    places = 1 - floor(log10(0.5 * (high - low)))
+    most = FINEST - 1 - floor(log10(max(abs(low), abs(high))))
+    if not -3 <= min(places, most) <= FINEST:
+        return Stated(number(value, FINEST), f"{number(low, FINEST)} to {number(high, FINEST)}")
+    texts = [fixed(each, min(places, most)) for each in (value, low, high)]
+    return Stated(texts[0], f"{texts[1]} to {texts[2]}" if texts[1] != texts[2] else f"± {number(0.5 * (high - low), 1)}")

@@ -1,0 +1,323 @@
+"""The command `strainwave rig`: plans, guides, follows, analyses and simulates torsion tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf, radians
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from strainwave import Gear
+    from strainwave.rig.guide import Settling
+    from strainwave.rig.plan import Pans, Plan
+    from strainwave.rig.setup import Rig
+    from strainwave.rig.sources import Source
+    from strainwave.rig.steps import Step
+    from strainwave.rig.virtual.render import Scene
+
+rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, analyse, simulate.")
+
+DOCUMENT_T = "document-t"  # the gear whose loops are the rows of document T's Table 2
+POSITIONS = "0,60,120"
+
+RigOption = Annotated[str, typer.Option("--rig", help="The rig: a name that comes with the package, or a .toml file.")]
+PeakOption = Annotated[float, typer.Option("--torque", help="Peak torque in N.m; the nearest that the masses make is taken.")]
+StepOption = Annotated[
+    float | None, typer.Option("--step", help="Step of the torque in N.m; the smallest that the masses make, if not given.")
+]
+PositionsOption = Annotated[str, typer.Option(help="Positions of the flexspline in its mount in degrees, as 0,60,120.")]
+UnitsOption = Annotated[str, typer.Option(help="Names of the specimens, as A,B; one without a name, if not given.")]
+CyclesOption = Annotated[int, typer.Option(help="Cycles at each position, one after the other.")]
+UnequalOption = Annotated[
+    bool, typer.Option("--unequal", help="Let both pans of a pair differ by one mass: half the step, but no pure couple.")
+]
+
+
+@rig.command("plan")
+def plan_command(
+    name: RigOption = "couple-rig",
+    torque: PeakOption = 0.36,
+    step: StepOption = None,
+    positions: PositionsOption = POSITIONS,
+    units: UnitsOption = "",
+    cycles: CyclesOption = 1,
+    unequal: UnequalOption = False,
+    out: Annotated[Path | None, typer.Option(help="File for the steps, .csv, as steps.csv of a test has them.")] = None,
+) -> None:
+    """Print what to lay on the pans and take off, step by step.
+
+    The cycle is document T's: the positive peak, down to zero, to the negative peak, back to zero, and up to the positive peak.
+    """
+    from strainwave.rig.steps_file import write_steps
+
+    if out is not None and out.suffix != ".csv":
+        raise ValueError(f"--out {out} must end in .csv")
+    made = _plan(_rig(name), torque, step, positions, units, cycles, unequal)
+    if out is not None:
+        write_steps(made.steps, out)
+    print(made)
+    if out is not None:
+        print(f"wrote {out}")
+
+
+@rig.command()
+def simulate(
+    gear: Annotated[
+        str, typer.Argument(help="A set by name, a gear file, or document-t: the gears of document T's Table 2.")
+    ] = DOCUMENT_T,
+    name: RigOption = "couple-rig",
+    out: Annotated[Path, typer.Option(help="Folder for the test; it must not hold one yet.")] = Path("out/rig-test"),
+    torque: PeakOption = 0.36,
+    step: StepOption = None,
+    positions: PositionsOption = POSITIONS,
+    units: UnitsOption = "",
+    cycles: CyclesOption = 1,
+    unequal: UnequalOption = False,
+    seed: Annotated[int, typer.Option(help="Of the noise of the photographs.")] = 0,
+) -> None:
+    """Make a virtual test: photographs, masses and rig as a real test leaves them, and the truth beside them."""
+    import sys
+
+    from strainwave.rig.virtual.test import simulate_test
+
+    bench = _rig(name)
+    steps = _plan(bench, torque, step, positions, units, cycles, unequal).steps
+    test = simulate_test(_gear_of(gear), bench, steps, folder=out, scene=_scene(bench), seed=seed, progress=sys.stderr.isatty())
+    print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, rig.toml, and the truth in truth.json and truth-*.toml")
+    print(f"to analyse it: strainwave rig analyse {out}")
+
+
+@rig.command()
+def measure(
+    camera: Annotated[
+        str, typer.Option(help="Number of a camera, a folder that another program fills with photographs, or virtual.")
+    ],
+    out: Annotated[Path, typer.Option(help="Folder of the test; one that was broken off goes on.")] = Path("out/rig-test"),
+    name: Annotated[
+        str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; couple-rig if not given.")
+    ] = None,
+    torque: PeakOption = 0.36,
+    step: StepOption = None,
+    positions: PositionsOption = POSITIONS,
+    units: UnitsOption = "",
+    cycles: CyclesOption = 1,
+    unequal: UnequalOption = False,
+    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = DOCUMENT_T,
+    pictures: Annotated[int, typer.Option(help="Photographs in a row that must agree before a step counts as at rest.")] = 5,
+    interval: Annotated[float, typer.Option(help="Time between two photographs in s.")] = 0.5,
+    patience: Annotated[float, typer.Option(help="Time in s after which a shaft that still moves is told.")] = 60.0,
+) -> None:
+    """Guide a test step by step, and write each step down as soon as it is done.
+
+    Says which masses to move, waits until the shaft rests, and keeps the photograph. `steps.csv` in the folder of the test
+    holds what was done; Ctrl-C, or q, breaks off, and the same command goes on.
+    """
+    from rich.console import Console
+
+    from strainwave.files.writing import claiming, making, written
+    from strainwave.rig.guide import Settling
+
+    settling = Settling(_count("--pictures", pictures), _positive("--interval", interval), _positive("--patience", patience))
+    with making(out), claiming(out):
+        bench = _rig_of_test(out, name)
+        made = _plan(bench, torque, step, positions, units, cycles, unequal)
+        source = _source(camera, bench, made.steps, gear)
+        written.append(out)
+        done = _conduct(Console(stderr=True), out, bench, made, source, settling)
+    if done < len(made.steps):
+        print(f"stopped after step {done} of {len(made.steps)}; the same command goes on")
+    else:
+        print(f"all {done} steps are made")
+        print(f"to analyse them: strainwave rig analyse {out}")
+
+
+@rig.command()
+def watch(
+    folder: Annotated[Path, typer.Argument(help="Folder of a test that is being run.")],
+    name: Annotated[
+        str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; rig.toml of the folder, if not given.")
+    ] = None,
+    plan: Annotated[
+        Path | None, typer.Option(help="Steps that are made, .csv, where steps.csv does not tell them yet.")
+    ] = None,
+    idle: Annotated[float, typer.Option(help="End when no photograph came for so many s; never, if not given.")] = inf,
+    interval: Annotated[float, typer.Option(help="Time between two looks in s.")] = 0.5,
+) -> None:
+    """Follow a folder while a test is being run, and draw its loop as it grows; Ctrl-C ends."""
+    from rich.console import Console
+
+    from strainwave.report.rig_live import Point, live
+    from strainwave.rig.steps_file import read_steps
+    from strainwave.rig.watching import Watch
+
+    if not folder.is_dir():
+        raise FileNotFoundError(f"{folder}: there is no such folder")
+    bench = _rig_of_test(folder, name)
+    watched = Watch(folder, bench, read_steps(plan) if plan is not None else ())
+
+    def look() -> list[Point]:
+        return [Point(each.name, each.torque, each.look, each.warnings) for each in watched.new()]
+
+    points = live(Console(stderr=True), look, _positive("--idle", idle), _positive("--interval", interval))
+    told = sum(not point.look.fault for point in points)
+    print(f"{len(points)} photographs, {told} of them told an angle")
+
+
+@rig.command()
+def influence(
+    gear: Annotated[str, typer.Argument(help="A set by name, or a gear file.")] = "csg-25-100",
+    torque: Annotated[
+        float | None, typer.Option(help="Largest torque at the output in N.m; the rated torque of the set, if not given.")
+    ] = None,
+    measured: Annotated[
+        Path | None,
+        typer.Option(help="A series of loops, .csv: what was varied, as torque_max or temperature, and area, width or file."),
+    ] = None,
+    loop: Annotated[
+        list[str] | None,
+        typer.Option(help="A measured loop, and what was varied, as cold.csv,temperature=5 degC; once for each loop."),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for report.html and the tables.")] = Path("out/rig-influence"),
+) -> None:
+    """Put document T's table of influences to a gear, to the catalogue and to measured series.
+
+    Varies torque level, ratio, modulus, friction of the bearing and temperature, says which of the table's entries hold, with a
+    number for each, and tests measured series for trends.
+    """
+    from rich.console import Console
+
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.writing import making, written
+    from strainwave.report.influence import influence_report, summary, tables
+    from strainwave.report.page import write
+    from strainwave.report.provenance import Provenance
+    from strainwave.rig.influence import influence as run
+    from strainwave.rig.series import read_series, series_of
+
+    if measured is not None and loop:
+        raise ValueError("--measured and --loop are two ways to give one series; give one of them")
+    series = read_series(measured) if measured is not None else series_of(loop) if loop else None
+    with Console(stderr=True).status("reading") as status:
+        found = run(GearSet.read(gear), torque, series, progress=status.update)
+        status.update("report")
+        html = influence_report(found, Provenance.of_this_command([] if series is None else series.files))
+    with making(out):
+        for name, table in tables(found).items():
+            table.to_csv(out / f"{name}.csv")
+            written.append(out / f"{name}.csv")
+        write(html, out / "report.html")
+        written.append(out / "report.html")
+    print(summary(found))
+    print(f"wrote {out / 'report.html'} and {len(tables(found))} tables beside it")
+
+
+# ---- What options say ------------------------------------------------------------------------------------------------
+
+
+def _rig(name: str) -> Rig:
+    from strainwave.rig.rig_file import load
+
+    return load(name)
+
+
+def _rig_of_test(folder: Path, name: str | None) -> Rig:
+    """The rig that was named, or that of the folder, or the one of document T."""
+    there = folder / "rig.toml"
+    if name is None and there.exists():
+        return _rig(str(there))
+    return _rig("couple-rig" if name is None else name)
+
+
+def _plan(bench: Rig, torque: float, step: float | None, positions: str, units: str, cycles: int, unequal: bool) -> Plan:
+    from strainwave.rig.plan import plan
+
+    places = [radians(each) for each in _numbers("--positions", positions)]
+    specimens = [each.strip() for each in units.split(",")]
+    if len(set(places)) < len(places) or len(set(specimens)) < len(specimens):
+        raise ValueError("--positions and --units must each name a thing once; --cycles repeats a position")
+    pans: Pans = "unequal" if unequal else "equal"
+    return plan(bench, torque, step=step, pans=pans, positions=places, units=specimens, cycles=cycles)
+
+
+def _numbers(option: str, text: str) -> list[float]:
+    try:
+        return [float(each) for each in text.split(",")]
+    except ValueError:
+        raise ValueError(f"{option} {text}: write numbers with commas between, as 0,60,120") from None
+
+
+def _positive(option: str, value: float) -> float:
+    if not value > 0.0:
+        raise ValueError(f"{option} {value:g} s must be above 0")
+    return value
+
+
+def _count(option: str, value: int) -> int:
+    if value < 1:
+        raise ValueError(f"{option} {value} must be 1 or more")
+    return value
+
+
+def _gear_of(name: str) -> Gear | Callable[[Step], Gear]:
+    """The gear on a virtual rig, or of each step one of document T's."""
+    from math import degrees
+
+    from strainwave.files.gear_set import GearSet
+    from strainwave.rig.virtual.printed import printed_gear
+
+    return (lambda step: printed_gear(round(degrees(step.position)))) if name == DOCUMENT_T else GearSet.read(name).gear
+
+
+def _scene(bench: Rig) -> Scene:
+    from strainwave.rig.virtual.render import Scene
+
+    return Scene(camera=bench.camera, gradient=0.3, noise=4.0 / 255.0)
+
+
+def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Source:
+    from strainwave.rig.sources import Device, Filled
+
+    if camera == "virtual":
+        return _virtual(bench, steps, gear)
+    return Device(int(camera)) if camera.isdecimal() else Filled(Path(camera))
+
+
+def _virtual(bench: Rig, steps: tuple[Step, ...], gear: str) -> Source:
+    from itertools import groupby
+
+    import numpy as np
+
+    from strainwave import Gear
+    from strainwave.rig.sources import Virtual
+    from strainwave.rig.virtual.loading import load_by_steps
+
+    chosen, angles = _gear_of(gear), []
+    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
+        own = list(group)
+        angles.append(load_by_steps(chosen if isinstance(chosen, Gear) else chosen(own[0]), bench, own).angle)
+    return Virtual(_scene(bench), np.concatenate(angles), np.random.default_rng())
+
+
+def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source, settling: Settling) -> int:
+    """Guides through the steps that are left; returns how many are done."""
+    from strainwave.report.rig_live import Terminal
+    from strainwave.rig.guide import conduct, done_before
+    from strainwave.rig.rig_file import write_rig
+    from strainwave.rig.sources import Virtual
+    from strainwave.rig.watching import Reader, torque_of_masses
+
+    done, reader = done_before(made.steps, out), Reader(bench.camera)
+    if not (out / "rig.toml").exists():
+        write_rig(bench, out / "rig.toml")
+    tasks = {stage.step.number: stage.task for stage in made.stages}
+    terminal = Terminal(
+        console, len(made.steps), lambda step, _: tasks[step.number], lambda step: torque_of_masses(bench, step)
+    )
+    terminal.before |= {step.number: reader(out / str(step.image), step) for step in done if step.image}
+    load = source.load if isinstance(source, Virtual) else lambda number: None
+    return len(conduct(made.steps, out, source, reader, terminal, settling, load))
