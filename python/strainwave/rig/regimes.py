@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, Literal
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.identify.branches import turning_points
 from strainwave.rig.loop import Loop
+from strainwave.rig.step_remarks import remarks_on_steps
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -23,10 +24,8 @@ FALLING, RISING = -1, 1
 MAJOR = 0.5  # of the span: a run that comes back by less is no branch of the cycle
 REACHED = 0.1  # of the span of torque: a branch that begins or ends so near an extreme reaches it
 MISSING = 0.05  # of the span of torque, or one and a half steps: what a cycle may lack where it closes
-WIGGLES = 0.4  # turns per point: more, and the points do not follow each other as measured
-DETOURS = 0.1  # turns per point that lead to no peak; likewise
-LEAST = 4  # points of a cycle: two peaks and two of the way between them
-USUAL = 0.6  # of the steps of torque that must be alike for another to be called a gap
+DETOURS = 0.1  # turns per point that lead to no peak: more, and the points do not follow each other as measured
+LEAST = 4  # such turns, below which they may be smaller loops
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +65,7 @@ class Regime(ComparedByFields):
 
     Attributes:
         name: which quarter
-        torque: [N.m], shape (n,); begins or ends with 0, which is interpolated where it was not measured
+        torque: [N.m], shape (n,); begins or ends with 0, which is interpolated where the branch passes it between two points
         angle: [rad], shape (n,)
         angle_sigma: [rad], shape (n,)
         torque_sigma: [N.m], shape (n,)
@@ -79,6 +78,11 @@ class Regime(ComparedByFields):
     angle_sigma: Array
     torque_sigma: Array
     rows: Rows
+
+    @property
+    def from_zero(self) -> bool:
+        """Whether it begins or ends at zero torque; else the branch begins or ends a little before."""
+        return bool(np.any(self.torque == 0.0))
 
     @property
     def measured(self) -> NDArray[np.bool_]:
@@ -132,7 +136,7 @@ def segment(loop: Loop) -> Segmented:
     runs = [_Run(loop, first, last, minor) for first, last in pairwise(ends)]
     cycle, falling, rising = _cycle(loop, runs)
     regimes = tuple(regime for name in NAMES if (regime := _regime(name, falling, rising, loop)) is not None)
-    remarks = (*_of_minor(loop, runs), *_of_gaps(loop), *_of_missing(regimes))
+    remarks = tuple(remarks_on_steps(loop, [turn for run in runs for turn in run.turns[::2]], regimes, NAMES))
     return Segmented(loop, falling, rising, regimes, cycle, _count(runs), remarks)
 
 
@@ -181,10 +185,11 @@ def _check(loop: Loop) -> None:
             "put the points in the order measured"
         )
     ends, minor = _ends(loop)
-    turns = len(ends) - 2 + len(minor)
-    if n > 2 * LEAST and (turns > WIGGLES * n or len(minor) > max(LEAST, DETOURS * n)):
+    inner = [_Run(loop, first, last, minor) for first, last in pairwise(ends)][1:-1]
+    detours = len(minor) + sum(not run.complete for run in inner)
+    if detours > max(LEAST, DETOURS * n):
         raise ValueError(
-            f"{loop.name}: torque and angle turn back {turns} times in {n} points; "
+            f"{loop.name}: torque and angle turn back {detours} times in {n} points without reaching a peak; "
             "put the points in the order measured, not sorted by torque or angle"
         )
     if np.cov(loop.angle, loop.torque)[0, 1] < 0.0:
@@ -326,18 +331,18 @@ def _regime(name: RegimeName, falling: Branch | None, rising: Branch | None, loo
     branch = falling if name in ("positive_unloading", "negative_loading") else rising
     sign = 1.0 if name.startswith("positive") else -1.0
     peak = float((sign * loop.torque).max())
-    if branch is None or peak <= 0.0 or not branch.low <= 0.0 <= branch.high:
+    if branch is None or peak <= 0.0:
         return None
-    if max(sign * branch.low, sign * branch.high) < peak - REACHED * float(np.ptp(loop.torque)):
+    ends, near = sorted((sign * branch.low, sign * branch.high)), REACHED * float(np.ptp(loop.torque))
+    if ends[0] > near or ends[1] < peak - near:
         return None
     torque = loop.torque[branch.rows]
     inside = sign * torque >= 0.0
-    if np.count_nonzero(inside & (torque != 0.0)) < 1:
-        return None
     found = Regime(
         name, torque[inside], branch.angle[inside], branch.angle_sigma[inside], branch.torque_sigma[inside], branch.rows[inside]
     )
-    return found if np.any(torque == 0.0) else _with_crossing(found, branch, 0 if sign > 0.0 else len(found.rows))
+    crosses = ends[0] < 0.0 and not np.any(torque == 0.0)
+    return _with_crossing(found, branch, 0 if sign > 0.0 else len(found.rows)) if crosses else found
 
 
 def _with_crossing(regime: Regime, branch: Branch, at: int) -> Regime:
@@ -360,35 +365,3 @@ def _crossing(branch: Branch) -> tuple[float, float, float, float]:
     share = np.array([torque[1], -torque[0]]) / (torque[1] - torque[0])
     angle_sigma, torque_sigma = (float(np.hypot(*(share * sigma[near]))) for sigma in (branch.angle_sigma, branch.torque_sigma))
     return 0.0, float(share @ angle), angle_sigma, torque_sigma
-
-
-# ---- What to say ------------------------------------------------------------------------------------------------------
-
-
-def _of_minor(loop: Loop, runs: Sequence[_Run]) -> Iterator[str]:
-    for run in runs:
-        for turn in run.turns[::2]:
-            yield (
-                f"the torque turns back at point {turn + 1} ({loop.torque[turn]:.4g} N.m) before the peak; what lies on that "
-                "smaller loop is in no regime"
-            )
-
-
-def _of_gaps(loop: Loop) -> Iterator[str]:
-    """Steps of torque that are a multiple of the usual one."""
-    steps = np.abs(np.diff(loop.torque))
-    usual = float(np.median(steps))
-    alike = np.abs(steps - usual) < 0.05 * usual
-    if usual == 0.0 or np.mean(alike) < USUAL:
-        return
-    for row in np.flatnonzero(steps > 1.5 * usual).tolist():
-        yield (
-            f"between points {row + 1} and {row + 2} the torque changes by {steps[row]:.4g} N.m, {steps[row] / usual:.2g} "
-            "times the usual step: a step was left out, or not recorded. Values between are taken on a straight line"
-        )
-
-
-def _of_missing(regimes: Sequence[Regime]) -> Iterator[str]:
-    names = [regime.name for regime in regimes]
-    if missing := [name.replace("_", " ") for name in NAMES if name not in names]:
-        yield f"not measured from zero torque to the peak: {', '.join(missing)}"

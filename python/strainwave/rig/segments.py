@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +82,7 @@ def fit_segments(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: 
 
     best = min(tried, key=price)
     if stated and np.any(torque_sigma > 0.0):  # each stretch turns errors of torque into angle by its own compliance
-        local = best.slopes[np.searchsorted(best.knees, torque)]
+        local = best.slopes[0] + np.heaviside(_past(torque, best.knees), 0.5) @ np.diff(best.slopes)
         variance = _variance(torque, angle, angle_sigma, torque_sigma, local)
         best = _refined(torque, angle, variance, best.knees)
     return best.segments(torque, stated)
@@ -118,7 +117,9 @@ class _Chain(ComparedByFields):
         freedom = len(torque) - self.parameters
         scatter = float(np.sqrt(np.sum(self.residual**2) / freedom)) if freedom > 0 else float("nan")
         size = 1.0 if stated else (self.misfit / freedom if freedom > 0 else float("nan"))
-        covariance = size * np.linalg.pinv(self.columns.T @ self.columns, rcond=1e-12)
+        lengths = _lengths(self.columns)
+        unit = self.columns / lengths
+        covariance = size * np.linalg.pinv(unit.T @ unit, rcond=1e-12) / np.outer(lengths, lengths)
         count = len(self.knees)
         sums = np.tril(np.ones((count + 1, count + 1)))
         slopes = sums @ covariance[1 : count + 2, 1 : count + 2] @ sums.T
@@ -148,7 +149,11 @@ def _best(torque: Array, angle: Array, variance: Array, count: int) -> _Chain:
     between = np.unique(np.concatenate((torque[1:-1], 0.5 * (torque[1:] + torque[:-1]))))
     between = between[(between > torque[0] + SHORTEST * span) & (between < torque[-1] - SHORTEST * span)]
     places = between[np.unique(np.linspace(0, len(between) - 1, CANDIDATES).astype(int))] if len(between) else between
-    chosen = np.array([each for each in combinations(places, count) if np.all(np.diff(each) > SHORTEST * span)])
+    chosen = places[:, np.newaxis]
+    if count == 2:
+        first, second = np.triu_indices(len(places), 1)
+        chosen = np.column_stack((places[first], places[second]))
+        chosen = chosen[chosen[:, 1] - chosen[:, 0] > SHORTEST * span]
     if not len(chosen):
         return _refined(torque, angle, variance, np.empty(0))
     weights = 1.0 / np.sqrt(variance)
@@ -167,7 +172,9 @@ def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Cha
     span = float(torque[-1] - torque[0])
     best = _lines(torque, angle, variance, knees)
     for _ in range(ROUNDS if len(knees) else 0):
-        step = np.linalg.lstsq(best.columns, best.residual / np.sqrt(variance), rcond=1e-10)[0][2 + len(knees) :]
+        lengths = _lengths(best.columns)
+        step = np.linalg.lstsq(best.columns / lengths, best.residual / np.sqrt(variance), rcond=1e-10)[0] / lengths
+        step = step[2 + len(knees) :]
         scale, better = 1.0, None
         while better is None and scale > 1e-3:
             moved = best.knees + scale * step
@@ -184,12 +191,25 @@ def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Cha
     return best
 
 
+def _past(torque: Array, knees: Array) -> Array:
+    """How far each torque is past each knee; 0 for a point on it, which belongs half to either side."""
+    past = torque[:, np.newaxis] - knees
+    past[np.abs(past) < ROUNDING * (torque[-1] - torque[0])] = 0.0
+    return past
+
+
+def _lengths(columns: Array) -> Array:
+    """Of each column, 1 where it is empty; columns of unit length make the answer the same in all units."""
+    lengths = np.sqrt(np.sum(columns**2, axis=0))
+    return np.asarray(np.where(lengths > 0.0, lengths, 1.0))
+
+
 def _lines(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
     weights = 1.0 / np.sqrt(variance)
-    beyond = torque[:, np.newaxis] > knees
-    columns = np.column_stack((np.ones_like(torque), torque, np.where(beyond, torque[:, np.newaxis] - knees, 0.0)))
+    past = _past(torque, knees)
+    columns = np.column_stack((np.ones_like(torque), torque, np.maximum(past, 0.0)))
     found = np.linalg.lstsq(weights[:, np.newaxis] * columns, weights * angle)[0]
     residual = angle - columns @ found
     slopes = np.cumsum(found[1:])
-    columns = np.column_stack((columns, np.where(beyond, -found[2:], 0.0))) * weights[:, np.newaxis]
+    columns = np.column_stack((columns, -found[2:] * np.heaviside(past, 0.5))) * weights[:, np.newaxis]
     return _Chain(slopes, knees, float(np.sum((weights * residual) ** 2)), columns, residual)

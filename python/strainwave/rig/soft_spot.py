@@ -61,14 +61,25 @@ def soft_spots(stiffnesses: Sequence[Stiffness], multiple: float = MULTIPLE) -> 
 def _spots(stiffness: Stiffness, multiple: float) -> Iterator[SoftSpot]:
     local, ratio, margin = stiffness.local, *_ratio(stiffness)
     soft = ratio - margin > multiple
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], soft, [False])).astype(int)))
-    for first, beyond in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for first, beyond in _bands(soft, local):
         band = slice(first, beyond)
         most = first + int(np.argmax(ratio[band]))
         low, high = _edge(local, first, -1), _edge(local, beyond - 1, 1)
         bounded = first > 0 and beyond < len(soft)
         width = float(local.width[most])
         yield SoftSpot(stiffness.name, low, high, width, float(ratio[most]), float(ratio[most] - margin[most]), bounded)
+
+
+def _bands(soft: NDArray[np.bool_], local: LocalStiffness) -> list[tuple[int, int]]:
+    """First stretch of each band, and the one beyond its last; bands nearer than the slopes can tell apart are one."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], soft, [False])).astype(int))).tolist()
+    bands: list[tuple[int, int]] = []
+    for first, beyond in zip(edges[::2], edges[1::2], strict=True):
+        if bands and local.torque[first] - local.torque[bands[-1][1] - 1] < local.width[first]:
+            bands[-1] = (bands[-1][0], beyond)
+        else:
+            bands.append((first, beyond))
+    return bands
 
 
 def _ratio(stiffness: Stiffness) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -61,7 +61,7 @@ class Stiffness(ComparedByFields):
 
     Attributes:
         name: of the regime
-        secant: torque of the peak over the angle from zero torque to the peak [N.m/rad]
+        secant: torque of the peak over the angle from zero torque to the peak [N.m/rad]; None where zero was not passed
         regression: slope of the line of greatest likelihood through all its points [N.m/rad]
         softest: slope of its softest straight stretch [N.m/rad]
         stretch: where this one begins and ends [N.m]; without an error where it is the end of the regime
@@ -72,7 +72,7 @@ class Stiffness(ComparedByFields):
     """
 
     name: RegimeName
-    secant: Result
+    secant: Result | None
     regression: Result
     softest: Result
     stretch: tuple[Result, Result]
@@ -112,7 +112,7 @@ def stiffness_of(regime: Regime, loop: Loop, freedom: float = np.inf) -> Stiffne
     low, high = segments.stretch(segments.softest)
     return Stiffness(
         regime.name,
-        _secant(regime, loop, freedom),
+        _secant(regime, loop, freedom) if regime.from_zero else None,
         regression,
         _softest(segments, loop, freedom),
         (_end(segments, low, loop), _end(segments, high, loop)),

@@ -1,0 +1,68 @@
+"""What the steps of a loop leave to be said before its numbers are read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.rig.loop import Loop
+
+USUAL = 0.6  # of the steps of torque that must be alike for another to be called a gap
+LONG = 1.5  # of the usual step: longer is a gap
+
+
+class Quarter(Protocol):
+    """A regime, as far as it is spoken of."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def torque(self) -> NDArray[np.float64]: ...
+    @property
+    def from_zero(self) -> bool: ...
+
+
+def remarks_on_steps(loop: Loop, turns: Iterable[int], regimes: Sequence[Quarter], names: Sequence[str]) -> Iterator[str]:
+    """Smaller loops on the way, steps left out, and regimes that are missing or begin late.
+
+    Args:
+        loop: the loop
+        turns: rows where a smaller loop begins
+        regimes: those measured
+        names: of all regimes of a cycle
+    """
+    yield from (_of_turn(loop, turn) for turn in turns)
+    yield from _of_gaps(loop)
+    found = [regime.name for regime in regimes]
+    if missing := [name.replace("_", " ") for name in names if name not in found]:
+        yield f"not measured from zero torque to the peak: {', '.join(missing)}"
+    yield from (_of_late(regime) for regime in regimes if not regime.from_zero)
+
+
+def _of_turn(loop: Loop, turn: int) -> str:
+    return (
+        f"the torque turns back at point {turn + 1} ({loop.torque[turn]:.4g} N.m) before the peak; what lies on that smaller "
+        "loop is in no regime"
+    )
+
+
+def _of_gaps(loop: Loop) -> Iterator[str]:
+    """Steps of torque that are a multiple of the usual one."""
+    steps = np.abs(np.diff(loop.torque))
+    usual = float(np.median(steps))
+    alike = np.abs(steps - usual) < 0.05 * usual
+    if usual == 0.0 or np.mean(alike) < USUAL:
+        return
+    for row in np.flatnonzero(steps > LONG * usual).tolist():
+        yield (
+            f"between points {row + 1} and {row + 2} the torque changes by {steps[row]:.4g} N.m, {steps[row] / usual:.2g} "
+            "times the usual step: a step was left out, or not recorded. Values between are taken on a straight line"
+        )
+
+
+def _of_late(regime: Quarter) -> str:
+    least = float(np.abs(regime.torque).min())
+    return f"{regime.name.replace('_', ' ')} is measured from {least:.3g} N.m on: it has no secant from zero torque"
