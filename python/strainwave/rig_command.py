@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from math import inf, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,7 +13,10 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from strainwave import Gear
+    from strainwave.rig.evaluation import Evaluation
     from strainwave.rig.guide import Settling
+    from strainwave.rig.loop import Loop
+    from strainwave.rig.measurement import TorsionTest
     from strainwave.rig.plan import Pans, Plan
     from strainwave.rig.setup import Rig
     from strainwave.rig.sources import Source
@@ -137,6 +140,54 @@ def measure(
 
 
 @rig.command()
+def analyse(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="FOLDER|FILE…", help="Folders of tests, or loops as .csv or .parquet; also several.")
+    ],
+    name: Annotated[
+        str | None, typer.Option("--rig", help="The rig, instead of rig.toml of the folder: a name, or a .toml file.")
+    ] = None,
+    gear: Annotated[str | None, typer.Option(help="The gear on the rig: a set by name, or a gear file.")] = None,
+    rated_torque: Annotated[
+        float | None, typer.Option(help="Rated torque at the loaded shaft in N.m, instead of that of the gear.")
+    ] = None,
+    reference: Annotated[
+        str | None, typer.Option(help="Photograph whose angle is 0; the first at the positive peak, if not given.")
+    ] = None,
+    friction: Annotated[
+        Path | None, typer.Option(help="Table of speed and torque of the input, whose friction is taken out; needs --gear.")
+    ] = None,
+    positions: Annotated[str | None, typer.Option(help="Position of each FILE in degrees, as 0,60,120.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results; FOLDER/analysis, or out/rig for several, if not given.")
+    ] = None,
+) -> None:
+    """Turn photographs and masses, or measured loops, into stiffness, lost motion, and a report.
+
+    Writes report.html, results.json, and of each loop and of the angles a .csv and a .parquet file. The photographs stay where
+    they are; the report holds their hashes.
+    """
+    from rich.console import Console
+
+    from strainwave.report.provenance import Provenance
+    from strainwave.report.rig import rig_report, summary
+    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
+
+    target = _target(paths, out)
+    with Console(stderr=True).status("reading") as status:
+        found, read = _evaluated(paths, name, gear, rated_torque, reference, friction, positions, status.update)
+        status.update("report")
+        provenance = Provenance.of_this_command(read)
+        files: dict[str, str | bytes] = {**loop_files(found.loops), **angle_files(found.angles)}
+        files["results.json"] = results_json(results(found, provenance.date))
+        files["report.html"] = rig_report(found, provenance, list(files))
+        _write(target, files)
+    print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    for each in loop_names(found.loops):
+        print(f"for a twin: strainwave twin --gear {gear or 'GEAR'} --torsion {target / each}.csv")
+
+
+@rig.command()
 def watch(
     folder: Annotated[Path, typer.Argument(help="Folder of a test that is being run.")],
     name: Annotated[
@@ -214,6 +265,108 @@ def influence(
         written.append(out / "report.html")
     print(summary(found))
     print(f"wrote {out / 'report.html'} and {len(tables(found))} tables beside it")
+
+
+# ---- A test that was made ---------------------------------------------------------------------------------------------
+
+
+def _target(paths: Sequence[Path], out: Path | None) -> Path:
+    """Where the results go."""
+    if out is not None:
+        return out
+    return paths[0] / "analysis" if len(paths) == 1 and paths[0].is_dir() else Path("out/rig")
+
+
+def _evaluated(
+    paths: Sequence[Path],
+    name: str | None,
+    gear: str | None,
+    rated_torque: float | None,
+    reference: str | None,
+    friction: Path | None,
+    positions: str | None,
+    progress: Callable[[str], None],
+) -> tuple[Evaluation, list[Path]]:
+    """What the tests and loops found, and the files that were read for it, but for the photographs."""
+    from strainwave.files.gear_set import GearSet
+    from strainwave.rig.evaluation import evaluate
+
+    gear_set = None if gear is None else GearSet.read(gear)
+    tests, loops, read = _read(paths, name, reference, positions, progress)
+    if friction is not None:
+        if gear_set is None:
+            raise ValueError(f"--friction {friction} needs --gear, whose law of friction is fitted to the table")
+        loops, read = _without_friction(loops, friction, gear_set.gear), [*read, friction]
+    found = evaluate(
+        loops,
+        name=" and ".join(path.name or str(path.resolve().name) for path in paths),
+        gear_set=gear_set,
+        rated_torque=rated_torque,
+        rig=tests[0].rig if len(tests) == len(paths) else None,
+        steps=[step for test in tests for step in test.steps],
+        angles=[angles for test in tests for angles in test.angles],
+        remarks=[remark for test in tests for remark in test.remarks],
+    )
+    return found, read
+
+
+def _read(
+    paths: Sequence[Path], name: str | None, reference: str | None, positions: str | None, progress: Callable[[str], None]
+) -> tuple[list[TorsionTest], list[Loop], list[Path]]:
+    from strainwave.rig.measurement import read_test
+    from strainwave.rig.recorded import read_loop
+
+    files = [path for path in paths if not path.is_dir()]
+    if files and (name is not None or reference is not None):
+        raise ValueError(f"--rig and --reference are for folders of tests; {files[0]} is not one")
+    if positions is not None and len(_numbers("--positions", positions)) != len(files):
+        raise ValueError(f"--positions {positions} must name as many positions as there are FILEs: {len(files)}")
+    places = dict(zip(files, _numbers("--positions", positions) if positions else [0.0] * len(files), strict=True))
+    tests: list[TorsionTest] = []
+    loops: list[Loop] = []
+    read: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            _check_test(path, name)
+            tests.append(read_test(path, rig=None if name is None else _rig(name), reference=reference, progress=progress))
+            loops += tests[-1].loops
+            read += [each for each in (path / "rig.toml", path / "steps.csv") if each.exists()]
+        else:
+            unit = path.stem if len(files) > 1 and positions is None else ""
+            loops.append(read_loop(path, position=radians(places[path]), unit=unit))
+            read.append(path)
+    return tests, loops, read
+
+
+def _check_test(folder: Path, name: str | None) -> None:
+    """Refuses a folder that holds no test, with what it lacks."""
+    if not (folder / "steps.csv").exists():
+        raise FileNotFoundError(f"{folder} holds no steps.csv, in which each step of a test has its masses and photograph")
+    if name is None and not (folder / "rig.toml").exists():
+        raise FileNotFoundError(f"{folder} holds no rig.toml; name the rig, as --rig couple-rig")
+
+
+def _without_friction(loops: Sequence[Loop], table: Path, gear: Gear) -> list[Loop]:
+    from strainwave.identify.measurement import read_measurement
+    from strainwave.rig.sides import friction_at_rest, without_friction
+
+    friction = friction_at_rest(read_measurement("friction", table), gear)
+    return [without_friction(loop, friction) for loop in loops]
+
+
+def _write(folder: Path, files: Mapping[str, str | bytes]) -> None:
+    """All files or none; an interrupt that comes while they are written changes nothing."""
+    import signal
+
+    from strainwave.files.writing import making, write_all, written
+
+    heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with making(folder):
+            write_all({folder / name: content for name, content in files.items()})
+        written.append(folder)
+    finally:
+        signal.signal(signal.SIGINT, heeded)
 
 
 # ---- What options say ------------------------------------------------------------------------------------------------

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from io import StringIO
+from importlib import metadata
+from io import BytesIO, StringIO
 from math import degrees, isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,10 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from strainwave.rig.analysis import LoopAnalysis
+from strainwave.rig.evaluation import Evaluation
 from strainwave.rig.loop import Loop
 from strainwave.rig.vision.angle import Angles
 
-ANGLE_COLUMNS = ("image", "sha256", "angle [rad]", "angle_sigma [rad]", "fault", "warnings")
 MARKER_COLUMNS = {
     "x": "px",
     "y": "px",
@@ -65,21 +67,94 @@ def loop_files(loops: Sequence[Loop]) -> dict[str, bytes]:
     return made
 
 
-def angles_csv(angles: Sequence[Angles]) -> str:
-    """What each photograph told, a row for each: its angle, both markers, and what is wrong with it."""
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    units = {name: f" [{unit}]" if unit else "" for name, unit in MARKER_COLUMNS.items()}
-    markers = [f"marker_{number}_{name}{units[name]}" for number in (1, 2) for name in MARKER_COLUMNS]
-    writer.writerow([*ANGLE_COLUMNS, *markers])
+def angle_files(angles: Sequence[Angles]) -> dict[str, bytes]:
+    """What each photograph told, a row for each, as CSV and as Parquet: its angle, both markers, and what is wrong with it."""
+    import pyarrow
+    from pyarrow.parquet import write_table
+
+    if not angles:
+        return {}
+    rows = list(_angle_rows(angles))
+    text, parquet = StringIO(), BytesIO()
+    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    write_table(pyarrow.Table.from_pylist(rows), parquet, compression="zstd")
+    return {"angles.csv": text.getvalue().encode(), "angles.parquet": parquet.getvalue()}
+
+
+def _angle_rows(angles: Sequence[Angles]) -> Iterator[dict[str, str | float | None]]:
     for each in angles:
         told = {frame.name: (angle, sigma) for frame, angle, sigma in zip(each.useful, each.angle, each.sigma, strict=True)}
         for frame in each.frames:
-            angle, sigma = told.get(frame.name, ("", ""))
-            row = [frame.name, frame.sha256, angle, sigma, frame.fault, "; ".join(frame.warnings)]
-            pair = frame.markers or ()
-            writer.writerow([*row, *(getattr(marker, name) for marker in pair for name in MARKER_COLUMNS)])
-    return text.getvalue()
+            angle, sigma = told.get(frame.name, (None, None))
+            row: dict[str, str | float | None] = {"image": frame.name, "sha256": frame.sha256, "reference": each.reference}
+            row |= {"angle [rad]": angle, "angle_sigma [rad]": sigma}
+            row |= {"fault": frame.fault, "warnings": "; ".join(frame.warnings)}
+            for number in (1, 2):
+                marker = frame.markers[number - 1] if frame.markers else None
+                for name, unit in MARKER_COLUMNS.items():
+                    value = None if marker is None else float(getattr(marker, name))
+                    row[f"marker_{number}_{name}{f' [{unit}]' if unit else ''}"] = value
+            yield row
+
+
+def results(found: Evaluation, date: str = "") -> dict[str, Any]:
+    """Every number that a test found, in SI units; each loop with the names of its files."""
+    names = loop_names(found.loops)
+    return {
+        "made_by": f"strainwave {metadata.version('strainwave')}",
+        "date": date,
+        "name": found.name,
+        "gear": None if found.gear_set is None else found.gear_set.name,
+        "rig": found.rig,
+        "loops": [
+            _loop_results(name, label, analysis)
+            for name, label, analysis in zip(names, found.labels, found.analyses, strict=True)
+        ],
+        "comparisons": found.comparisons,
+        "photographs": {frame.name: frame.sha256 for each in found.angles for frame in each.frames},
+        "remarks": found.remarks,
+    }
+
+
+def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, Any]:
+    loop = analysis.loop
+    numbers = (
+        "hysteresis",
+        "width_at_zero",
+        "rated_torque",
+        "hysteresis_loss",
+        "lost_motion",
+        "torque_width",
+        "area",
+        "closure",
+    )
+    return {
+        "label": label,
+        "files": [f"{name}.csv", f"{name}.parquet"],
+        "side": loop.side,
+        "position": loop.position,
+        "unit": loop.unit,
+        "points": len(loop),
+        "peaks": analysis.peaks,
+        "stiffness": {
+            each.name: {
+                "secant": each.secant,
+                "regression": each.regression,
+                "softest": each.softest,
+                "softest_from": each.stretch[0],
+                "softest_to": each.stretch[1],
+                "local": each.local,
+            }
+            for each in analysis.stiffnesses
+        },
+        **{key: getattr(analysis, key) for key in numbers},
+        "drift": analysis.drift,
+        "soft_spots": analysis.soft_spots,
+        "catalogue": analysis.catalogue,
+        "remarks": analysis.remarks,
+    }
 
 
 def results_json(found: Mapping[str, Any]) -> str:
