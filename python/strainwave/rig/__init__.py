@@ -4,9 +4,12 @@ from strainwave.rig.analysis import LoopAnalysis, Row, analyse, table
 from strainwave.rig.budget import Budget, Contribution, angle_budget, stiffness_budget, torque_budget
 from strainwave.rig.catalogue_check import CatalogueCheck
 from strainwave.rig.comparison import Compared, Comparison, compare
+from strainwave.rig.couple import Couple, couple_of
 from strainwave.rig.loop import Loop
 from strainwave.rig.lost_motion import Width
+from strainwave.rig.measurement import TorsionTest, loops, read_test
 from strainwave.rig.plan import Plan, Stage, plan, reachable, task
+from strainwave.rig.recorded import loop_of, read_loop
 from strainwave.rig.regimes import Regime, Segmented, cycles, segment
 from strainwave.rig.result import Result
 from strainwave.rig.rig_file import load, rigs, write_rig
@@ -29,6 +32,7 @@ __all__ = [
     "Compared",
     "Comparison",
     "Contribution",
+    "Couple",
     "Loading",
     "LocalStiffness",
     "Loop",
@@ -46,6 +50,7 @@ __all__ = [
     "Step",
     "Stiffness",
     "Torque",
+    "TorsionTest",
     "Value",
     "VirtualTest",
     "Width",
@@ -56,15 +61,20 @@ __all__ = [
     "blank",
     "closure_of_secants",
     "compare",
+    "couple_of",
     "cycles",
     "friction_at_rest",
     "gear_of_regimes",
     "load",
     "load_by_steps",
+    "loop_of",
+    "loops",
     "plan",
     "printed_gear",
     "reachable",
+    "read_loop",
     "read_steps",
+    "read_test",
     "referred",
     "render",
     "rigs",

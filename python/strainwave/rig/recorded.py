@@ -1,0 +1,114 @@
+"""Loops that were measured elsewhere: columns of angle and torque in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.recording import Recording
+from strainwave.identify.measurement import read_measurement
+from strainwave.messages import listed, one_line
+from strainwave.rig.loop import COLUMNS, Loop, Side
+
+Array = NDArray[np.float64]
+
+
+def read_loop(
+    path: str | Path,
+    *,
+    side: Side | None = None,
+    columns: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    position: float = 0.0,
+    unit: str = "",
+) -> Loop:
+    """Reads a loop from columns of angle and torque in a CSV or Parquet file.
+
+    Args:
+        path: the file; the columns are called as `sw.twin` wants them, input_angle and input_torque or twist and torque
+        side: which of the two, where the file has both
+        columns: for each name wanted the name in the file, where it differs
+        units: units of columns whose header has none
+        position, unit: of the loop
+
+    Raises:
+        ValueError: the file cannot be read, lacks a column or has both sides
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "loop.csv")
+    ...     _ = path.write_text("input_angle [deg],input_torque [N.m]\\n1,0.3\\n0,0\\n-1,-0.3\\n")
+    ...     read_loop(path).torque.tolist()
+    [0.3, 0.0, -0.3]
+    """
+    with_name = read_measurement("torsion", path, columns, units)
+    try:
+        return loop_of(with_name, side=side, name=with_name.title or Path(path).stem, position=position, unit=unit)
+    except ValueError as error:
+        raise ValueError(one_line(f"{path}: {error}")) from None
+
+
+def loop_of(recording: Recording, *, side: Side | None = None, name: str = "", position: float = 0.0, unit: str = "") -> Loop:
+    """The loop of a recording; the standard deviation of its angles is estimated from their scatter.
+
+    Args:
+        recording: with input_angle and input_torque, or twist and torque; temperature, too, if it has it
+        side: the shaft that was loaded, where it has both
+        name: what was measured; the recording's title if not given
+        position, unit: of the loop
+
+    Raises:
+        ValueError: neither side is there, or both are and none is chosen
+
+    >>> loop = loop_of(Recording({"twist": [1.0, 0.0], "torque": [5.0, 0.0]}, {"twist": "arcmin", "torque": "N.m"}))
+    >>> loop.side, float(loop.angle[0].round(6))
+    ('output', 0.000291)
+    """
+    there = [each for each, pair in COLUMNS.items() if set(pair) <= set(recording.names)]
+    if side is None and len(there) > 1:
+        raise ValueError('has the angle and torque of both shafts; choose with side = "input" or side = "output"')
+    chosen = side or (there[0] if there else "input")
+    if chosen not in there:
+        raise ValueError(f"has no columns {' and '.join(COLUMNS[chosen])}; it has {listed(recording.names)}")
+    angle, torque = (recording.values(column, of) for column, of in zip(COLUMNS[chosen], ("rad", "N.m"), strict=True))
+    return Loop(
+        angle,
+        torque,
+        side=chosen,
+        name=name or recording.title or "loop",
+        angle_sigma=scatter(angle, torque),
+        time=recording.time if "time" in recording else None,
+        temperature=recording.values("temperature", "K") if "temperature" in recording else None,
+        position=position,
+        unit=unit,
+    )
+
+
+def scatter(angle: Array, torque: Array) -> float:
+    r"""Standard deviation of each angle, from how far it lies from the line between its neighbours.
+
+    Of a point between two others of the same branch, with a share w of the way to the second, the distance has the variance
+    sigma^2 (1 + (1 - w)^2 + w^2). The median of the distances is taken, so that corners of the curve do not count.
+
+    Args:
+        angle: [rad], shape (n,)
+        torque: in the order measured, shape (n,)
+
+    Returns:
+        0 where fewer than three points lie between others.
+
+    >>> torque = np.linspace(0.0, 1.0, 5)
+    >>> scatter(2.0 * torque, torque)
+    0.0
+    """
+    before, after = torque[1:-1] - torque[:-2], torque[2:] - torque[1:-1]
+    inside = before * after > 0.0
+    if np.sum(inside) < 3:
+        return 0.0
+    w = (before / np.where(inside, before + after, 1.0))[inside]
+    apart = (angle[1:-1] - angle[:-2])[inside] - w * (angle[2:] - angle[:-2])[inside]
+    normal = np.abs(apart) / np.sqrt(1.0 + (1.0 - w) ** 2 + w**2)
+    return float(np.median(normal)) / 0.674489750196082  # the median of |x| of a standard normal distribution
