@@ -10,12 +10,12 @@ import numpy as np
 from strainwave.messages import quoted, shortened
 from strainwave.rig.setup import Camera
 from strainwave.rig.vision.camera import PERFECT
-from strainwave.rig.vision.follow import Angles, follow
+from strainwave.rig.vision.follow import Angles, camera_seen, follow
 from strainwave.rig.vision.frame import Frame, look
 from strainwave.rig.vision.image import VIDEOS, Image, picture_files, video_images
 from strainwave.rig.vision.marker import Marker
 
-__all__ = ["Angles", "Frame", "Marker", "follow", "look", "measure_angles", "turn"]
+__all__ = ["Angles", "Frame", "Marker", "camera_seen", "follow", "look", "measure_angles", "turn"]
 
 Source = str | Path | Image
 Point = tuple[float, float]

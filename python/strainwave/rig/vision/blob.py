@@ -23,6 +23,7 @@ class Blob:
         radius: half the geometric mean of the sides of its box [px]
         dark: whether it is the darker one
         whole: whether it lies within the picture with all its edge
+        contrast: of the brightest and the darkest around it, of the full scale
     """
 
     x: float
@@ -30,6 +31,7 @@ class Blob:
     radius: float
     dark: bool
     whole: bool
+    contrast: float
 
 
 def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
@@ -39,13 +41,11 @@ def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
     """
     side = int(np.clip(low / 3.0, 1.0, 8.0))
     cells = averaged(grey, side)
-    middle, clear = _middle(cells)
-    if middle is None:
-        return []
+    middle, contrast, clear = _middle(cells)
     found = []
     for dark in (True, False):
         mask = (cells < middle) if dark else (cells > middle)
-        found += list(_spots(mask & clear, side, dark, low, high))
+        found += list(_spots(mask & clear, contrast, side, dark, low, high))
     return found
 
 
@@ -68,8 +68,8 @@ def averaged(grey: Grey, side: int) -> Grey:
     return cells
 
 
-def _middle(cells: Grey) -> tuple[Grey | None, NDArray[np.bool_]]:
-    """The brightness that parts dark from bright at each cell, and where both are near."""
+def _middle(cells: Grey) -> tuple[Grey, Grey, NDArray[np.bool_]]:
+    """The brightness that parts dark from bright at each cell; the contrast around each block; where that is clear."""
     from scipy.ndimage import maximum_filter, minimum_filter
 
     height, width = cells.shape
@@ -79,14 +79,12 @@ def _middle(cells: Grey) -> tuple[Grey | None, NDArray[np.bool_]]:
     brightest, darkest = maximum_filter(blocks, window), minimum_filter(blocks, window)
     contrast = brightest - darkest
     least = max(_LEAST * float(blocks.max() - blocks.min()), _NOISE * _noise(cells))
-    if least <= 0.0 or float(contrast.max()) <= least:
-        return None, np.zeros(cells.shape, bool)
 
     def spread(values: NDArray[np.generic]) -> NDArray[np.generic]:
         return np.repeat(np.repeat(values, _BLOCK, axis=0), _BLOCK, axis=1)[:height, :width]
 
     middle: Grey = spread((brightest + darkest) * np.float32(0.5)).astype(np.float32, copy=False)
-    return middle, spread(contrast > least).astype(bool, copy=False)
+    return middle, contrast, spread(contrast > least).astype(bool, copy=False)
 
 
 def _noise(cells: Grey) -> float:
@@ -95,7 +93,7 @@ def _noise(cells: Grey) -> float:
     return float(np.median(np.abs(np.diff(sample, axis=1))) / (0.6745 * np.sqrt(2.0)))
 
 
-def _spots(mask: NDArray[np.bool_], side: int, dark: bool, low: float, high: float) -> Iterator[Blob]:
+def _spots(mask: NDArray[np.bool_], contrast: Grey, side: int, dark: bool, low: float, high: float) -> Iterator[Blob]:
     from scipy.ndimage import find_objects, label
 
     labels, count = label(mask)
@@ -113,5 +111,6 @@ def _spots(mask: NDArray[np.bool_], side: int, dark: bool, low: float, high: flo
         slender = not 0.4 < width / height < 2.5
         if not low * 0.8 <= radius <= high * 1.2 + side or (whole and (slender or share < 0.5)) or share < 0.3:
             continue
-        x, y = (side * (part.start + part.stop) / 2.0 - 0.5 for part in (right, down))
-        yield Blob(x, y, float(radius), dark, whole)
+        column, row = ((part.start + part.stop) / 2.0 for part in (right, down))
+        around = float(contrast[int(row) // _BLOCK, int(column) // _BLOCK])
+        yield Blob(side * column - 0.5, side * row - 0.5, float(radius), dark, whole, around)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from strainwave.rig.vision.circle import geometric
 from strainwave.rig.vision.ellipse import Ellipse, circle, fit_ellipse
-from strainwave.rig.vision.outline import Outline, near_curve, turns
+from strainwave.rig.vision.outline import Outline, near_curve, scatter, turns
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -25,6 +25,7 @@ SECTOR = 3.5  # px of the edge
 _FEWEST, _MOST = 24, 180  # sectors
 _LEAST_USED = 8
 _BAND = 3.5  # of the blur: how far from the edge pixels still tell of it
+_FARTHEST = 3.0  # of the blur: beyond, what a pixel tells of the edge is not linear at all
 _OUTLIER = 4.5  # times the scatter
 _MISFIT = 4.0  # times the usual variance of the pixels of a sector
 _PASSES = 5
@@ -83,14 +84,14 @@ def edge(grey: Grey, found: Outline) -> Edge | None:
     if len(inside.x) < 4 or len(outside.x) < 12:
         return None
     levels = _level(inside, curve), _level(outside, curve)
+    step = levels[1].middle - levels[0].middle
     try:
         fit = _fitted(around[np.abs(distance) < width], levels, found)
-    except (np.linalg.LinAlgError, ValueError):
+        if fit is None or step == 0.0:
+            return None
+        curve, covariance, residual = fit_points(fit.x, fit.y, fit.arc)
+    except (np.linalg.LinAlgError, ValueError):  # on no curve
         return None
-    step = levels[1].middle - levels[0].middle
-    if fit is None or step == 0.0:
-        return None
-    curve, covariance, residual = fit_points(fit.x, fit.y, fit.arc)
     shift = np.sqrt(np.pi) * fit.blur * curve.radius / step  # of the centre, by a slope of either plane
     covariance = covariance + shift**2 * (levels[0].slopes_covariance + levels[1].slopes_covariance)
     clipped = _clipped(inside, outside, float(grey.max()))
@@ -121,7 +122,7 @@ def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fi
         for _ in range(2):
             curve = near_curve(x[good], y[good], float(np.mean(good)), curve)
             off = np.abs(curve.distances(x, y)[0])
-            good = good & (off <= max(_OUTLIER * float(np.median(off[good])) / 0.6745, 1e-3))
+            good = good & (off <= max(_OUTLIER * scatter(off[good]), 1e-3))
             if np.count_nonzero(good) < _LEAST_USED:
                 return None
         if np.hypot(curve.x - before.x, curve.y - before.y) < 0.05 and abs(blur / blur_before - 1.0) < 0.01:
@@ -164,7 +165,7 @@ def _level(pixels: _Pixels, curve: Ellipse) -> _Level:
     rest, plane, inverse, variance = pixels.value - middle, np.array([middle, 0.0, 0.0]), np.zeros((3, 3)), 0.0
     for _ in range(2):
         spread = np.abs(rest)
-        used = spread <= max(_OUTLIER * float(np.median(spread[::4])) / 0.6745, 1e-6)
+        used = spread <= max(_OUTLIER * scatter(spread[::4]), 1e-6)
         if np.count_nonzero(used) < 12:
             break
         matrix = columns[used]
@@ -200,12 +201,15 @@ def _profiles(band: _Pixels, low: Array, step: Array, curve: Ellipse, blur: floa
         return sums
 
     known, told, count = total(square), total(slope * rest), np.bincount(sector, minlength=sectors)
-    seen = (known > 0.5 * np.median(known)) & (count > 2)
+    usual = float(np.median(known[known > 0.2 * np.max(known)])) if np.any(known > 0.0) else np.inf
+    seen = (known > 0.5 * usual) & (count > 2)
     known[~seen] = 1.0
     move = told / known
+    seen &= np.abs(move) < _FARTHEST * blur
     misfit = (total(rest * rest) - told * move) / np.maximum(count - 1, 1)
     good = seen & (misfit <= max(_MISFIT * float(np.median(misfit[seen])), 1e-6)) if np.any(seen) else seen
     x, y = curve.points(np.where(seen, total(square * turn) / known, turns(sectors)))
+    move[~seen] = 0.0
     _, right, down = curve.distances(x, y)
     widening = slope * scaled
     weight = float(np.sum((widening * widening)[good[sector]]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,9 +20,10 @@ Array = NDArray[np.float64]
 _OTHER = 0.05  # relative difference of radii or distances that is no error of measurement, nor a tilted view
 _NEAR = 15.0  # degrees from where the direction of a turn cannot be told
 _LEAST_TURN = np.radians(2.0)  # between images, to tell about what they turned
+_WIDE_TURN = 0.5  # rad between images, to tell what turns with the target from what does not
 _BLURRED = 1.5  # times the usual blur
 _ROUGH = 3.0  # times the usual residual
-_ASKEW = 6.0  # standard errors
+_LARGE = 10.0  # error of an angle, of its sigma
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +90,7 @@ def follow(
         frames[i] = replace(frames[i], warnings=frames[i].warnings + doubts)
     angle -= angle[told]
     sigma = np.array([sight.sigma for sight in sights])
-    return Angles(tuple(frames), angle, sigma, frames[useful[told]].name, _centre(sights, angle), _askew(sights, camera))
+    return Angles(tuple(frames), angle, sigma, frames[useful[told]].name, _centre(sights, angle), _askew(sights, frames))
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,14 +238,43 @@ def _centre(sights: Sequence[_Sight], angle: Array) -> tuple[float, float, float
     return float(found[0]), float(found[1]), rms
 
 
-def _askew(sights: Sequence[_Sight], camera: Camera) -> tuple[str, ...]:
+def camera_seen(frames: Iterable[Frame]) -> Camera:
+    """The tilt that the shape of the markers tells, where nothing else is known of the camera.
+
+    A circle that is seen askew is an ellipse: its shorter axis lies in the direction of the tilt, whose cosine is its ratio.
+    What turns with the target, as an oval marker or the distortion of a lens, is told apart where the images turn by
+    more than half a radian. Which of both ends recedes is not told, nor whether it is the shape of the pixels.
+
+    Args:
+        frames: of images in which both markers are found
+
+    Raises:
+        ValueError: there is none
+    """
+    pairs = [frame.markers for frame in frames if frame.markers is not None]
+    if not pairs:
+        raise ValueError("no image shows both markers, which would tell the tilt of the camera")
+    shape = np.array([np.mean([(1.0 - each.ratio) * np.exp(2j * each.short_direction) for each in pair]) for pair in pairs])
+    turned = np.array([np.exp(2j * np.arctan2(one.y - other.y, other.x - one.x)) for one, other in pairs])
+    columns = np.column_stack((np.ones(len(pairs)), turned))
+    wide = len(pairs) > 2 and np.ptp(np.unwrap(np.angle(turned))) > 2.0 * _WIDE_TURN
+    mean = np.linalg.lstsq(columns, shape)[0][0] if wide else np.mean(shape)
+    tilt, direction = float(np.arccos(max(1.0 - abs(mean), 0.0))), float(0.5 * np.angle(mean))
+    source = f"from the shape of the markers in {len(pairs)} images"
+    return Camera(tilt=tilt, tilt_direction=direction, sources={"tilt": source, "tilt_direction": source})
+
+
+def _askew(sights: Sequence[_Sight], frames: Sequence[Frame]) -> tuple[str, ...]:
     """Whether the camera looks at the target at an angle that it does not know of."""
-    ratio = float(np.median([marker.ratio for sight in sights for marker in sight.markers]))
-    if ratio > 0.999:
+    seen = camera_seen(frames)
+    error = 0.5 * (1.0 - np.cos(seen.tilt))
+    if error < _LARGE * float(np.median([sight.sigma for sight in sights])):
         return ()
-    tilt, error = np.degrees(np.arccos(ratio)), 0.5 * (1.0 - ratio)
-    seen = f"the markers are ellipses of axis ratio {ratio:.4f}, as if seen {tilt:.1f} degrees askew"
-    return (f"{seen}: angles are in error by up to {error:.2g} rad unless the camera's tilt, or aspect, is given",)
+    told = f"tilt={seen.tilt:.4f}, tilt_direction={seen.tilt_direction:.3f}"
+    return (
+        f"the markers are ellipses, as if seen {np.degrees(seen.tilt):.1f} degrees askew: angles are in error by up to "
+        f"{error:.2g} rad unless the camera is known, as Camera({told})",
+    )
 
 
 def _chosen(frames: Sequence[Frame], useful: Sequence[int], reference: str | None) -> int:

@@ -19,6 +19,8 @@ from strainwave.rig.vision.marker import Marker, found_and_partial
 
 _WHOLE = 0.9  # share of an edge below which it is said how much was seen
 _CLIPPED = 0.02  # share of pixels about an edge at an end of the scale, above which it is said
+_BLUR = 0.2  # of the radius: more, and there is no inside and outside
+_ALIKE = 0.3  # relative difference of radii of two markers
 _MOST_SHOWN = 4
 
 
@@ -77,6 +79,12 @@ def look(
     pair, fault = _pair(found, partial)
     if not found:
         fault = _nothing(image.grey, partial)
+    blurred = [each for each in pair or () if each.blur > _BLUR * each.radius]
+    if blurred:
+        pair, fault = (
+            None,
+            f"too blurred: an edge is spread by {blurred[0].blur:.1f} px, at a radius of {blurred[0].radius:.1f} px",
+        )
     size = (image.grey.shape[1], image.grey.shape[0])
     warnings = tuple(text for i, each in enumerate(pair or (), 1) for text in _doubts(i, each))
     return Frame(image.name, image.sha256, pair, fault, warnings, size, image.taken)
@@ -97,7 +105,8 @@ def _pair(found: Sequence[Marker], partial: Sequence[Marker]) -> tuple[tuple[Mar
     if len(most) == 2 and all(_holds(each, most) for each in fewer):
         return (most[0], most[1]), ""
     if len(found) == 1:
-        rest = f"; of another, {_place(partial[0])}, {partial[0].arc:.0%} of the edge is seen" if partial else ""
+        alike = [each for each in partial if abs(each.radius / found[0].radius - 1.0) < _ALIKE and each.dark == found[0].dark]
+        rest = f"; of another, {_place(alike[0])}, only {alike[0].arc:.0%} of the edge is seen" if alike else ""
         return None, f"one marker instead of two: {_place(found[0])}{rest}"
     told = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MOST_SHOWN])
     more = f", and {len(found) - _MOST_SHOWN} more" if len(found) > _MOST_SHOWN else ""
@@ -127,7 +136,8 @@ def _doubts(number: int, marker: Marker) -> list[str]:
     if marker.arc < _WHOLE:
         doubts.append(f"marker {number}: {marker.arc:.0%} of the edge is seen")
     if marker.clipped > _CLIPPED:
-        doubts.append(f"marker {number}: {marker.clipped:.0%} of the pixels about its edge are black or at full scale")
+        share = f"{marker.clipped:.0%} of the pixels on one side of its edge are black or at full scale"
+        doubts.append(f"marker {number}: {share}; its centre may be in error by more than its sigma")
     return doubts
 
 

@@ -212,4 +212,4 @@ def _refuse_small(name: str, width: int, height: int) -> None:
 
 
 def _shown(path: Path) -> str:
-    return quoted(str(path))
+    return quoted(path.name)

@@ -17,8 +17,9 @@ from strainwave.rig.vision.outline import Grey, outline
 
 Array = NDArray[np.float64]
 SMALLEST_RADIUS = 6.0  # px, unless another is given
-_LEAST_ARC = 0.5
-_ROUNDEST, _ROUGHEST = 0.02, 0.5  # residual of a circle: of its radius, and px
+_LEAST_ARC, _SHORTEST_ARC = 0.5, 0.25  # of a marker, and of what is worth to be told
+_FAINTEST = 0.3  # contrast of an edge, of that around it
+_ROUNDEST, _SMALL, _ROUGHEST = 0.02, 0.05, 0.5  # residual of a circle: of its radius, of a small one's, and px
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,9 @@ def found_and_partial(
         if dark is not None and blob.dark != dark:
             continue
         rough = outline(grey, blob.x, blob.y, blob.radius, blob.dark)
-        if rough is None or rough.arc < 0.25 or not 0.8 * low <= rough.curve.radius <= 1.2 * high:
+        if rough is None or rough.arc < _SHORTEST_ARC or rough.contrast < _FAINTEST * blob.contrast:
+            continue
+        if not 0.8 * low <= rough.curve.radius <= 1.2 * high:
             continue
         fine = edge(grey, rough)
         if fine is not None and _is_round(fine, blob.dark) and low <= fine.curve.radius <= high:
@@ -117,7 +120,7 @@ def _limits(shape: tuple[int, ...], radius: tuple[float, float] | None) -> tuple
 
 def _is_round(fine: Edge, dark: bool) -> bool:
     longer, shorter = fine.curve.half_axes
-    smooth = fine.residual <= max(_ROUNDEST * fine.curve.radius, _ROUGHEST)
+    smooth = fine.residual <= max(_ROUNDEST * fine.curve.radius, min(_SMALL * fine.curve.radius, _ROUGHEST))
     return smooth and shorter > 0.4 * longer and (fine.outside > fine.inside) == dark
 
 

@@ -17,16 +17,19 @@ Grey = NDArray[np.float32]
 RAYS = 64
 _OUTLIER = 4.5  # times the scatter
 _WIDE_ARC = 0.6  # share of the edge that an ellipse needs
+_WIDEST = 0.4  # blur, of the radius
+_FLANK = 12  # samples from the middle of an edge to either end
 _NEAR = 0.08  # of the radius: how far points of an ellipse may lie from a circle
 
 
 @dataclass(frozen=True)
 class Outline:
-    """A curve to some tenths of a pixel, the share of the rays that meet it, and its blur [px]."""
+    """A curve to some tenths of a pixel, the share of the rays that meet it, the blur there [px], and the contrast."""
 
     curve: Ellipse
     arc: float
     blur: float
+    contrast: float
 
 
 def outline(grey: Grey, x: float, y: float, radius: float, dark: bool) -> Outline | None:
@@ -45,10 +48,11 @@ def outline(grey: Grey, x: float, y: float, radius: float, dark: bool) -> Outlin
     curve, used = _robust(x + reach * np.cos(turn), y + reach * np.sin(turn), clear, radius)
     if curve is None:
         return None
-    contrast = np.nanmedian(np.abs(profile[:, -1] - profile[:, 0]))
-    slope = float(np.median(peak[used])) / (2.0 * step)
-    blur = float(np.sqrt(max((contrast / slope) ** 2 / (2.0 * np.pi) - step**2, 0.25)))
-    return Outline(curve, float(np.mean(used)), min(blur, radius / 4.0))
+    row, middle, last = np.arange(RAYS), at + 2, profile.shape[1] - 1
+    rise = np.abs(profile[row, np.minimum(middle + _FLANK, last)] - profile[row, np.maximum(middle - _FLANK, 0)])
+    contrast, slope = float(np.nanmedian(np.append(rise[used], 0.0))), float(np.median(peak[used])) / (2.0 * step)
+    blur = float(np.sqrt(max((contrast / slope) ** 2 / (2.0 * np.pi) - step**2, 0.25)))  # the wider, the less steep
+    return Outline(curve, float(np.mean(used)), blur, contrast) if blur < _WIDEST * curve.radius else None
 
 
 @cache
@@ -87,7 +91,7 @@ def _robust(x: Array, y: Array, clear: Mask, radius: float) -> tuple[Ellipse | N
         except (np.linalg.LinAlgError, ValueError):
             return nothing
         distance = np.abs(start.distances(x, y)[0])
-        used = clear & (distance <= max(_OUTLIER * float(np.median(distance[used])) / 0.6745, 0.3))
+        used = clear & (distance <= max(_OUTLIER * scatter(distance[used]), 0.3))
     return start, used
 
 
@@ -118,4 +122,10 @@ def near_curve(x: Array, y: Array, arc: float, start: Ellipse) -> Ellipse:
     if arc < _WIDE_ARC:
         fit = geometric(x, y)
         return circle(fit.x, fit.y, fit.radius)
-    return fit_ellipse(x, y, start, 1e-4)[0]
+    return fit_ellipse(x, y, start, 1e-2)[0]
+
+
+def scatter(sizes: Array) -> float:
+    """Standard deviation of normal errors by the median of their sizes, which outliers do not change."""
+    half = len(sizes) // 2
+    return float(np.partition(sizes, half)[half]) / 0.6745

@@ -1,0 +1,222 @@
+"""Photographs as files: what can be read, and what is said of the rest."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+import sys
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as Pillow
+from strainwave.rig.vision.image import as_image, by_number, picture_files, read_image, video_images
+
+RAMP = np.arange(24 * 32, dtype=np.uint8).reshape(24, 32)
+
+
+@pytest.mark.parametrize("suffix", ["png", "tif", "bmp", "pgm"])
+def test_eight_bits_are_read_as_shares_of_255(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"a.{suffix}"
+    Pillow.fromarray(RAMP).save(path)
+    image = read_image(path)
+    np.testing.assert_allclose(image.grey, RAMP / 255.0, rtol=1e-6)
+    assert image.grey.dtype == np.float32
+    assert image.name == path.name
+    assert image.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    assert image.taken is None
+
+
+@pytest.mark.parametrize("suffix", ["png", "tif"])
+def test_sixteen_bits_are_read_as_shares_of_65535(tmp_path: Path, suffix: str) -> None:
+    values = (np.arange(24 * 32, dtype=np.uint32) * 85).astype(np.uint16).reshape(24, 32)
+    Pillow.fromarray(values).save(tmp_path / f"a.{suffix}")
+    np.testing.assert_allclose(read_image(tmp_path / f"a.{suffix}").grey, values / 65535.0, rtol=1e-6)
+
+
+def test_a_jpeg_is_read_nearly_as_it_was(tmp_path: Path) -> None:
+    smooth = np.add.outer(4 * np.arange(24), 2 * np.arange(32)).astype(np.uint8)
+    Pillow.fromarray(smooth).save(tmp_path / "a.jpg", quality=95)
+    np.testing.assert_allclose(read_image(tmp_path / "a.jpg").grey, smooth / 255.0, atol=0.02)
+
+
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "CMYK", "P"])
+def test_a_grey_picture_in_colour_is_the_same_grey(tmp_path: Path, mode: str) -> None:
+    Pillow.fromarray(RAMP).convert(mode).save(tmp_path / "a.tif")
+    np.testing.assert_allclose(read_image(tmp_path / "a.tif").grey, RAMP / 255.0, atol=1.5 / 255.0)
+
+
+def test_colours_are_weighed_as_bt_601_says(tmp_path: Path) -> None:
+    for colour, weight in (((255, 0, 0), 0.299), ((0, 255, 0), 0.587), ((0, 0, 255), 0.114)):
+        Pillow.new("RGB", (20, 20), colour).save(tmp_path / "a.png")
+        np.testing.assert_allclose(read_image(tmp_path / "a.png").grey, weight, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("orientation", "upright"),
+    [(1, RAMP), (3, RAMP[::-1, ::-1]), (6, np.rot90(RAMP, -1)), (8, np.rot90(RAMP)), (2, RAMP[:, ::-1]), (5, RAMP.T)],
+)
+def test_a_picture_stands_as_its_exif_entry_asks(tmp_path: Path, orientation: int, upright: np.ndarray) -> None:
+    """EXIF 2.3, tag 274: 6 is a camera turned against the clock, whose picture is turned with the clock to be seen upright."""
+    entries = Pillow.Exif()
+    entries[274] = orientation
+    Pillow.fromarray(RAMP).save(tmp_path / "a.tif", exif=entries)
+    np.testing.assert_allclose(read_image(tmp_path / "a.tif").grey, upright / 255.0, rtol=1e-6)
+
+
+def test_the_time_is_that_of_the_exif_entry(tmp_path: Path) -> None:
+    entries = Pillow.Exif()
+    entries[306] = "2024:10:01 08:29:39"
+    Pillow.fromarray(RAMP).save(tmp_path / "a.png", exif=entries)
+    assert read_image(tmp_path / "a.png").taken == datetime(2024, 10, 1, 8, 29, 39)
+    entries[306] = "0000:00:00 00:00:00"  # a camera whose clock was never set
+    Pillow.fromarray(RAMP).save(tmp_path / "b.png", exif=entries)
+    assert read_image(tmp_path / "b.png").taken is None
+
+
+def damaged(data: bytes) -> dict[str, bytes]:
+    return {
+        "empty": b"",
+        "text": b"this is no picture\n",
+        "half": data[: len(data) // 2],
+        "only a head": data[:33],
+        "flipped": data[:60] + bytes(255 - each for each in data[60:70]) + data[70:],
+        "zeros": data[:40] + bytes(len(data) - 40),
+    }
+
+
+@pytest.mark.parametrize("suffix", ["png", "jpg", "tif"])
+def test_no_damaged_file_ends_in_anything_but_one_line(tmp_path: Path, suffix: str) -> None:
+    whole = tmp_path / f"whole.{suffix}"
+    Pillow.fromarray(np.random.default_rng(1).integers(0, 255, (64, 64)).astype(np.uint8)).save(whole)
+    for name, data in damaged(whole.read_bytes()).items():
+        path = tmp_path / f"{name}.{suffix}"
+        path.write_bytes(data)
+        message = refusal(path)
+        assert "\n" not in message
+        assert message == "" or path.name in message
+        assert message or name in ("flipped", "zeros", "half")  # some of which are pictures, still
+        assert message or (suffix, name) != ("png", "half")
+
+
+def refusal(path: Path) -> str:
+    try:
+        read_image(path)
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [(b"", "is empty"), (b"no picture", "is not a picture that can be read; PNG, JPEG, TIFF, BMP or PGM can")],
+)
+def test_what_is_no_picture_is_said_to_be_none(tmp_path: Path, data: bytes, message: str) -> None:
+    (tmp_path / "a.png").write_bytes(data)
+    with pytest.raises(ValueError, match=message):
+        read_image(tmp_path / "a.png")
+
+
+def test_a_picture_that_breaks_off_is_said_to_be_damaged(tmp_path: Path) -> None:
+    Pillow.fromarray(np.random.default_rng(1).integers(0, 255, (64, 64)).astype(np.uint8)).save(tmp_path / "a.png")
+    (tmp_path / "a.png").write_bytes((tmp_path / "a.png").read_bytes()[:2000])
+    with pytest.raises(ValueError, match=r"a\.png\" is damaged: "):
+        read_image(tmp_path / "a.png")
+
+
+def test_a_picture_that_claims_to_be_huge_is_refused_before_it_fills_memory(tmp_path: Path) -> None:
+    head = b"P5 200000 200000 255\n"
+    (tmp_path / "a.pgm").write_bytes(head)
+    with pytest.raises(ValueError, match=r"a\.pgm\" is too large"):
+        read_image(tmp_path / "a.pgm")
+
+
+def test_a_tiny_picture_is_refused(tmp_path: Path) -> None:
+    Pillow.fromarray(RAMP[:8, :9]).save(tmp_path / "a.png")
+    with pytest.raises(ValueError, match="has 9 x 8 pixels; two markers need 16 x 16 or more"):
+        read_image(tmp_path / "a.png")
+
+
+def test_floating_point_pictures_have_a_scale_of_one_or_are_refused(tmp_path: Path) -> None:
+    Pillow.fromarray((RAMP / 255.0).astype(np.float32)).save(tmp_path / "a.tif")
+    np.testing.assert_allclose(read_image(tmp_path / "a.tif").grey, RAMP / 255.0, rtol=1e-6)
+    Pillow.fromarray(RAMP.astype(np.float32)).save(tmp_path / "a.tif")
+    with pytest.raises(ValueError, match="floating-point numbers outside of 0 to 1"):
+        read_image(tmp_path / "a.tif")
+
+
+def test_a_missing_file_is_an_error_of_the_system(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        read_image(tmp_path / "a.png")
+
+
+def test_a_folder_is_read_in_the_order_of_its_numbers(tmp_path: Path) -> None:
+    for name in ("IMG_10.png", "img_9.JPG", "IMG_2.tiff", "notes.txt", ".hidden.png"):
+        (tmp_path / name).touch()
+    assert [path.name for path in picture_files(tmp_path)] == ["IMG_2.tiff", "img_9.JPG", "IMG_10.png"]
+    assert by_number("a2b10") < by_number("a10b2")
+
+
+def test_a_folder_without_photographs_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").touch()
+    with pytest.raises(ValueError, match="holds no photograph"):
+        picture_files(tmp_path)
+
+
+def test_an_array_is_an_image_if_it_is_of_whole_numbers() -> None:
+    np.testing.assert_allclose(as_image("a", RAMP).grey, RAMP / 255.0, rtol=1e-6)
+    np.testing.assert_allclose(as_image("a", np.dstack([RAMP] * 3)).grey, RAMP / 255.0, rtol=1e-5)
+    assert as_image("a", RAMP) == as_image("a", RAMP)
+    with pytest.raises(TypeError, match="pixels must be uint8 or uint16, not float64"):
+        as_image("a", RAMP / 255.0)
+    with pytest.raises(ValueError, match=r"pixels have shape \(24, 32, 2\)"):
+        as_image("a", np.dstack([RAMP] * 2))
+    with pytest.raises(ValueError, match="has 4 x 24 pixels"):
+        as_image("a", RAMP[:, :4])
+
+
+def test_a_video_without_opencv_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    (tmp_path / "a.mp4").write_bytes(struct.pack(">I", 8))
+    with pytest.raises(ImportError, match=r"a\.mp4: videos are read by opencv: pip install strainwave\[video\]"):
+        next(video_images(tmp_path / "a.mp4"))
+
+
+class Capture:
+    """What cv2.VideoCapture is to the reader: frames in colour, blue first."""
+
+    def __init__(self, path: str) -> None:
+        self.left = 0 if "bad" in path else 2
+
+    def read(self) -> tuple[bool, np.ndarray | None]:
+        self.left -= 1
+        return (True, np.dstack([RAMP] * 3)) if self.left >= 0 else (False, None)
+
+    def release(self) -> None:
+        pass
+
+
+class OpenCV:
+    """As much of cv2 as the reader uses."""
+
+    VideoCapture = Capture
+    COLOR_BGR2GRAY = 6
+
+    @staticmethod
+    def cvtColor(frame: np.ndarray, code: int) -> np.ndarray:  # noqa: N802
+        assert code == OpenCV.COLOR_BGR2GRAY
+        return frame[:, :, 0]
+
+
+def test_a_video_gives_its_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", OpenCV)
+    (tmp_path / "a.mp4").touch()
+    (tmp_path / "bad.mp4").touch()
+    images = list(video_images(tmp_path / "a.mp4"))
+    assert [image.name for image in images] == ["a.mp4#1", "a.mp4#2"]
+    np.testing.assert_allclose(images[1].grey, RAMP / 255.0, rtol=1e-6)
+    with pytest.raises(ValueError, match="is not a video that opencv can read"):
+        list(video_images(tmp_path / "bad.mp4"))
+    with pytest.raises(FileNotFoundError, match="is not a file"):
+        list(video_images(tmp_path / "missing.mp4"))
