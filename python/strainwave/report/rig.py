@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from importlib import metadata
-from math import degrees
+from math import degrees, floor, log10
 from typing import Any
 
 import numpy as np
@@ -125,13 +125,20 @@ def setting(found: Evaluation) -> dict[str, str]:
     if found.angles:
         frames = [frame for each in found.angles for frame in each.frames]
         lost = sum(frame.markers is None for frame in frames)
-        said["Photographs"] = f"{len(frames)}, {lost or 'none'} of no use"
+        said["Photographs"] = f"{len(frames)}, {f'{lost} without an angle' if lost else 'each with an angle'}"
+    if times := [step.time for step in found.steps if step.time is not None]:
+        said["Duration"] = _duration(max(times) - min(times))
     temperatures = [value for loop in loops if loop.temperature is not None for value in loop.temperature.tolist()]
     if temperatures:
         said["Temperature"] = f"{fixed(min(temperatures) - 273.15, 1)} to {fixed(max(temperatures) - 273.15, 1)} °C"
     if found.rig is not None:
         said["Rig"] = found.rig.name
     return said
+
+
+def _duration(seconds: float) -> str:
+    minutes = round(seconds / 60.0)
+    return f"{minutes // 60} h {minutes % 60:02} min" if minutes >= 60 else f"{minutes} min"
 
 
 def _ratio(found: Evaluation) -> float | None:
@@ -166,11 +173,13 @@ def _card(eyebrow: str, results: Sequence[Result | None], scale: float, unit: st
     card = {"eyebrow": eyebrow, "headline": "not told", "unit": "", "text": text}
     if len(told) == 1:
         only = stated(told[0], scale)
-        interval = f" 95 %: {only.interval} {unit}." if only.interval else ""
+        interval = f" 95 %: {only.interval}{'' if unit in '°′' else ' '}{unit}." if only.interval else ""
         card |= {"headline": only.value, "unit": unit, "text": f"{text}{interval}"}
     elif told:
         values = [scale * each.value for each in told]
         card |= {"headline": _range(min(values), max(values), 3), "unit": unit}
+    if unit in "°′":  # stands at the number
+        card |= {"headline": f"{card['headline']}{card['unit']}", "unit": ""}
     return card
 
 
@@ -272,7 +281,7 @@ def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[s
         return name, words, stated(found, scale), at_output, unit
 
     wide = analysis.hysteresis
-    where = "" if wide is None else f", here at {fixed(wide.torque, 3)} N·m"
+    where = "" if wide is None else f", here at {number(round(wide.torque, 4), 3)} N·m"
     yield angle(
         "Hysteresis",
         f"widest separation of the branches at equal torque, as document T has it{where}",
@@ -299,7 +308,7 @@ def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[s
         analysis.lost_motion,
     )
     if analysis.torque_width is not None:
-        words = f"widest separation at equal angle, here at {fixed(scale * analysis.torque_width[1], 2)} {unit}"
+        words = f"widest separation at equal angle, here at {fixed(scale * analysis.torque_width[1], 2)}{unit}"
         yield "Width in torque", words, Stated(number(analysis.torque_width[0], 4), ""), Stated("", ""), "N·m"
     yield "Energy lost", "area of the loop, in a cycle", stated(analysis.area, 1e3), Stated("", ""), "mJ"
     yield angle("Closure error", "angle at the end of the cycle less that at its beginning, at equal torque", analysis.closure)
@@ -351,12 +360,17 @@ def _compared(each: Compared, found: Evaluation) -> dict[str, Any]:
     basis = "repeats" if not np.isnan(each.by_repeats) else "stated errors"
     return {
         "name": f"{each.name[0].upper()}{each.name[1:]} [{unit}]",
-        "means": [number(scale * mean, 4) for mean in each.means],
+        "means": [_to_spread(scale * mean, scale * each.spread) for mean in each.means],
         "spread": f"{number(scale * each.spread, 2)} ({number(100.0 * each.relative, 2)} %)",
         "probability": "—" if np.isnan(each.probability) else f"{_probability(each.probability)}, by {basis}",
         "verdict": verdict,
         "word": word,
     }
+
+
+def _to_spread(value: float, spread: float) -> str:
+    """A mean to the third digit of the spread of the means, which tells them apart."""
+    return fixed(value, min(max(2 - floor(log10(spread)), 0), 6)) if spread > 0.0 else number(value, 4)
 
 
 def _probability(value: float) -> str:
@@ -389,7 +403,7 @@ def _catalogue(found: Evaluation) -> Iterator[dict[str, Any]]:
                 "unit": unit,
                 "verdict": verdict,
                 "word": word,
-                "why": check.why,
+                "why": check.why.replace("N.m", "N·m"),
             }
 
 

@@ -297,13 +297,14 @@ def comparison_figure(rows: Sequence[Compared], labels: Sequence[str], what: str
                 elinewidth=1.1,
                 label="measured",
             )
+            axes.margins(y=0.25)
             axes.axhline(float(np.mean(row.values)), color=LIGHT["muted"], linewidth=0.8, linestyle="--", label="mean")
             figures.label_axes(axes, row.name, "1")
         every[-1].set_xticks(place, labels)
         every[-1].set_xlim(-0.5, len(labels) - 0.5)
         every[-1].set_xlabel(what)
 
-    return figures.inline(draw, (figures.WIDTH, 0.7 + 1.05 * len(rows)), name, title)
+    return figures.inline(draw, (figures.WIDTH, 0.6 + 0.95 * len(rows)), name, title)
 
 
 def overlay_figure(loops: Mapping[str, tuple[Array, Array]], names: tuple[str, str], name: str, title: str) -> str:
