@@ -19,7 +19,7 @@ from strainwave.rig.lost_motion import LOST_MOTION, Width, area, closure, drift,
 from strainwave.rig.regimes import NAMES, RegimeName, Segmented, cycles, part, segment
 from strainwave.rig.result import Result, result
 from strainwave.rig.soft_spot import SoftSpot, soft_spots
-from strainwave.rig.stiffness import Stiffness, stiffness_of
+from strainwave.rig.stiffness import Stiffness, segments_of, stiffness_of
 
 Definition = Literal["secant", "regression", "softest"]
 DEFINITIONS: dict[Definition, str] = {
@@ -149,8 +149,7 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
 
 def _with_scatter(loop: Loop) -> tuple[Segmented, float]:
     """The loop with the scatter about straight stretches as the error of its angles, and the degrees of freedom of this."""
-    fits = [found.segments for regime in segment(loop).regimes if (found := stiffness_of(regime, loop)) is not None]
-    told = [each for each in fits if each.freedom > 0]
+    told = [fitted for regime in segment(loop).regimes if (fitted := segments_of(regime)) is not None and fitted.freedom > 0]
     freedom = sum(each.freedom for each in told)
     if freedom == 0:
         return segment(loop), inf

@@ -184,7 +184,7 @@ def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Cha
             scale *= 0.5
         if better is None:
             break
-        done = best.misfit - better.misfit <= 1e-12 * best.misfit
+        done = best.misfit - better.misfit <= 1e-9 * best.misfit
         best = better
         if done:
             break

@@ -112,12 +112,13 @@ def words_on_band(stiffness: Stiffness, low: float, high: float, multiple: float
     if not np.any(inside):
         return f"{where}: no point was measured there"
     ratio, margin = _ratio(stiffness)
-    least, most = float(ratio[inside].min()), float(ratio[inside].max())
-    spots = [spot for spot in _spots(stiffness, multiple) if spot.bounded and spot.low < max(sign * low, sign * high)]
-    if any(spot.high > min(sign * low, sign * high) for spot in spots):
-        return f"{where}: soft spot, up to {most:.2f} times the compliance of the regime's regression"
-    if np.any((ratio + margin)[inside] > multiple) and np.any((ratio - margin)[inside] < multiple) and most < multiple:
-        return (
-            f"{where}: undecided, the points scatter too much; {least:.2f} to {most:.2f} times the compliance of the regression"
-        )
-    return f"{where}: no soft spot, {least:.2f} to {most:.2f} times the compliance of the regime's regression"
+    low, high = sorted((sign * low, sign * high))
+    here = [spot for spot in _spots(stiffness, multiple) if spot.low < high and spot.high > low]
+    as_soft = f"{ratio[inside].min():.2f} to {ratio[inside].max():.2f} times the compliance of the regime's regression"
+    if any(spot.bounded for spot in here):
+        return f"{where}: soft spot, {as_soft}"
+    if here:
+        return f"{where}: soft, {as_soft}, but up to the end of the regime"
+    if np.any((ratio + margin)[inside] > multiple):
+        return f"{where}: undecided, the points scatter too much; {as_soft}"
+    return f"{where}: no soft spot, {as_soft}"

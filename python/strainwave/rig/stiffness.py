@@ -101,14 +101,12 @@ def stiffness_of(regime: Regime, loop: Loop, freedom: float = np.inf) -> Stiffne
         loop: the loop it is of, for what its points share
         freedom: degrees of freedom of the errors, where these were taken from scatter
     """
-    measured = regime.measured
-    torque, angle, angle_sigma, torque_sigma = _columns(regime, measured)
-    if len(torque) < 2 or np.ptp(angle) == 0.0 or np.ptp(torque) == 0.0:
+    segments = segments_of(regime)
+    if segments is None:
         return None
-    segments = fit_segments(torque, angle, angle_sigma, torque_sigma)
+    torque, angle, angle_sigma, torque_sigma = _columns(regime)
     line = fit_line(angle, torque, angle_sigma, torque_sigma)
-    random = line.sigma
-    regression = _told(line.slope, random, loop, freedom, by_angle=line.share_x > 0.5)
+    regression = _told(line.slope, line.sigma, loop, freedom, by_angle=line.share_x > 0.5)
     low, high = segments.stretch(segments.softest)
     return Stiffness(
         regime.name,
@@ -123,8 +121,17 @@ def stiffness_of(regime: Regime, loop: Loop, freedom: float = np.inf) -> Stiffne
     )
 
 
-def _columns(regime: Regime, rows: NDArray[np.bool_]) -> tuple[Array, Array, Array, Array]:
-    """Torque, angle and their errors, ascending in torque; points taken at one torque stay in the order measured."""
+def segments_of(regime: Regime) -> Segments | None:
+    """Straight stretches of a regime; None where its angle does not change, or fewer than two points were measured."""
+    torque, angle, angle_sigma, torque_sigma = _columns(regime)
+    if len(torque) < 2 or np.ptp(angle) == 0.0 or np.ptp(torque) == 0.0:
+        return None
+    return fit_segments(torque, angle, angle_sigma, torque_sigma)
+
+
+def _columns(regime: Regime) -> tuple[Array, Array, Array, Array]:
+    """Torque, angle and their errors of what was measured, ascending; points of one torque stay in the order measured."""
+    rows = regime.measured
     torque = regime.torque[rows]
     order = np.argsort(torque, kind="stable")
     return torque[order], regime.angle[rows][order], regime.angle_sigma[rows][order], regime.torque_sigma[rows][order]

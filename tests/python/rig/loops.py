@@ -77,7 +77,13 @@ def parallelogram(k: float, spring: float, slip: float, amplitude: float, points
 
 
 def straight(stiffness: float, width: float, peak: float, points: int) -> tuple[Array, Array]:
-    """Two parallel straight branches, `width` apart in angle, joined at the peaks: every number of it is plain."""
+    """Two parallel straight branches, `width` apart in angle, between which the angle creeps at the peaks."""
     torque = np.linspace(peak, -peak, 2 * points + 1)
     down, up = torque / stiffness + 0.5 * width, torque[::-1] / stiffness - 0.5 * width
     return np.concatenate((down, up, down[:1])), np.concatenate((torque, torque[::-1], torque[:1]))
+
+
+def quarters(unloading: float, loading: float, peak: float, points: int) -> tuple[Array, Array]:
+    """A loop whose four regimes are straight: w = P (1/loading - 1/unloading) wide at zero torque, with the area P w."""
+    angle = np.cumsum([0.0, -peak / unloading, -peak / loading, peak / unloading, peak / loading])
+    return refined(angle, np.array([peak, 0.0, -peak, 0.0, peak]), peak / points)
