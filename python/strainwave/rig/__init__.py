@@ -9,6 +9,7 @@ from strainwave.rig.loop import Loop
 from strainwave.rig.lost_motion import Width
 from strainwave.rig.measurement import TorsionTest, loops, read_test
 from strainwave.rig.plan import Plan, Stage, plan, reachable, task
+from strainwave.rig.plan_check import Finding, check
 from strainwave.rig.recorded import loop_of, read_loop
 from strainwave.rig.regimes import Regime, Segmented, cycles, segment
 from strainwave.rig.result import Result
@@ -33,6 +34,7 @@ __all__ = [
     "Comparison",
     "Contribution",
     "Couple",
+    "Finding",
     "Loading",
     "LocalStiffness",
     "Loop",
@@ -59,6 +61,7 @@ __all__ = [
     "append_step",
     "arm",
     "blank",
+    "check",
     "closure_of_secants",
     "compare",
     "couple_of",
