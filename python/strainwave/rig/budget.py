@@ -36,7 +36,7 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Budget:
-    """Uncertainty of a result: independent contributions, whose squares add up (GUM, eq. 10).
+    """Uncertainty of a result: independent contributions, whose squares add up (JCGM 100:2008, eq. 10).
 
     Attributes:
         quantity: what it is of
