@@ -16,6 +16,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.messages import listed, one_line, quoted
 from strainwave.rig.couple import remarks_on_couple
 from strainwave.rig.loop import Loop
+from strainwave.rig.plan_check import check
 from strainwave.rig.recorded import scatter
 from strainwave.rig.regimes import cycles
 from strainwave.rig.rig_file import load
@@ -26,7 +27,7 @@ from strainwave.rig.torque import Torque, torque_of, without_compliance
 from strainwave.rig.vision.angle import Angles, Frame, follow, look
 
 Array = NDArray[np.float64]
-RIG = "rig.toml"
+RIG, PLAN = "rig.toml", "plan.csv"
 Place = tuple[float, str]  # position of the flexspline [rad] and specimen
 _AGAINST = 5.0  # standard deviations that an angle must move against the torque to be told
 
@@ -77,7 +78,8 @@ def read_test(
     """Reads the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
-    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain.
+    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain. Where the folder holds the steps that
+    were planned, `plan.csv`, the remarks say how the record departs from them.
 
     Args:
         folder: of the test
@@ -96,7 +98,7 @@ def read_test(
     if reference is not None and reference not in [step.image for step in steps]:
         raise ValueError(one_line(f"{folder}: reference = {quoted(reference)} is no photograph of a step"))
     found: list[Angles] = []
-    remarks: list[str] = []
+    remarks = [str(each) for each in check(steps, read_steps(folder / PLAN))] if (folder / PLAN).exists() else []
     frames: list[Frame] = []
     for place, of_place in _places(steps).items():
         named = [step for step in of_place if step.image is not None]

@@ -207,6 +207,15 @@ def test_a_photograph_without_a_marker_is_told_and_everything_else_remains(teste
     assert any(remark.startswith("step 6 is left out: step-006.png: ") for remark in test.loops[0].remarks)
 
 
+def test_the_record_is_held_against_the_plan_of_its_folder(tested: Path) -> None:
+    steps = read_steps(tested)
+    assert not [remark for remark in read_test(tested).remarks if "plan" in remark]
+    write_steps([*steps[:2], dataclasses.replace(steps[2], mass_positive=0.25), *steps[3:]], tested / "plan.csv")
+    remarks = read_test(tested).remarks
+    (tested / "plan.csv").unlink()
+    assert remarks[0].startswith("step 3 has 200 g on the positive pans")
+
+
 def test_photographs_stay_with_the_result_by_their_hashes(tested: Path) -> None:
     for name, digest in read_test(tested).hashes.items():
         assert digest == hashlib.sha256((tested / name).read_bytes()).hexdigest()
