@@ -17,13 +17,14 @@ from strainwave.report.misalignment_claims import ARCMIN, Claim, arcmin, claims,
 from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
-from strainwave.report.typeset import number, quantity
+from strainwave.report.typeset import fixed, number, quantity, uncertain
 from strainwave.studies import misalignment as study
 from strainwave.studies.actuator_ramp import INPUT, LOOPS, OUTPUT
 from strainwave.studies.misalignment import Levels, MisalignmentStudy, Recovery
 from strainwave.studies.pure_error import COMBINE
 
 LINE = 110  # letters of a line on a terminal
+LEAST = 1e-3  # of a table, in its units
 
 
 def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None = None) -> str:
@@ -124,8 +125,7 @@ def _cards(found: MisalignmentStudy) -> list[dict[str, str]]:
         },
         {
             "eyebrow": "What one ramp tells",
-            "headline": f"{number(recovery.best.size / study.MICRON, 3)} ± "
-            f"{number(recovery.best.half_widths[0] / study.MICRON, 1)} µm",
+            "headline": f"{uncertain(recovery.best.size / study.MICRON, recovery.best.half_widths[0] / study.MICRON)} µm",
             "text": f"from the current, where {microns(hypot(*recovery.m))} were put in (95 %). Eccentricity and tilt times "
             "offset are one number, and the wave generator's own misalignment on its shaft is none.",
         },
@@ -160,13 +160,22 @@ def _row(levels: Levels, sweep: str, place: int) -> list[str]:
         return float(levels.column(sweep, name)[place])
 
     return [
-        number(ARCMIN * at("error_swing"), 3),
-        number(at("torque_swing"), 3),
-        number(at("torque_peak"), 4),
-        number(1e3 * at("current_swing"), 3),
-        number(at("current_peak"), 4),
-        number(ARCMIN * at("output_swing"), 2),
+        _small(ARCMIN * at("error_swing"), 3),
+        _small(at("torque_swing"), 3),
+        fixed(at("torque_peak"), 3),
+        _small(1e3 * at("current_swing"), 3),
+        fixed(at("current_peak"), 3),
+        _small(ARCMIN * at("output_swing"), 2),
     ]
+
+
+def _small(value: float, digits: int) -> str:
+    """A number of a column; of one that nobody would measure, that it is so small."""
+    return number(value, digits) if value >= LEAST or value == 0.0 else f"< {LEAST:g}"
+
+
+def _misfit(value: float) -> str:
+    return number(value, 2) if value < 100.0 else "> 100"
 
 
 def _silent_rows(found: MisalignmentStudy) -> Iterator[list[str]]:
@@ -183,7 +192,7 @@ def _silent_rows(found: MisalignmentStudy) -> Iterator[list[str]]:
         name, values, _ = study.SWEEPS[sweep]
         unit = f"{number(degrees(values[-1]), 2)}°" if name.endswith("tilt_x") else quantity(values[-1], "m", 2)
         swings = [float(found.levels[combine, OUTPUT].column(sweep, "current_swing")[-1]) for combine in COMBINE]
-        yield [words, unit, *(number(1e3 * each, 2) for each in swings)]
+        yield [words, unit, *(_small(1e3 * each, 2) for each in swings)]
 
 
 def _recovered(recovery: Recovery) -> dict[str, Any]:
@@ -195,14 +204,14 @@ def _recovered(recovery: Recovery) -> dict[str, Any]:
     return {
         "record": plots.SEEN[recovery.column],
         "combine": plots.WORDS[recovery.law.combine],
-        "size": f"{number(best.size / study.MICRON, 4)} ± {number(best.half_widths[0] / study.MICRON, 2)} µm",
+        "size": f"{uncertain(best.size / study.MICRON, best.half_widths[0] / study.MICRON)} µm",
         "truth": f"{number(truth / study.MICRON, 4)} µm",
-        "way": f"{number(way, 3)} ± {number(degrees(best.half_widths[1]), 1)}°",
+        "way": f"{uncertain(way, degrees(best.half_widths[1]))}°",
         "true_way": f"{number(degrees(np.arctan2(y, x)), 3)}°",
         "within": f"{recovery.within} of {len(recovery.trials)}",
         "hits": recovery.within,
         "trials": len(recovery.trials),
-        "misfits": [number(recovery.first[each].misfit, 2) for each in COMBINE],
+        "misfits": [_misfit(recovery.first[each].misfit) for each in COMBINE],
     }
 
 
@@ -229,7 +238,7 @@ def _ramp_lines(found: MisalignmentStudy) -> Iterator[str]:
 
 
 def _level_lines(found: MisalignmentStudy) -> Iterator[str]:
-    head = ["loop on the output sensor", "error [′]", "torque [N·m]", "peak", "current [mA]", "peak", "flap [′]"]
+    head = ["loop on the output sensor", "error [′]", "torque [N·m]", "peak [1]", "current [mA]", "peak [1]", "flap [′]"]
     rows = [head]
     for combine in COMBINE:
         levels = found.levels[combine, OUTPUT]
@@ -239,7 +248,7 @@ def _level_lines(found: MisalignmentStudy) -> Iterator[str]:
     for row in rows:
         cells = [f"{cell:>{width}}" for cell, width in zip(row[1:], widths[1:], strict=True)]
         yield "  ".join([f"{row[0]:{widths[0]}}", *cells]).rstrip()
-    yield "half swings of error and differences; peak over that without misalignment"
+    yield "Half swings of the error, and of the differences that it makes; each peak over that without misalignment."
 
 
 def _recovery_lines(found: MisalignmentStudy) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from strainwave.files.recording import Recording
-from strainwave.report.typeset import number, quantity
+from strainwave.report.typeset import fixed, number, quantity, uncertain
 from strainwave.studies import misalignment as study
 from strainwave.studies.actuator_ramp import INPUT, OUTPUT
 from strainwave.studies.misalignment import MisalignmentStudy, Recovery
@@ -51,12 +51,12 @@ def arcmin(angle: float, digits: int = 2) -> str:
 
 def microns(length: float, digits: int = 3) -> str:
     """A length [m] in micrometres."""
-    return f"{number(length / study.MICRON, digits)} µm"
+    return f"{number(length / study.MICRON, digits)}\N{NO-BREAK SPACE}µm"
 
 
 def percent(share: float, digits: int = 2) -> str:
     """A share in per cent."""
-    return f"{number(100.0 * share, digits)} %"
+    return f"{number(100.0 * share, digits)}\N{NO-BREAK SPACE}%"
 
 
 def recovery_of(found: MisalignmentStudy, column: str, combine: str) -> Recovery:
@@ -134,9 +134,10 @@ def _detected(found: MisalignmentStudy) -> Claim:
     return Claim(
         "“its presence can be detected and quantified in strain wave gears”",
         IN_PART,
-        f"One vector can: from the motor current of one ramp |m| = {microns(best.size)} ± {microns(best.half_widths[0], 2)} "
-        f"(95 %), {microns(hypot(*recovery.m))} were put in. m is e₁ plus the tilt β times the offset h: the two cannot be "
-        "told apart. e₂ and α alone leave no trace.",
+        "One vector can: from the motor current of one ramp |m| = "
+        f"{uncertain(best.size / study.MICRON, best.half_widths[0] / study.MICRON)} µm (95 %), where "
+        f"{number(hypot(*recovery.m) / study.MICRON, 4)} µm were put in. m is e₁ plus the tilt β times the offset h: the two "
+        "cannot be told apart. e₂ and α alone leave no trace.",
     )
 
 
@@ -166,15 +167,15 @@ def _inputs(found: MisalignmentStudy) -> Claim:
         "and α)”",
         CORRECTED,
         "h is missing: without an offset from the centre of tilt, β acts in second order only (E-A8). e₂ and α turn with the "
-        f"shaft, so that alone they leave a constant: at most {percent(silence(found), 1)} of the current that e₁ or β of the "
-        "same size takes, from the start of the ramp (E-A9).",
+        "shaft, so that alone they leave a constant, and no ripple (E-A9). Of the ripple of the current that e₁ or β of the "
+        f"same size makes, at most {percent(silence(found), 1)} is seen; the start of the ramp makes it.",
     )
 
 
 def _figure_3a(found: MisalignmentStudy) -> Claim:
     pure = found.pure
     best = pure.fits[pure.best]
-    curve = "the measured curve" if pure.source else "an assumed curve, for none was given to measure it by,"
+    curve = "the measured curve" if pure.source else "an assumed curve, as no measured one was given,"
     return Claim(
         "“proper modelling of the other kinematic error sources, such as clearance and tooth machining error, is necessary”",
         CONFIRMED if pure.source else IN_PART,
@@ -188,8 +189,8 @@ def _steady(found: MisalignmentStudy) -> Claim:
     return Claim(
         "“the speed of the actuator is constant, and the torque oscillations are primarily linked to the control logic”",
         IN_PART if tilted > straight else CONFIRMED,
-        f"It holds without misalignment: the torque oscillates by {quantity(straight, 'N.m', 2)} rms. With a tilt of "
-        f"{number(degrees(study.SHOWN_TILT), 2)}° it oscillates by {quantity(tilted, 'N.m', 2)}, and the output speed swings "
+        f"It holds without misalignment: the torque oscillates by {number(straight, 2)} N·m rms. With a tilt of "
+        f"{number(degrees(study.SHOWN_TILT), 2)}° it oscillates by {number(tilted, 2)} N·m, and the output speed swings "
         f"by ±{percent(speed_swing(found))}.",
     )
 
@@ -237,14 +238,14 @@ def _figure_3b(found: MisalignmentStudy) -> Claim:
 
 def _level(found: MisalignmentStudy) -> Claim:
     def power(combine: str) -> str:
-        return number(study.power_of_level(found.levels[combine, OUTPUT], "e1", "torque_swing"), 2)
+        return fixed(study.power_of_level(found.levels[combine, OUTPUT], "e1", "torque_swing"), 2)
 
     return Claim(
         "“As predictable, the effect of the kinematic error increases together with the misalignment level”",
         IN_PART,
-        f"In proportion where one lobe carries (swing of torque ~ level to the power {power('single')}) or the outer one "
-        f"({power('max')}); with its square where both share ({power('mean')}). Not at all with h = 0 in first order, nor with "
-        "e₂ and α.",
+        f"In proportion where one lobe carries (the swing of the torque is as the level to the power of "
+        f"{power('single')}) or the outer one ({power('max')}); with its square where both share ({power('mean')}). "
+        "A tilt with h = 0 has no effect in first order; e₂ and α alone have none.",
     )
 
 

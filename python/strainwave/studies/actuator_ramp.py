@@ -28,7 +28,11 @@ ERROR = "gear.kinematic_error"
 RUN_IN = 0.1  # share of the ramp that is left out, until the speed is even
 LONGEST = 2e-4  # s, of a step
 STIFFER = 0.7  # a twisted gear may be stiffer than one at rest: steps are shorter by this factor
-SAMPLE = 1e-3  # s
+SAMPLE = 1e-3  # s, between rows at the most
+ROWS = 64  # of a turn of the input at the least: orders up to 10 are told apart
+MOST_TIME = 600.0  # s
+MOST_TURNS = 1e4  # of the input
+KEPT = 0.9  # share of the ramp's speed that a drive which follows it has on average
 CHANNELS = ("torque", "current", "output_angle", "input_angle")
 # Document A prints no dimensions. Assumed where the drive has none: those of E-R2, 0.6 mm of difference between the half axes.
 ASSUMED = kinematic_error.Misalignment(
@@ -58,16 +62,26 @@ class ActuatorRamp:
         """Whose steps are as short as the drive asks for.
 
         Raises:
-            ValueError: the stroke or the time is not positive, the ramp is less than three turns of the input, or the drive has
-                no position loop that closes on both sides
+            ValueError: the stroke or the time is not positive or too large, the ramp is less than three turns of the input, or
+                the drive has no position loop that closes on both sides, or an output that is moved from outside
         """
         arguments.number("stroke", float(np.degrees(stroke)), "deg", low=0.0)
-        duration = arguments.seconds("time", duration)
+        duration = arguments.number("time", duration, "s", "(]", low=0.0, high=MOST_TIME)
+        if not hasattr(drive.load, "inertia"):
+            raise ValueError(
+                f"the load {quoted(drive.load.name)} of the drive moves its output from outside; the study needs one that the "
+                "motor moves, as inertia and aerodynamic are"
+            )
         turns = stroke * abs(drive.gear.kinematics.ratio) / (2.0 * np.pi)
         if turns * (1.0 - RUN_IN) < 3.0:
             needed = np.degrees(stroke * 3.0 / (turns * (1.0 - RUN_IN)))
             raise ValueError(
                 f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {needed:.3g} deg or more"
+            )
+        if turns > MOST_TURNS:
+            longest = np.degrees(stroke * MOST_TURNS / turns)
+            raise ValueError(
+                f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {longest:.3g} deg or less"
             )
         for name in ("feedback", "position_gain"):
             _control_path(drive, name)
@@ -83,6 +97,11 @@ class ActuatorRamp:
     def turning(self) -> float:
         """How fast the input turns [rad/s], as a size."""
         return self.stroke / self.duration * abs(float(self.drive.gear.kinematics.ratio))
+
+    @property
+    def sample(self) -> float:
+        """Time between the rows of a run [s]."""
+        return min(SAMPLE, 2.0 * np.pi / self.turning / ROWS)
 
     @property
     def gain_path(self) -> str:
@@ -112,22 +131,44 @@ class ActuatorRamp:
 
     def run(self) -> Recording:
         """One run, all channels."""
-        return simulate(self.drive, self.command, self.dt, sample=SAMPLE)
+        return simulate(self.drive, self.command, self.dt, sample=self.sample)
 
     def many(self, members: Sequence[Mapping[str, float]], record: Sequence[str]) -> Ensemble:
         """Runs that differ in the numbers given; each takes what it does not name from the drive.
 
         Raises:
-            ValueError: one of them cannot be run to its end
+            ValueError: one of them cannot be run to its end, or does not follow the ramp
         """
         own = every(self.drive)
         paths = dict.fromkeys(path for member in members for path in member)
         columns = {path: [member.get(path, own[path].value) for member in members] for path in paths}
-        runs = simulate_many(self.drive, self.command, columns, dt=self.dt, sample=SAMPLE, record=record)
+        runs = simulate_many(
+            self.drive,
+            self.command,
+            columns,
+            dt=self.dt,
+            sample=self.sample,
+            record=list(dict.fromkeys(("input_angle", *record))),
+        )
         if runs.failures:
             member, reason = next(iter(runs.failures.items()))
             raise ValueError(f"the ramp cannot be run with {dict(members[member])}: {reason}")
+        for number in range(len(members)):
+            self._check_that_it_follows(runs.member(number))
         return runs
+
+    def _check_that_it_follows(self, run: Recording) -> None:
+        """Refuses a drive that stays behind, turns back, or swings."""
+        turned = np.diff(self.settled(run)["input_angle"]) * np.sign(float(self.drive.gear.kinematics.ratio))
+        asked = self.turning * (1.0 - RUN_IN) * self.duration
+        ramp = f"the drive does not follow a ramp of {np.degrees(self.stroke):.4g} deg in {self.duration:.4g} s"
+        way_out = "give a smaller stroke, a longer time, or a drive whose motor and controller are fast enough"
+        if not turned.sum() > KEPT * asked:
+            raise ValueError(
+                f"{ramp}: its input turns by {turned.sum():.4g} rad after the run-in, not by {asked:.4g} rad; {way_out}"
+            )
+        if turned.min() < 0.0:
+            raise ValueError(f"{ramp}: its input turns back on the way; {way_out}")
 
     def settled(self, recording: Recording) -> Recording:
         """What follows the run-in."""

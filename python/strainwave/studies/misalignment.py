@@ -63,6 +63,7 @@ INJECTED = {
     "housing_tilt_x": 0.05 * DEGREE,
     "housing_tilt_y": 0.03 * DEGREE,
 }
+FEWEST_ROWS = 2  # of a measured ramp
 RECORDS = {"transmission_error": 2e-5, "current": 0.02}  # root mean square of the noise: two encoders [rad], current sensor [A]
 TRIALS = 12  # noises with which the recovery is tried
 
@@ -458,9 +459,14 @@ def recording_of_ramp(path: Path) -> Recording:
     if not there:
         raise ValueError(f"{path} has none of the columns {listed(CHANNELS)}; a ramp has time and one of them or more")
     found = Recording.read(path, columns={name: name for name in ("time", *there)})
+    if len(found) < FEWEST_ROWS:
+        raise ValueError(f"{path} has {len(found)} rows; a ramp needs {FEWEST_ROWS} or more")
     units = {"torque": "N.m", "current": "A"}
-    columns = {"time": found.values("time", "s") - found.values("time", "s")[0]}
-    columns |= {name: found.values(name, units.get(name, "rad")) for name in there}
+    try:
+        columns = {"time": found.values("time", "s") - found.values("time", "s")[0]}
+        columns |= {name: found.values(name, units.get(name, "rad")) for name in there}
+    except ValueError as error:
+        raise ValueError(f"{path} {error}; give the column in that unit, or in one of its multiples") from None
     return Recording(columns, {"time": "s"} | {name: units.get(name, "rad") for name in there}, title=path.name)
 
 

@@ -157,7 +157,10 @@ def _read(path: Path) -> tuple[Array, Array, str]:
     """The first turn of a file, sorted by the angle."""
     names = ("input_angle", "kinematic_error")
     found = Recording.read(path, columns={name: name for name in names})
-    angle, curve = (found.values(name, "rad") for name in names)
+    try:
+        angle, curve = (found.values(name, "rad") for name in names)
+    except ValueError as error:
+        raise ValueError(f"{path} {error}; give the column as an angle") from None
     order = np.argsort(angle, kind="stable")
     angle, curve = angle[order], curve[order]
     kept = np.append(np.diff(angle) > 0.0, True) & (angle - angle[0] <= TURN * (1.0 + 1e-9))
@@ -165,7 +168,6 @@ def _read(path: Path) -> tuple[Array, Array, str]:
     if len(angle) < FEWEST or angle[-1] - angle[0] < TURN * (1.0 - 2.0 / FEWEST):
         raise ValueError(
             f"{path}: {len(angle)} points over {np.degrees(np.ptp(angle)):.4g} deg of input_angle; a curve needs {FEWEST} "
-            "points "
-            "or more over a whole turn, 360 deg"
+            "points or more over a whole turn, 360 deg"
         )
     return angle, curve, path.name

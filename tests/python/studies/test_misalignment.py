@@ -230,3 +230,22 @@ def test_noise_is_found_and_taken_away(ramp: ActuatorRamp) -> None:
 def test_what_cannot_be_run_is_refused(name: str, stroke: float, time: float, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         ActuatorRamp.of(sw.load(name), stroke, time)
+
+
+def test_an_output_that_is_moved_from_outside_is_refused() -> None:
+    drive = sw.load("tilt-actuator-lumped").replace(load=sw.loads.Prescribed())
+    with pytest.raises(ValueError, match=r'^the load "prescribed" of the drive moves its output from outside'):
+        ActuatorRamp.of(drive, *SHORT)
+
+
+def test_a_drive_that_does_not_follow_is_refused() -> None:
+    weak = sw.load("tilt-actuator-lumped").replace({"motor.current_limit": 0.05})
+    with pytest.raises(ValueError, match=r"^the drive does not follow a ramp of 60 deg in 3 s: its input turns by \S+ rad"):
+        ActuatorRamp.of(weak, *SHORT).many([{f"{ERROR}.housing_tilt_x": tilt} for tilt in (0.0, 1e-3)], ["torque"])
+
+
+def test_every_turn_of_the_input_has_rows_enough_for_its_orders() -> None:
+    """Slow ramps have a row each millisecond; of 101 turns in a second, each has 64."""
+    drive = sw.load("tilt-actuator-lumped")
+    assert ActuatorRamp.of(drive, *SHORT).sample == 1e-3
+    assert ActuatorRamp.of(drive, 2.0 * pi, 1.0).sample == pytest.approx(1.0 / (101.0 * 64.0), rel=1e-12)
