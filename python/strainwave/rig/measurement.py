@@ -78,8 +78,8 @@ def read_test(
     """Reads the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
-    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain. Where the folder holds the steps that
-    were planned, `plan.csv`, the remarks say how the record departs from them.
+    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain. Where the folder holds `plan.csv`,
+    as planned, the remarks say how the record departs from it.
 
     Args:
         folder: of the test
