@@ -153,6 +153,16 @@ def sticking_over_smooth(content: Content) -> Found:
     return Found(packs["viscous, smooth"] / packs["Stribeck, sticks"])
 
 
+def of_angles(value: Callable[[Content], float]) -> Callable[[Content], Found]:
+    """A number of the angles by this package."""
+
+    def found(content: Content) -> Found:
+        own = next(row for row in content["results"] if row["method"] == "strainwave")
+        return Found(value(own), f"{own['frames']} frames")
+
+    return found
+
+
 def more(without: float, including: float) -> float:
     return including / without - 1.0
 
@@ -195,6 +205,9 @@ TARGETS = (
     Target("a cascade at 1 kHz over a continuous one", "overhead", 1.5, True, beside(times, "cascade", "delay of 0.3 ms")),
     Target("import of the package [s]", "overhead", 0.3, True, beside(whole, "import strainwave")),
     Target("strainwave --help [s]", "overhead", 0.3, True, beside(whole, "strainwave --help")),
+    Target("angle of a target: rms error [µrad]", "marker_angle", 26, True, of_angles(lambda own: 1e6 * own["rms"])),
+    Target("its bias [µrad]", "marker_angle", 2, True, of_angles(lambda own: 1e6 * abs(own["bias"]))),
+    Target("a frame of 640 x 480 [ms]", "marker_angle", 5, True, of_angles(lambda own: 1e3 * own["wall_time"])),
 )
 
 

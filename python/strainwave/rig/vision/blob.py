@@ -39,7 +39,7 @@ def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
 
     A cell is dark if it lies below the middle between the darkest and the brightest block around it, within half the picture.
     """
-    side = int(np.clip(low / 3.0, 1.0, 8.0))
+    side = int(np.clip(low / 2.0, 1.0, 8.0))
     cells = averaged(grey, side)
     middle, contrast, clear = _middle(cells)
     found = []
@@ -89,7 +89,7 @@ def _middle(cells: Grey) -> tuple[Grey, Grey, NDArray[np.bool_]]:
 
 def _noise(cells: Grey) -> float:
     """Of a cell, from how it differs from its neighbour; edges are few and do not count in a median."""
-    sample = cells[:: max(1, cells.shape[0] // 64)]
+    sample = cells[:: max(1, cells.shape[0] // 32)]
     return float(np.median(np.abs(np.diff(sample, axis=1))) / (0.6745 * np.sqrt(2.0)))
 
 
@@ -109,7 +109,7 @@ def _spots(mask: NDArray[np.bool_], contrast: Grey, side: int, dark: bool, low: 
         radius, share = np.sqrt(height * width) / 2.0, areas[i] / (height * width)
         whole = down.start > 0 and right.start > 0 and down.stop < rows and right.stop < columns
         slender = not 0.4 < width / height < 2.5
-        if not low * 0.8 <= radius <= high * 1.2 + side or (whole and (slender or share < 0.5)) or share < 0.3:
+        if not low * 0.8 <= radius <= high + 2.0 * side or (whole and (slender or share < 0.5)) or share < 0.3:
             continue
         column, row = ((part.start + part.stop) / 2.0 for part in (right, down))
         around = float(contrast[int(row) // _BLOCK, int(column) // _BLOCK])

@@ -28,7 +28,9 @@ _BAND = 3.5  # of the blur: how far from the edge pixels still tell of it
 _FARTHEST = 3.0  # of the blur: beyond, what a pixel tells of the edge is not linear at all
 _OUTLIER = 4.5  # times the scatter
 _MISFIT = 4.0  # times the usual variance of the pixels of a sector
+_FEW = 0.003  # share of the pixels of a side whose leaving out or not does not matter
 _PASSES = 5
+_MOVED, _WIDENED = 0.15, 0.06  # px, and of the blur: what the next pass would still change is the square of it
 _ROUND = 12.0  # ratio of variances above which points are an ellipse's: 4e-5 of all circles of 70 points reach it
 _WIDE_ARC = 0.6  # share of the edge that an ellipse needs
 
@@ -121,11 +123,13 @@ def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fi
         x, y, good, blur = profiles.x, profiles.y, profiles.good, profiles.blur
         for _ in range(2):
             curve = near_curve(x[good], y[good], float(np.mean(good)), curve)
-            off = np.abs(curve.distances(x, y)[0])
+            off, count = np.abs(curve.distances(x, y)[0]), np.count_nonzero(good)
             good = good & (off <= max(_OUTLIER * scatter(off[good]), 1e-3))
             if np.count_nonzero(good) < _LEAST_USED:
                 return None
-        if np.hypot(curve.x - before.x, curve.y - before.y) < 0.05 and abs(blur / blur_before - 1.0) < 0.01:
+            if np.count_nonzero(good) == count:
+                break
+        if np.hypot(curve.x - before.x, curve.y - before.y) < _MOVED and abs(blur / blur_before - 1.0) < _WIDENED:
             break
     return _Fit(x[good], y[good], blur, float(np.mean(good)))
 
@@ -160,18 +164,19 @@ class _Level:
 
 def _level(pixels: _Pixels, curve: Ellipse) -> _Level:
     """The plane through brightness at the centre of a curve; pixels that do not belong to it have no weight."""
-    columns = np.column_stack((np.ones(len(pixels.x)), pixels.x - curve.x, pixels.y - curve.y))
+    right, down = pixels.x - curve.x, pixels.y - curve.y
     middle = float(np.median(pixels.value))
     rest, plane, inverse, variance = pixels.value - middle, np.array([middle, 0.0, 0.0]), np.zeros((3, 3)), 0.0
-    for _ in range(2):
-        spread = np.abs(rest)
+    used = np.zeros(len(rest), bool)
+    for _ in range(3):
+        spread, before = np.abs(rest), used
         used = spread <= max(_OUTLIER * scatter(spread[::4]), 1e-6)
-        if np.count_nonzero(used) < 12:
+        if np.count_nonzero(used) < 12 or np.count_nonzero(used != before) <= _FEW * len(used):
             break
-        matrix = columns[used]
-        inverse[:] = np.linalg.inv(matrix.T @ matrix)
-        plane = inverse @ (matrix.T @ pixels.value[used])
-        rest = pixels.value - columns @ plane
+        columns = np.stack((np.ones(np.count_nonzero(used)), right[used], down[used]))
+        inverse[:] = np.linalg.inv(columns @ columns.T)
+        plane = inverse @ (columns @ pixels.value[used])
+        rest = pixels.value - (plane[0] + plane[1] * right + plane[2] * down)
         variance = float(np.mean(rest[used] ** 2))
     return _Level(curve.x, curve.y, float(plane[0]), plane[1:], inverse[1:, 1:] * variance)
 
