@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import inf, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,20 +12,16 @@ import typer
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from strainwave import Gear
-    from strainwave.rig.evaluation import Evaluation
+    from strainwave.report.provenance import Provenance
     from strainwave.rig.guide import Settling
-    from strainwave.rig.loop import Loop
-    from strainwave.rig.measurement import TorsionTest
     from strainwave.rig.plan import Pans, Plan
     from strainwave.rig.setup import Rig
     from strainwave.rig.sources import Source
     from strainwave.rig.steps import Step
-    from strainwave.rig.virtual.render import Scene
 
 rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, analyse, simulate.")
 
-DOCUMENT_T = "document-t"  # the gear whose loops are the rows of document T's Table 2
+DOCUMENT_T = "document-t"  # the gears of document T's Table 2, as `gear_named` knows them
 POSITIONS = "0,60,120"
 
 RigOption = Annotated[str, typer.Option("--rig", help="The rig: a name that comes with the package, or a .toml file.")]
@@ -86,12 +82,18 @@ def simulate(
     """Make a virtual test: photographs, masses and rig as a real test leaves them, and the truth beside them."""
     import sys
 
+    from strainwave.rig.reading import PLAN
+    from strainwave.rig.steps_file import write_steps
+    from strainwave.rig.virtual.rehearsal import gear_named, usual_scene
     from strainwave.rig.virtual.test import simulate_test
 
     bench = _rig(name)
     steps = _plan(bench, torque, step, positions, units, cycles, unequal).steps
-    test = simulate_test(_gear_of(gear), bench, steps, folder=out, scene=_scene(bench), seed=seed, progress=sys.stderr.isatty())
-    print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, rig.toml, and the truth in truth.json and truth-*.toml")
+    test = simulate_test(
+        gear_named(gear), bench, steps, folder=out, scene=usual_scene(bench), seed=seed, progress=sys.stderr.isatty()
+    )
+    write_steps(steps, out / PLAN)
+    print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
     print(f"to analyse it: strainwave rig analyse {out}")
 
 
@@ -129,6 +131,7 @@ def measure(
     with making(out), claiming(out):
         bench = _rig_of_test(out, name)
         made = _plan(bench, torque, step, positions, units, cycles, unequal)
+        _keep_plan(made, out)
         source = _source(camera, bench, made.steps, gear)
         written.append(out)
         done = _conduct(Console(stderr=True), out, bench, made, source, settling)
@@ -169,15 +172,24 @@ def analyse(
     """
     from rich.console import Console
 
-    from strainwave.report.provenance import Provenance
+    from strainwave.files.gear_set import GearSet
     from strainwave.report.rig import rig_report, summary
     from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
+    from strainwave.rig.reading import Given, evaluate_paths
 
     target = _target(paths, out)
     with Console(stderr=True).status("reading") as status:
-        found, read = _evaluated(paths, name, gear, rated_torque, reference, friction, positions, status.update)
+        given = Given(
+            rig=None if name is None else _rig(name),
+            gear_set=None if gear is None else GearSet.read(gear),
+            rated_torque=rated_torque,
+            reference=reference,
+            friction=friction,
+            positions=None if positions is None else _numbers("--positions", positions),
+        )
+        found, read = evaluate_paths(paths, given, status.update)
         status.update("report")
-        provenance = Provenance.of_this_command(read)
+        provenance = _provenance(read)
         files: dict[str, str | bytes] = {**loop_files(found.loops), **angle_files(found.angles)}
         files["results.json"] = results_json(results(found, provenance.date))
         files["report.html"] = rig_report(found, provenance, list(files))
@@ -194,7 +206,8 @@ def watch(
         str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; rig.toml of the folder, if not given.")
     ] = None,
     plan: Annotated[
-        Path | None, typer.Option(help="Steps that are made, .csv, where steps.csv does not tell them yet.")
+        Path | None,
+        typer.Option(help="Steps that are to be made, .csv, where steps.csv lacks them; plan.csv of the folder, if not given."),
     ] = None,
     idle: Annotated[float, typer.Option(help="End when no photograph came for so many s; never, if not given.")] = inf,
     interval: Annotated[float, typer.Option(help="Time between two looks in s.")] = 0.5,
@@ -203,13 +216,15 @@ def watch(
     from rich.console import Console
 
     from strainwave.report.rig_live import Point, live
+    from strainwave.rig.reading import PLAN
     from strainwave.rig.steps_file import read_steps
     from strainwave.rig.watching import Watch
 
     if not folder.is_dir():
         raise FileNotFoundError(f"{folder}: there is no such folder")
     bench = _rig_of_test(folder, name)
-    watched = Watch(folder, bench, read_steps(plan) if plan is not None else ())
+    planned = folder / PLAN if plan is None and (folder / PLAN).exists() else plan
+    watched = Watch(folder, bench, read_steps(planned) if planned is not None else ())
 
     def look() -> list[Point]:
         return [Point(each.name, each.torque, each.look, each.warnings) for each in watched.new()]
@@ -277,81 +292,18 @@ def _target(paths: Sequence[Path], out: Path | None) -> Path:
     return paths[0] / "analysis" if len(paths) == 1 and paths[0].is_dir() else Path("out/rig")
 
 
-def _evaluated(
-    paths: Sequence[Path],
-    name: str | None,
-    gear: str | None,
-    rated_torque: float | None,
-    reference: str | None,
-    friction: Path | None,
-    positions: str | None,
-    progress: Callable[[str], None],
-) -> tuple[Evaluation, list[Path]]:
-    """What the tests and loops found, and the files that were read for it, but for the photographs."""
-    from strainwave.files.gear_set import GearSet
-    from strainwave.rig.evaluation import evaluate
+def _provenance(read: Sequence[Path]) -> Provenance:
+    """How the report came to be; files of the same name are shown with their folders."""
+    from dataclasses import replace
 
-    gear_set = None if gear is None else GearSet.read(gear)
-    tests, loops, read = _read(paths, name, reference, positions, progress)
-    if friction is not None:
-        if gear_set is None:
-            raise ValueError(f"--friction {friction} needs --gear, whose law of friction is fitted to the table")
-        loops, read = _without_friction(loops, friction, gear_set.gear), [*read, friction]
-    found = evaluate(
-        loops,
-        name=" and ".join(path.name or str(path.resolve().name) for path in paths),
-        gear_set=gear_set,
-        rated_torque=rated_torque,
-        rig=tests[0].rig if len(tests) == len(paths) else None,
-        steps=[step for test in tests for step in test.steps],
-        angles=[angles for test in tests for angles in test.angles],
-        remarks=[remark for test in tests for remark in test.remarks],
-    )
-    return found, read
+    from strainwave.report.provenance import Provenance
 
-
-def _read(
-    paths: Sequence[Path], name: str | None, reference: str | None, positions: str | None, progress: Callable[[str], None]
-) -> tuple[list[TorsionTest], list[Loop], list[Path]]:
-    from strainwave.rig.measurement import read_test
-    from strainwave.rig.recorded import read_loop
-
-    files = [path for path in paths if not path.is_dir()]
-    if files and (name is not None or reference is not None):
-        raise ValueError(f"--rig and --reference are for folders of tests; {files[0]} is not one")
-    if positions is not None and len(_numbers("--positions", positions)) != len(files):
-        raise ValueError(f"--positions {positions} must name as many positions as there are FILEs: {len(files)}")
-    places = dict(zip(files, _numbers("--positions", positions) if positions else [0.0] * len(files), strict=True))
-    tests: list[TorsionTest] = []
-    loops: list[Loop] = []
-    read: list[Path] = []
-    for path in paths:
-        if path.is_dir():
-            _check_test(path, name)
-            tests.append(read_test(path, rig=None if name is None else _rig(name), reference=reference, progress=progress))
-            loops += tests[-1].loops
-            read += [each for each in (path / "rig.toml", path / "steps.csv") if each.exists()]
-        else:
-            unit = path.stem if len(files) > 1 and positions is None else ""
-            loops.append(read_loop(path, position=radians(places[path]), unit=unit))
-            read.append(path)
-    return tests, loops, read
-
-
-def _check_test(folder: Path, name: str | None) -> None:
-    """Refuses a folder that holds no test, with what it lacks."""
-    if not (folder / "steps.csv").exists():
-        raise FileNotFoundError(f"{folder} holds no steps.csv, in which each step of a test has its masses and photograph")
-    if name is None and not (folder / "rig.toml").exists():
-        raise FileNotFoundError(f"{folder} holds no rig.toml; name the rig, as --rig couple-rig")
-
-
-def _without_friction(loops: Sequence[Loop], table: Path, gear: Gear) -> list[Loop]:
-    from strainwave.identify.measurement import read_measurement
-    from strainwave.rig.sides import friction_at_rest, without_friction
-
-    friction = friction_at_rest(read_measurement("friction", table), gear)
-    return [without_friction(loop, friction) for loop in loops]
+    names = [path.name for path in read]
+    digests: dict[str, str] = {}
+    for path in read:
+        (digest,) = Provenance.of([path], command="", date="").files.values()
+        digests[path.name if names.count(path.name) == 1 else str(path)] = digest
+    return replace(Provenance.of_this_command([]), files=digests)
 
 
 def _write(folder: Path, files: Mapping[str, str | bytes]) -> None:
@@ -416,44 +368,24 @@ def _count(option: str, value: int) -> int:
     return value
 
 
-def _gear_of(name: str) -> Gear | Callable[[Step], Gear]:
-    """The gear on a virtual rig, or of each step one of document T's."""
-    from math import degrees
-
-    from strainwave.files.gear_set import GearSet
-    from strainwave.rig.virtual.printed import printed_gear
-
-    return (lambda step: printed_gear(round(degrees(step.position)))) if name == DOCUMENT_T else GearSet.read(name).gear
-
-
-def _scene(bench: Rig) -> Scene:
-    from strainwave.rig.virtual.render import Scene
-
-    return Scene(camera=bench.camera, gradient=0.3, noise=4.0 / 255.0)
-
-
 def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Source:
     from strainwave.rig.sources import Device, Filled
+    from strainwave.rig.virtual.rehearsal import gear_named, rehearsal
 
     if camera == "virtual":
-        return _virtual(bench, steps, gear)
+        return rehearsal(bench, steps, gear_named(gear))
     return Device(int(camera)) if camera.isdecimal() else Filled(Path(camera))
 
 
-def _virtual(bench: Rig, steps: tuple[Step, ...], gear: str) -> Source:
-    from itertools import groupby
+def _keep_plan(made: Plan, out: Path) -> None:
+    """Writes the plan beside the test, or refuses another one than a test that was broken off has."""
+    from strainwave.rig.reading import PLAN
+    from strainwave.rig.steps_file import read_steps, write_steps
 
-    import numpy as np
-
-    from strainwave import Gear
-    from strainwave.rig.sources import Virtual
-    from strainwave.rig.virtual.loading import load_by_steps
-
-    chosen, angles = _gear_of(gear), []
-    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
-        own = list(group)
-        angles.append(load_by_steps(chosen if isinstance(chosen, Gear) else chosen(own[0]), bench, own).angle)
-    return Virtual(_scene(bench), np.concatenate(angles), np.random.default_rng())
+    if not (out / PLAN).exists():
+        write_steps(made.steps, out / PLAN)
+    elif tuple(read_steps(out / PLAN)) != made.steps:
+        raise ValueError(f"{out / PLAN} holds another plan; repeat the options that it was begun with, or give another --out")
 
 
 def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source, settling: Settling) -> int:

@@ -115,6 +115,7 @@ def results(found: Evaluation, date: str = "") -> dict[str, Any]:
         "comparisons": found.comparisons,
         "photographs": {frame.name: frame.sha256 for each in found.angles for frame in each.frames},
         "remarks": found.remarks,
+        "deviations_from_plan": found.deviations,
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import floor, isfinite, log10
 from typing import NamedTuple
 
@@ -48,3 +49,13 @@ def stated(found: Result | None, scale: float = 1.0) -> Stated:
         return Stated(number(value, FINEST), f"{number(low, FINEST)} to {number(high, FINEST)}")
     texts = [fixed(each, min(places, most)) for each in (value, low, high)]
     return Stated(texts[0], f"{texts[1]} to {texts[2]}" if texts[1] != texts[2] else f"± {number(0.5 * (high - low), 1)}")
+
+
+def sentence(words: str) -> str:
+    """Words as a sentence in print: signs and units set as such.
+
+    >>> sentence("soft from -0.1 N.m on")
+    'Soft from −0.1 N·m on.'
+    """
+    signed = re.sub(r"(?<![\w.])-(?=\d)", "−", words.replace("N.m", "N·m"))
+    return f"{signed[0].upper()}{signed[1:]}."

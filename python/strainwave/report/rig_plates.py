@@ -119,7 +119,9 @@ def comparison(found: Evaluation, compared: Comparison) -> Markup:
     for name in NAMES:
         results = [each.stiffness_by(name, "softest") for each in found.analyses]
         rows += _row(f"{name.replace('_', ' ')} [N·m/rad]", results, 1.0)
-    rows += _row(f"hysteresis [{unit}]", [each.hysteresis and each.hysteresis.width for each in found.analyses], scale)
+    rows += _row(
+        f"hysteresis [{unit}]", [None if each.hysteresis is None else each.hysteresis.width for each in found.analyses], scale
+    )
     if not rows:
         return _markup("")
     labels = [

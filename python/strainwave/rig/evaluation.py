@@ -32,6 +32,7 @@ class Evaluation:
         steps: as made
         angles: of the photographs, of each position and unit
         remarks: what holds for the whole test, in words
+        deviations: where the steps depart from their plan, in words; None where no plan is known
     """
 
     name: str
@@ -42,6 +43,7 @@ class Evaluation:
     steps: tuple[Step, ...] = ()
     angles: tuple[Angles, ...] = ()
     remarks: tuple[str, ...] = ()
+    deviations: tuple[str, ...] | None = None
 
     @property
     def loops(self) -> tuple[Loop, ...]:
@@ -64,6 +66,7 @@ def evaluate(
     steps: Sequence[Step] = (),
     angles: Sequence[Angles] = (),
     remarks: Sequence[str] = (),
+    deviations: Sequence[str] | None = None,
 ) -> Evaluation:
     """Analyses the loops of a test, and compares positions and units.
 
@@ -74,6 +77,7 @@ def evaluate(
         rated_torque: of the gear at the loaded shaft [N.m], instead of that of the set
         rig, steps, angles: what the loops were made from, for the report
         remarks: what holds for the whole test, in words
+        deviations: where the steps depart from their plan, in words; None where no plan is known
 
     Raises:
         ValueError: there is no loop, or one cannot be analysed
@@ -86,7 +90,8 @@ def evaluate(
         raise ValueError("loops: a test needs one loop or more")
     analyses = tuple(analyse(loop, gear_set=gear_set, rated_torque=rated_torque) for loop in loops)
     compared = tuple(_comparisons(analyses))
-    return Evaluation(name, analyses, compared, gear_set, rig, tuple(steps), tuple(angles), tuple(remarks))
+    departed = None if deviations is None else tuple(deviations)
+    return Evaluation(name, analyses, compared, gear_set, rig, tuple(steps), tuple(angles), tuple(remarks), departed)
 
 
 def _labels(loops: Sequence[Loop]) -> Iterator[str]:

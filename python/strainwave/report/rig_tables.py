@@ -1,0 +1,291 @@
+"""The tables of a torsion test's report, in print."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees, floor, log10
+from typing import Any
+
+import numpy as np
+
+from strainwave.report import rig_plates
+from strainwave.report.rig_numbers import Stated, sentence, stated
+from strainwave.report.typeset import fixed, number
+from strainwave.rig.analysis import DEFINITIONS, Definition, LoopAnalysis, table
+from strainwave.rig.budget import Budget
+from strainwave.rig.catalogue_check import CatalogueCheck
+from strainwave.rig.comparison import Compared, Comparison
+from strainwave.rig.evaluation import Evaluation, budgets
+from strainwave.rig.regimes import NAMES
+from strainwave.rig.result import Result
+from strainwave.rig.soft_spot import MULTIPLE, words_on_band
+from strainwave.rig.stiffness import closure_of_secants, soft_parts
+from strainwave.rig.virtual.printed import PEAK, TABLE_2
+
+ARCMIN = 60.0
+OF_REGIMES = tuple(name.replace("_", " ") for name in NAMES)  # how remarks on one regime begin
+BAND = (0.1, 0.2)  # N.m: where document T saw its soft spot
+TITLES: dict[Definition, str] = {
+    "softest": "Stiffness of the softest straight stretch of each regime",
+    "regression": "Stiffness by regression: one straight line through each regime",
+    "secant": "Stiffness by secant: peak torque over the angle from zero torque to the peak",
+}
+
+
+def ratio_of(found: Evaluation) -> float | None:
+    """Turns of the input for one of the output, where the loops were measured at the input and the gear is known."""
+    if found.gear_set is None or any(loop.side != "input" for loop in found.loops):
+        return None
+    return abs(float(found.gear_set.gear.kinematics.ratio))
+
+
+# ---- Document T's Table 2 --------------------------------------------------------------------------------------------
+
+
+def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]:
+    unit, scale = rig_plates.angle_unit(found.loops[0])
+    ratio = ratio_of(found)
+    rows = []
+    for label, row in zip(found.labels, table(found.analyses, definition), strict=True):
+        cells = [stated(getattr(row, name)) for name in NAMES]
+        cells.append(stated(row.hysteresis, scale))
+        if ratio is not None:
+            cells.append(stated(row.hysteresis, ARCMIN * degrees(1.0) / ratio))
+        rows.append((label, cells))
+    heads = [f"{name.replace('_', ' ').capitalize()} [N·m/rad]" for name in NAMES]
+    heads.append(f"Total hysteresis [{unit}]")
+    if ratio is not None:
+        heads.append("At the output [′]")
+    return {"title": TITLES[definition], "text": DEFINITIONS[definition], "heads": heads, "rows": rows}
+
+
+def document_rows() -> Iterator[list[str]]:
+    """Document T's own table, how far it is from closed, and under which reading it is."""
+    for position, (*slopes, width) in TABLE_2.items():
+        gap = degrees(closure_of_secants(slopes, PEAK))
+        parts = soft_parts(slopes, float(np.radians(width)), PEAK)
+        signed = f"{gap:+.2f}°".replace("-", "−")
+        yield [
+            f"{position}°",
+            *(fixed(each, 2) for each in slopes),
+            fixed(width, 1),
+            signed,
+            *(fixed(each, 3) for each in parts),
+        ]
+
+
+# ---- Loops -----------------------------------------------------------------------------------------------------------
+
+
+def loop_part(found: Evaluation, place: int) -> dict[str, Any]:
+    analysis = found.analyses[place]
+    ratio = ratio_of(found)
+    low, high = analysis.peaks
+    return {
+        "label": found.labels[place],
+        "span": f"{len(analysis.loop)} points from {fixed(low, 3)} to {fixed(high, 3)} N·m",
+        "figure": rig_plates.loop(analysis, found.labels[place], f"loop-{place}", ratio),
+        "stiffness_figure": rig_plates.stiffness(analysis, found.labels[place], f"stiffness-{place}"),
+        "rows": list(_width_rows(analysis, ratio)),
+        "ratio": ratio,
+        "soft": list(_soft_rows(analysis)),
+        "band": [sentence(words) for words in _band(analysis)],
+        "remarks": [sentence(remark) for remark in _own(found, analysis)],
+    }
+
+
+def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[str, str, Stated, Stated, str]]:
+    """What, its definition, its value at the loaded shaft and at the output, and the unit."""
+    unit, scale = rig_plates.angle_unit(analysis.loop)
+
+    def angle(name: str, words: str, found: Result | None) -> tuple[str, str, Stated, Stated, str]:
+        at_output = stated(found, ARCMIN * degrees(1.0) / ratio) if ratio else Stated("", "")
+        return name, words, stated(found, scale), at_output, unit
+
+    wide = analysis.hysteresis
+    where = "" if wide is None else f", here at {number(round(wide.torque, 4), 3)} N·m"
+    yield angle(
+        "Hysteresis",
+        f"widest separation of the branches at equal torque, as document T has it{where}",
+        None if wide is None else wide.width,
+    )
+    yield angle("Width at zero torque", "separation of the branches after the peaks of this cycle", analysis.width_at_zero)
+    rated = analysis.rated_torque
+    yield angle(
+        "Hysteresis loss",
+        "separation at zero torque after rated torque, as catalogues have it"
+        + (
+            "; rated torque is not known"
+            if rated is None
+            else ""
+            if analysis.hysteresis_loss
+            else f"; rated torque, {number(rated, 4)} N·m, was not the peak"
+        ),
+        analysis.hysteresis_loss,
+    )
+    yield angle(
+        "Lost motion",
+        "mean separation at plus and minus 4 % of rated torque, as catalogues have it"
+        + ("; rated torque is not known" if rated is None else f"; ±{number(0.04 * rated, 3)} N·m"),
+        analysis.lost_motion,
+    )
+    if analysis.torque_width is not None:
+        words = f"widest separation at equal angle, here at {fixed(scale * analysis.torque_width[1], 2)}{unit}"
+        yield "Width in torque", words, Stated(number(analysis.torque_width[0], 4), ""), Stated("", ""), "N·m"
+    yield "Energy lost", "area of the loop, in a cycle", stated(analysis.area, 1e3), Stated("", ""), "mJ"
+    yield angle("Closure error", "angle at the end of the cycle less that at its beginning, at equal torque", analysis.closure)
+    if analysis.drift is not None:
+        yield angle("Drift", "movement of the middle of the loop from cycle to cycle", analysis.drift)
+
+
+def _soft_rows(analysis: LoopAnalysis) -> Iterator[list[str]]:
+    for spot in analysis.soft_spots:
+        beyond = "" if spot.bounded else ", where the regime ends"
+        yield [
+            spot.regime.replace("_", " "),
+            f"{fixed(spot.low, 3)} to {fixed(spot.high, 3)} N·m{beyond}",
+            f"{fixed(spot.multiple, 2)} (at least {fixed(spot.at_least, 2)})",
+        ]
+
+
+def _band(analysis: LoopAnalysis) -> Iterator[str]:
+    """What there is of document T's soft spot, where the loop reaches so far."""
+    if analysis.loop.side != "input" or max(map(abs, analysis.peaks)) < BAND[0]:
+        return
+    for name in ("negative_loading", "positive_loading"):
+        if (each := analysis.stiffness(name)) is not None:
+            yield words_on_band(each, *BAND)
+
+
+# ---- Beside each other, and beside the catalogue ----------------------------------------------------------------------
+
+
+def comparison_part(found: Evaluation, comparison: Comparison) -> dict[str, Any]:
+    what = {"position": "Positions of the flexspline", "unit": "Units"}[comparison.by]
+    return {
+        "by": comparison.by,
+        "title": what,
+        "groups": comparison.quantities[0].groups if comparison.quantities else (),
+        "rows": [_compared(each, found) for each in comparison.quantities],
+        "figure": rig_plates.comparison(found, comparison),
+        "remarks": [sentence(each) for each in comparison.remarks],
+    }
+
+
+def _compared(each: Compared, found: Evaluation) -> dict[str, Any]:
+    unit, scale = _in_print(each.unit, found)
+    verdict, word = {
+        True: ("they differ", "differ"),
+        False: ("no difference shown", "agree"),
+        None: ("not known", "undecided"),
+    }[each.significant]
+    basis = "repeats" if not np.isnan(each.by_repeats) else "stated errors"
+    return {
+        "name": f"{each.name[0].upper()}{each.name[1:]} [{unit}]",
+        "means": [_to_spread(scale * mean, scale * each.spread) for mean in each.means],
+        "spread": f"{number(scale * each.spread, 2)} ({number(100.0 * each.relative, 2)} %)",
+        "probability": "—" if np.isnan(each.probability) else f"{_probability(each.probability)}, by {basis}",
+        "verdict": verdict,
+        "word": word,
+    }
+
+
+def _to_spread(value: float, spread: float) -> str:
+    """A mean to the third digit of the spread of the means, which tells them apart."""
+    return fixed(value, min(max(2 - floor(log10(spread)), 0), 6)) if spread > 0.0 else number(value, 4)
+
+
+def _probability(value: float) -> str:
+    return "< 0.0001" if value < 1e-4 else number(value, 2)
+
+
+def _in_print(unit: str, found: Evaluation) -> tuple[str, float]:
+    """The unit that a quantity is printed in, and the factor to it."""
+    if unit == "rad":
+        return rig_plates.angle_unit(found.loops[0])
+    return ("mJ", 1e3) if unit == "J" else (unit.replace(".", "·"), 1.0)
+
+
+def catalogue_rows(found: Evaluation) -> Iterator[dict[str, Any]]:
+    for label, analysis in zip(found.labels, found.analyses, strict=True):
+        for check in analysis.catalogue:
+            unit, scale = _in_print(check.unit, found)
+            verdict, word = {
+                True: ("within the spread", "agree"),
+                False: ("beyond the spread", "differ"),
+                None: ("", "undecided"),
+            }[check.within]
+            yield {
+                "label": label,
+                "name": check.name,
+                "measured": stated(check.measured, scale),
+                "stated": number(scale * check.stated, 4)
+                + ("" if check.spread is None else f" ± {number(100.0 * check.spread, 2)} %"),
+                "share": _share(check),
+                "unit": unit,
+                "verdict": verdict,
+                "word": word,
+                "why": check.why.replace("N.m", "N·m"),
+            }
+
+
+def _share(check: CatalogueCheck) -> str:
+    if check.measured is None or check.stated == 0.0:
+        return "—"
+    return f"{number(100.0 * check.measured.value / check.stated, 3)} %"
+
+
+# ---- Uncertainty and sources -----------------------------------------------------------------------------------------
+
+
+def budget_parts(found: Evaluation) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    """The budgets of each loop; nothing of one whose rig is not known."""
+    for label, analysis in zip(found.labels, found.analyses, strict=True):
+        if made := budgets(found, analysis):
+            yield label, [_budget(each) for each in made]
+
+
+def _budget(budget: Budget) -> dict[str, Any]:
+    unit, scale = ("°", degrees(1.0)) if budget.unit == "rad" else (budget.unit.replace(".", "·"), 1.0)
+    if budget.unit == "N.m":
+        unit, scale = "mN·m", 1e3
+    return {
+        "name": f"{budget.quantity[0].upper()}{budget.quantity[1:]}",
+        "value": number(scale * budget.value, 4),
+        "sigma": number(scale * budget.sigma, 2),
+        "relative": f"{number(100.0 * budget.sigma / abs(budget.value), 2)} %" if budget.value else "",
+        "unit": unit,
+        "parts": [
+            (each.name, number(scale * each.sigma, 2), f"{fixed(100.0 * budget.share(each), 1)} %", each.kind)
+            for each in budget.contributions
+        ],
+    }
+
+
+DOCUMENT = "document T, “Harmonic Drive Torsional Stiffness: Measurement and Hysteresis Analysis”"
+SOURCES = {
+    "Form of the table, rig, cycle of five steps": f"{DOCUMENT}, Tables 1 and 2; corrected by the errata E-T1 to E-T10",
+    "Torque of a couple: m is the total of both pans of a pair": "document T; erratum E-T7",
+    "Angle from two markers by atan2, followed from photograph to photograph": "erratum E-T1",
+    "Centres of the markers: circle, or ellipse, fitted by distance to sub-pixel edges": "erratum E-T2",
+    "Regression with errors in torque and angle": "York1968",
+    "Differences between groups of repeated loops": "Welch1951",
+    f"Soft spot: local compliance beyond {number(MULTIPLE)} times that of the regime's regression, by more than chance": (
+        "a definition of this package; document T gives none"
+    ),
+    "Hysteresis loss, lost motion": "catalogues: at zero torque after ± rated torque, and at ± 4 % of rated torque",
+    "Uncertainty: the squares of independent contributions add up": "GUM (JCGM 100:2008), Eq. 10",
+}
+
+
+def source_rows(found: Evaluation) -> Iterator[tuple[str, str]]:
+    yield from SOURCES.items()
+    if found.gear_set is not None:
+        yield "Gear", f"{found.gear_set.name}{f', {found.gear_set.maker}' if found.gear_set.maker else ''}"
+
+
+def _own(found: Evaluation, analysis: LoopAnalysis) -> Iterator[str]:
+    """Remarks on a loop that do not hold for all of the test."""
+    for remark in analysis.remarks:
+        if remark.startswith(OF_REGIMES) or any(remark not in each.remarks for each in found.analyses):
+            yield remark

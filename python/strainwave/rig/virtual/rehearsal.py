@@ -1,0 +1,57 @@
+"""A virtual rig before which a test can be rehearsed, and the gears that are known by name on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from math import degrees
+
+import numpy as np
+
+from strainwave._core import Gear
+from strainwave.files.gear_set import GearSet
+from strainwave.rig.setup import Rig
+from strainwave.rig.sources import Virtual
+from strainwave.rig.steps import Step
+from strainwave.rig.virtual.loading import load_by_steps
+from strainwave.rig.virtual.printed import printed_gear
+from strainwave.rig.virtual.render import Scene
+
+DOCUMENT_T = "document-t"  # the gears whose loops are the rows of document T's Table 2
+
+
+def gear_named(name: str) -> Gear | Callable[[Step], Gear]:
+    """The gear of a set or a gear file; or, of document T, the gear for the position of each step.
+
+    Raises:
+        ValueError: there is no such gear
+    """
+    if name == DOCUMENT_T:
+        return lambda step: printed_gear(round(degrees(step.position)))
+    return GearSet.read(name).gear
+
+
+def usual_scene(rig: Rig) -> Scene:
+    """What the camera of a rig sees: two markers, noise of an 8-bit camera, light from one side."""
+    return Scene(camera=rig.camera, gradient=0.3, noise=4.0 / 255.0)
+
+
+def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gear], seed: int | None = None) -> Virtual:
+    """Pictures of a gear on a virtual rig, which comes to rest at each step of a plan.
+
+    Args:
+        rig: the rig as it is
+        steps: the plan
+        gear: which gear, or for each position and unit another one: a function of a step
+        seed: of the noise; another one each time if None
+
+    >>> from strainwave.rig import Step, load
+    >>> source = rehearsal(load("couple-rig"), [Step(1, 0.35), Step(2, 0.3)], gear_named("document-t"))
+    >>> source.angles.round(4).tolist()
+    [0.0, -0.0109]
+    """
+    angles = []
+    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
+        own = list(group)
+        angles.append(load_by_steps(gear if isinstance(gear, Gear) else gear(own[0]), rig, own).angle)
+    return Virtual(usual_scene(rig), np.concatenate(angles), np.random.default_rng(seed))
