@@ -77,10 +77,12 @@ def check_catalogue(
     """
     if cut.falling is None or cut.rising is None or not cut.closed:
         return (), ("the cycle is not complete: it is not compared with the catalogue",)
-    return (
-        (*_stiffnesses(cut, gear_set), *_widths(cut, gear_set, width_at_zero, rated_torque)),
-        tuple(_words(cut, gear_set)),
-    )
+    stiffnesses, words = tuple(_stiffnesses(cut, gear_set)), tuple(_words(cut, gear_set))
+    try:
+        own = _own_loop(cut, gear_set)
+    except ValueError as error:  # its friction holds all of the torque, or it has stages
+        return stiffnesses, (*words, f"widths are not compared with those of the set's own loop: {error}")
+    return (*stiffnesses, *_widths(cut, own, width_at_zero, rated_torque)), words
 
 
 def _factor(gear_set: GearSet, side: Side) -> float:
@@ -140,32 +142,36 @@ def _angle(branch: Branch, torque: float) -> float:
     return float(np.interp(torque, branch.torque, branch.angle))
 
 
-def _widths(
-    cut: Segmented, gear_set: GearSet, width_at_zero: Result | None, rated_torque: float | None
-) -> Iterator[CatalogueCheck]:
-    """Widths of the set's own loop under the same peaks."""
+def _own_loop(cut: Segmented, gear_set: GearSet) -> Segmented:
+    """What the model of the set would show under the same peaks."""
     assert cut.falling is not None
     assert cut.rising is not None
-    peak = 0.5 * (cut.rising.high - cut.falling.low)
-    try:
-        model = cycle_to(gear_set.gear, peak, side=cut.loop.side)
-    except ValueError:  # the set's friction holds all of it; said in words
-        return
-    own = segment(Loop(model.angle, model.torque, side=cut.loop.side, name=gear_set.name))
-    if own.falling is None or own.rising is None:
-        return
-    if width_at_zero is not None and (stated := separation(own.falling, own.rising, 0.0, own.loop)) is not None:
+    model = cycle_to(gear_set.gear, 0.5 * (cut.rising.high - cut.falling.low), side=cut.loop.side)
+    return segment(Loop(model.angle, model.torque, side=cut.loop.side, name=gear_set.name))
+
+
+def _widths(
+    cut: Segmented, own: Segmented, width_at_zero: Result | None, rated_torque: float | None
+) -> Iterator[CatalogueCheck]:
+    """Widths beside those of the set's own loop."""
+    peak = float(own.loop.torque.max())
+    stated = _separation(own, 0.0)
+    if width_at_zero is not None and stated is not None:
         why = f"model of the set after ±{peak:.3g} N.m"
         yield CatalogueCheck("width at zero torque", width_at_zero, stated.value, "rad", None, why)
     if rated_torque is None:
         return
-    at = LOST_MOTION * rated_torque
-    measured, stated = (separation(each.falling, each.rising, at, each.loop) if each.falling and each.rising else None
-                        for each in (cut, own))  # fmt: skip
+    measured, stated = (_separation(each, LOST_MOTION * rated_torque) for each in (cut, own))
     if measured is not None and stated is not None:
         yield CatalogueCheck(
             "lost motion", measured, stated.value, "rad", None, "model of the set, width at 4 % of rated torque"
         )
+
+
+def _separation(cut: Segmented, torque: float) -> Result | None:
+    if cut.falling is None or cut.rising is None:
+        return None
+    return separation(cut.falling, cut.rising, torque, cut.loop)
 
 
 def _words(cut: Segmented, gear_set: GearSet) -> Iterator[str]:

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 KNEES = 2  # at most: stiff, soft, stiff again
 SHORTEST = 0.04  # of the torque of a regime: a shorter stretch is none
 CANDIDATES = 24  # places tried for a knee
+SEARCHED = 500  # points, at most, by which the first place of a knee is found; it is then moved by all
 PRICE = 2.0  # per parameter, in logarithms of the number of points: a knee that noise brings forth is to be rare
 ROUNDING = 1e-7  # of the span: what residuals may be by the digits of a file
 ROUNDS = 25  # of Gauss and Newton
@@ -72,7 +73,10 @@ def fit_segments(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: 
     span = float(torque[-1] - torque[0])
     variance = _variance(torque, angle, angle_sigma, torque_sigma, np.full(len(torque), np.ptp(angle) / span))
     stated = bool(np.any(variance > 0.0))
-    tried = [_best(torque, angle, variance if stated else np.ones(len(torque)), knees) for knees in _counts(torque)]
+    tried: list[_Chain] = []
+    for count in _counts(torque):
+        known = tried[-1].knees if tried else np.empty(0)
+        tried.append(_best(torque, angle, variance if stated else np.ones(len(torque)), count, known))
     n = len(torque)
     exact = n * (ROUNDING * float(np.ptp(angle))) ** 2
 
@@ -142,7 +146,11 @@ def _knee(torque: Array, knee: float, number: int, knees: Array, sigma: float) -
     return Result(knee, "N.m", (high - low) / 12.0**0.5, 0.0, low, high)
 
 
-def _best(torque: Array, angle: Array, variance: Array, count: int) -> _Chain:
+def _best(torque: Array, angle: Array, variance: Array, count: int, known: Array) -> _Chain:
+    """The best chain with so many knees: from places on a grid, or beside the knee that is known, which lies between them.
+
+    Two knees of the grid around a sharp one would else hide another that is less sharp.
+    """
     if count == 0:
         return _refined(torque, angle, variance, np.empty(0))
     span = float(torque[-1] - torque[0])
@@ -153,18 +161,27 @@ def _best(torque: Array, angle: Array, variance: Array, count: int) -> _Chain:
     if count == 2:
         first, second = np.triu_indices(len(places), 1)
         chosen = np.column_stack((places[first], places[second]))
+        beside = np.column_stack((places, np.broadcast_to(known, len(places))))
+        chosen = np.concatenate((chosen, np.sort(beside, axis=1))) if len(known) == 1 else chosen
         chosen = chosen[chosen[:, 1] - chosen[:, 0] > SHORTEST * span]
     if not len(chosen):
         return _refined(torque, angle, variance, np.empty(0))
+    every = -(-len(torque) // SEARCHED)
+    misfit = _misfits(torque[::every], angle[::every], variance[::every], chosen)
+    return _refined(torque, angle, variance, chosen[int(np.argmin(misfit))])
+
+
+def _misfits(torque: Array, angle: Array, variance: Array, chosen: Array) -> Array:
+    """Sum of squares in variances for each choice of knees, shape (k, count) of `chosen`."""
+    span = float(torque[-1] - torque[0])
     weights = 1.0 / np.sqrt(variance)
     hinges = np.maximum(torque - chosen[:, :, np.newaxis], 0.0) / span
     lines = np.broadcast_to(np.stack((np.ones_like(torque), torque / span)), (len(chosen), 2, len(torque)))
     columns = np.concatenate((lines, hinges), axis=1) * weights
-    normal = columns @ columns.transpose(0, 2, 1) + 1e-12 * np.eye(2 + count) * np.sum(weights**2)
+    normal = columns @ columns.transpose(0, 2, 1) + 1e-12 * np.eye(2 + chosen.shape[1]) * np.sum(weights**2)
     moments = columns @ (weights * angle)
     found = np.linalg.solve(normal, moments[:, :, np.newaxis])[:, :, 0]
-    misfit = np.sum((weights * angle - np.einsum("ki,kin->kn", found, columns)) ** 2, axis=1)
-    return _refined(torque, angle, variance, chosen[int(np.argmin(misfit))])
+    return np.asarray(np.sum((weights * angle - np.einsum("ki,kin->kn", found, columns)) ** 2, axis=1))
 
 
 def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:

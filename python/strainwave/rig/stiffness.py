@@ -20,6 +20,7 @@ from strainwave.rig.segments import Segments, fit_segments
 Array = NDArray[np.float64]
 
 WINDOW = 0.1  # of the torque of a regime: a local slope is that of the points within
+PLACES = 400  # of local slopes along a regime, at most
 UNIT, COMPLIANCE = "N.m/rad", "rad/(N.m)"
 
 
@@ -201,19 +202,16 @@ def local_stiffness(torque: Array, angle: Array, angle_sigma: Array, torque_sigm
     >>> local_stiffness(torque, 0.5 * torque, np.full(5, 0.01), np.zeros(5)).stiffness.round(9).tolist()
     [2.0, 2.0, 2.0]
     """
-    window = WINDOW * float(torque[-1] - torque[0])
-    found, seen = [], set()
-    for middle in range(len(torque)):
-        rows = np.flatnonzero(np.abs(torque - torque[middle]) <= 0.5 * window)
-        first, last = int(rows[0]), int(rows[-1])
-        while last - first < 2 or torque[last] - torque[first] < 0.5 * window:
-            if first == 0 and last == len(torque) - 1:
-                break
-            first, last = max(first - 1, 0), min(last + 1, len(torque) - 1)
-        if (first, last) in seen or last - first < 2 or torque[last] == torque[first]:
+    half = 0.5 * WINDOW * float(torque[-1] - torque[0])
+    n, found, seen = len(torque), [], set()
+    middles = torque if n <= PLACES else torque[np.linspace(0, n - 1, PLACES).astype(int)]
+    for middle in middles.tolist():
+        first, last = int(np.searchsorted(torque, middle - half)), int(np.searchsorted(torque, middle + half, "right")) - 1
+        while (last - first < 2 or torque[last] - torque[first] < half) and (first > 0 or last < n - 1):
+            first, last = max(first - 1, 0), min(last + 1, n - 1)
+        at_end = middle in (torque[0], torque[-1])  # of a few points: the neighbour says the same
+        if (first, last) in seen or last - first < (3 if at_end else 2) or torque[last] == torque[first]:
             continue
-        if (middle == 0 or middle == len(torque) - 1) and last - first < 3:
-            continue  # the neighbour says the same
         seen.add((first, last))
         found.append(_slope(*(each[first : last + 1] for each in (torque, angle, angle_sigma, torque_sigma))))
     found.sort()

@@ -77,6 +77,13 @@ def test_a_set_without_such_figures_says_so() -> None:
     assert found.rated_torque is None
 
 
+def test_a_set_whose_friction_holds_all_of_the_torque_says_so() -> None:
+    held = sw.GearSet.read("hfuc-58-160")
+    loop = loop_of_table()
+    found = analyse(Loop(loop.angle, 0.1 * loop.torque, side="input", name="weak"), gear_set=held)
+    assert any("does not turn the input: its friction holds as much" in remark for remark in found.remarks)
+
+
 def test_a_cycle_that_is_not_complete_is_not_compared() -> None:
     loop = loop_of_table()
     found = analyse(Loop(loop.angle[:50], loop.torque[:50], side="input", name="part"), gear_set=sw.GearSet.read("csg-20-100"))
@@ -125,3 +132,13 @@ def test_what_is_of_the_wrong_kind_is_refused(arguments: dict[str, object], mess
 def test_a_rated_torque_is_positive() -> None:
     with pytest.raises(ValueError, match=r"rated_torque = 0\.0 N\.m must lie in \(0, inf\)"):
         analyse(loop_of_table(), rated_torque=0.0)
+
+
+def test_many_points_take_no_more_than_their_share() -> None:
+    """A loop logged at a high rate: 40 000 points, whose numbers are those of the corners."""
+    found = analyse(loop_of_table(step=0.36 / 10_000))
+    assert len(found.loop) > 39_000
+    assert found.area is not None
+    assert found.area.value == pytest.approx(0.3063483432, rel=1e-9)
+    assert found.stiffnesses[1].softest.value == pytest.approx(0.31, rel=1e-6)
+    assert len(found.stiffnesses[1].local.torque) <= 400
