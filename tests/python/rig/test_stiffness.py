@@ -87,6 +87,15 @@ def test_a_knee_beside_two_points_lies_anywhere_between_its_neighbours() -> None
     assert found.compliances[found.softest] == pytest.approx(3.0, rel=1e-3)
 
 
+def test_a_knee_that_one_point_tells_is_found_beside_a_sharp_one_between_two_points() -> None:
+    """The first point, at 0.029 N.m, lies on the stiff stretch, which ends at 0.03: it must not bend the soft one."""
+    torque = np.arange(0.029, 0.36, 0.03)
+    angle = torque / 4.85 + np.maximum(torque - 0.03, 0.0) * 3.0 - np.maximum(torque - 0.3221, 0.0) * 3.0
+    found = fit_segments(torque, angle, np.full(12, 1e-4), np.zeros(12))
+    assert len(found.knees) == 2
+    assert found.compliances[found.softest] == pytest.approx(1.0 / 4.85 + 3.0, rel=1e-9)
+
+
 def test_noise_alone_makes_no_knees() -> None:
     torque = np.linspace(0.0, 1.0, 15)
     random = np.random.default_rng(3)
