@@ -236,7 +236,7 @@ def _head_form() -> Form:
     examples = {key: f'{key} = "…"' for key in _TEXTS} | {"ratings": "[ratings]"}
     for table in _tables():
         keys[table.name] = (dict[str, Any], ... if table.required else {})
-        examples[table.name] = f"[{table.name}]" + (f" with {_choice(table)}" if table.kinds else "")
+        examples[table.name] = f"[{table.name}]{_with_model(table)}"
     return Form("part of a gear file", schema("gear file", keys), examples)
 
 
@@ -250,8 +250,13 @@ def _table_form(path: str, model: Any) -> Form:
     }
     for inner in _inner(path, model):
         keys[inner.name] = (dict[str, Any], ...) if inner.required else (dict[str, Any] | None, None)
-        examples[inner.name] = f"{inner.header} with {_choice(inner)}"
+        examples[inner.name] = f"{inner.header}{_with_model(inner)}"
     return Form(f"parameter of {model.name}", schema(model.name, keys), examples)
+
+
+def _with_model(table: _Table) -> str:
+    """What else has to be said of a table whose model can be chosen."""
+    return f" with {_choice(table)}" if table.kinds else ""
 
 
 def _content(parameter: ParameterField) -> Any:

@@ -300,6 +300,9 @@ REFUSED = {
         'my.toml [hysteresis] breakaway: cannot convert "rad" to "N.m"'
     ),
     # models inside models
+    BASE + "[hysteresis]\nmodel = 'frictional_windup'\nfriction = { value = 1.0, unit = 'N.m', source = 'x' }\n": (
+        "my.toml [hysteresis] springs is missing; write [hysteresis.springs]"
+    ),
     BASE + THERMAL: (
         f'my.toml [friction_mesh] law is missing; write [friction_mesh.law] with model = {LAWS} or "cyclic"'
     ),
