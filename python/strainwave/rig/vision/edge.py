@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.rig.vision.circle import geometric
-from strainwave.rig.vision.ellipse import Ellipse, circle, fit_ellipse
-from strainwave.rig.vision.outline import Outline, near_curve, scatter, turns
+from strainwave.rig.vision.ellipse import Ellipse, centre_covariance, circle, fit_ellipse
+from strainwave.rig.vision.outline import Outline, median, near_curve, scatter, turns
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -123,7 +123,7 @@ def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fi
         x, y, good, blur = profiles.x, profiles.y, profiles.good, profiles.blur
         for _ in range(2):
             curve = near_curve(x[good], y[good], float(np.mean(good)), curve)
-            off, count = np.abs(curve.distances(x, y)[0]), np.count_nonzero(good)
+            off, count = np.abs(curve.distance(x, y)), np.count_nonzero(good)
             good = good & (off <= max(_OUTLIER * scatter(off[good]), 1e-3))
             if np.count_nonzero(good) < _LEAST_USED:
                 return None
@@ -141,7 +141,7 @@ def _around(grey: Grey, curve: Ellipse, reach: float) -> tuple[_Pixels, Array]:
     left, right = max(int(curve.x - half), 0), min(int(curve.x + half) + 2, width)
     top, bottom = max(int(curve.y - half), 0), min(int(curve.y + half) + 2, height)
     x, y = np.meshgrid(np.arange(left, right, dtype=np.float64), np.arange(top, bottom, dtype=np.float64))
-    distance = curve.distances(x, y)[0]
+    distance = curve.distance(x, y)
     near = distance < reach
     pixels = _Pixels(x[near], y[near], grey[top:bottom, left:right][near].astype(np.float64))
     return pixels, distance[near]
@@ -165,7 +165,7 @@ class _Level:
 def _level(pixels: _Pixels, curve: Ellipse) -> _Level:
     """The plane through brightness at the centre of a curve; pixels that do not belong to it have no weight."""
     right, down = pixels.x - curve.x, pixels.y - curve.y
-    middle = float(np.median(pixels.value))
+    middle = median(pixels.value[::4])
     rest, plane, inverse, variance = pixels.value - middle, np.array([middle, 0.0, 0.0]), np.zeros((3, 3)), 0.0
     used = np.zeros(len(rest), bool)
     for _ in range(3):
@@ -195,7 +195,7 @@ def _profiles(band: _Pixels, low: Array, step: Array, curve: Ellipse, blur: floa
     """One step of Gauss-Newton in how far the edge lies from the curve in each sector, and in the blur of all."""
     from scipy.special import ndtr
 
-    turn, scaled = curve.turns(band.x, band.y), curve.distances(band.x, band.y)[0] / blur
+    turn, scaled = curve.turns(band.x, band.y), curve.distance(band.x, band.y) / blur
     sector = np.minimum(((turn + np.pi) * (sectors / (2.0 * np.pi))).astype(np.intp), sectors - 1)
     rest = band.value - low - step * ndtr(scaled)
     slope = np.exp(-0.5 * scaled**2) * step * (-1.0 / (blur * np.sqrt(2.0 * np.pi)))  # as the edge moves outwards
@@ -206,16 +206,16 @@ def _profiles(band: _Pixels, low: Array, step: Array, curve: Ellipse, blur: floa
         return sums
 
     known, told, count = total(square), total(slope * rest), np.bincount(sector, minlength=sectors)
-    usual = float(np.median(known[known > 0.2 * np.max(known)])) if np.any(known > 0.0) else np.inf
+    usual = median(known[known > 0.2 * np.max(known)]) if np.any(known > 0.0) else np.inf
     seen = (known > 0.5 * usual) & (count > 2)
     known[~seen] = 1.0
     move = told / known
     seen &= np.abs(move) < _FARTHEST * blur
     misfit = (total(rest * rest) - told * move) / np.maximum(count - 1, 1)
-    good = seen & (misfit <= max(_MISFIT * float(np.median(misfit[seen])), 1e-6)) if np.any(seen) else seen
+    good = seen & (misfit <= max(_MISFIT * median(misfit[seen]), 1e-6)) if np.any(seen) else seen
     x, y = curve.points(np.where(seen, total(square * turn) / known, turns(sectors)))
     move[~seen] = 0.0
-    _, right, down = curve.distances(x, y)
+    right, down = curve.normal(x, y)
     widening = slope * scaled
     weight = float(np.sum((widening * widening)[good[sector]]))
     wider = float(np.sum((widening * rest)[good[sector]])) / weight if weight > 0.0 else 0.0
@@ -237,11 +237,11 @@ def fit_points(x: Array, y: Array, arc: float) -> tuple[Ellipse, Array, float]:
     plain = circle(fit.x, fit.y, fit.radius), fit.covariance[:2, :2], fit.rms
     if arc < _WIDE_ARC or n < 10:
         return plain
-    curve, shape = fit_ellipse(x, y, plain[0])
-    rest = float(np.sum(curve.distances(x, y)[0] ** 2))
+    curve = fit_ellipse(x, y, plain[0])
+    rest = float(np.sum(curve.distance(x, y) ** 2))
     if (n * fit.rms**2 - rest) / 2.0 <= _ROUND * rest / (n - 5):
         return plain
-    return curve, shape * (rest / (n - 5)), float(np.sqrt(rest / n))
+    return curve, centre_covariance(curve, x, y) * (rest / (n - 5)), float(np.sqrt(rest / n))
 
 
 def _clipped(inside: _Pixels, outside: _Pixels, top: float) -> float:

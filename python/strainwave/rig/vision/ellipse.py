@@ -51,18 +51,29 @@ class Ellipse:
 
     def turns(self, x: Array, y: Array) -> Array:
         """The `turn` of the point of the curve on the ray to each point."""
-        right, down = x - self.x, y - self.y
-        turn: Array = np.arctan2(self.xy * right + self.yy * down, self.xx * right + self.xy * down)
+        u, v = self._scaled(x, y)
+        turn: Array = np.arctan2(v, u)
         return turn
 
-    def distances(self, x: Array, y: Array) -> tuple[Array, Array, Array]:
-        """How far outside points lie, to first order, and both components of the unit normal there."""
-        right, down = x - self.x, y - self.y
-        u, v = self.xx * right + self.xy * down, self.xy * right + self.yy * down
-        reach = np.maximum(np.sqrt(u * u + v * v), 1e-12)
+    def distance(self, x: Array, y: Array) -> Array:
+        """How far outside points lie [px], to first order."""
+        u, v = self._scaled(x, y)
+        reach = np.maximum(np.sqrt(u * u + v * v), 1e-9)
+        a, b = self.xx * u + self.xy * v, self.xy * u + self.yy * v
+        slope: Array = np.maximum(np.sqrt(a * a + b * b), reach / (4.0 * self.radius))  # which the centre alone makes larger
+        return (reach - 1.0) * reach / slope
+
+    def normal(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Both components of the direction outwards at points."""
+        u, v = self._scaled(x, y)
         a, b = self.xx * u + self.xy * v, self.xy * u + self.yy * v
         slope = np.maximum(np.sqrt(a * a + b * b), 1e-300)
-        return (reach - 1.0) * reach / slope, a / slope, b / slope
+        return a / slope, b / slope
+
+    def _scaled(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """M (p - centre)."""
+        right, down = x - self.x, y - self.y
+        return self.xx * right + self.xy * down, self.xy * right + self.yy * down
 
 
 def circle(x: float, y: float, radius: float) -> Ellipse:
@@ -70,16 +81,13 @@ def circle(x: float, y: float, radius: float) -> Ellipse:
     return Ellipse(x, y, 1.0 / radius, 0.0, 1.0 / radius)
 
 
-def fit_ellipse(x: Array, y: Array, start: Ellipse, tolerance: float = 1e-8) -> tuple[Ellipse, Array]:
+def fit_ellipse(x: Array, y: Array, start: Ellipse, tolerance: float = 1e-8) -> Ellipse:
     """The ellipse with the least sum of squared distances, by Gauss-Newton.
 
     Args:
         x, y: points near it all round [px], shape (n,), n >= 5
         start: near the result
         tolerance: of the last step, relative to the radius
-
-    Returns:
-        the ellipse, and the covariance of x and y of its centre over the variance of a distance, shape (2, 2)
 
     Raises:
         numpy.linalg.LinAlgError: the points do not determine an ellipse
@@ -95,16 +103,22 @@ def fit_ellipse(x: Array, y: Array, start: Ellipse, tolerance: float = 1e-8) -> 
         at += step
         if np.max(np.abs(step) / size) < tolerance:
             break
-    shape: Array = np.linalg.inv(square)[:2, :2].astype(np.float64)
-    return Ellipse(*at.tolist()), shape
+    return Ellipse(*at.tolist())
+
+
+def centre_covariance(curve: Ellipse, x: Array, y: Array) -> Array:
+    """Of x and y of the centre of an ellipse that is fitted to points, over the variance of a distance, shape (2, 2)."""
+    _, slopes = _slopes(curve, x, y)
+    covariance: Array = np.linalg.inv(slopes.T @ slopes)[:2, :2].astype(np.float64)
+    return covariance
 
 
 def _slopes(curve: Ellipse, x: Array, y: Array) -> tuple[Array, Array]:
     """Distances, and their derivatives by the parameters, as they are on the curve."""
-    distance, a, b = curve.distances(x, y)
+    a, b = curve.normal(x, y)
     right, down = x - curve.x, y - curve.y
     u, v = curve.xx * right + curve.xy * down, curve.xy * right + curve.yy * down
     reach = np.sqrt(u * u + v * v)
     u, v = u / reach, v / reach
     slope = np.hypot(curve.xx * u + curve.xy * v, curve.xy * u + curve.yy * v)
-    return distance, np.column_stack((-a, -b, u * right / slope, (u * down + v * right) / slope, v * down / slope))
+    return curve.distance(x, y), np.column_stack((-a, -b, u * right / slope, (u * down + v * right) / slope, v * down / slope))

@@ -43,14 +43,14 @@ def outline(grey: Grey, x: float, y: float, radius: float, dark: bool) -> Outlin
     at, peak = _first_peak(change)
     if not np.any(peak > 0.0):
         return None
-    clear = peak > 0.4 * np.median(peak[peak > 0.0])
+    clear = peak > 0.4 * median(peak[peak > 0.0])
     reach = along[at + 2]
     curve, used = _robust(x + reach * np.cos(turn), y + reach * np.sin(turn), clear, radius)
     if curve is None:
         return None
     row, middle, last = np.arange(RAYS), at + 2, profile.shape[1] - 1
     rise = np.abs(profile[row, np.minimum(middle + _FLANK, last)] - profile[row, np.maximum(middle - _FLANK, 0)])
-    contrast, slope = float(np.nanmedian(np.append(rise[used], 0.0))), float(np.median(peak[used])) / (2.0 * step)
+    contrast, slope = median(np.nan_to_num(rise[used])), median(peak[used]) / (2.0 * step)
     blur = float(np.sqrt(max((contrast / slope) ** 2 / (2.0 * np.pi) - step**2, 0.25)))  # the wider, the less steep
     return Outline(curve, float(np.mean(used)), blur, contrast) if blur < _WIDEST * curve.radius else None
 
@@ -90,7 +90,7 @@ def _robust(x: Array, y: Array, clear: Mask, radius: float) -> tuple[Ellipse | N
             start = near_curve(x[used], y[used], float(np.mean(used)), start)
         except (np.linalg.LinAlgError, ValueError):
             return nothing
-        distance = np.abs(start.distances(x, y)[0])
+        distance = np.abs(start.distance(x, y))
         used = clear & (distance <= max(_OUTLIER * scatter(distance[used]), 0.3))
     return start, used
 
@@ -122,10 +122,15 @@ def near_curve(x: Array, y: Array, arc: float, start: Ellipse) -> Ellipse:
     if arc < _WIDE_ARC:
         fit = geometric(x, y)
         return circle(fit.x, fit.y, fit.radius)
-    return fit_ellipse(x, y, start, 1e-2)[0]
+    return fit_ellipse(x, y, start, 1e-2)
 
 
 def scatter(sizes: Array) -> float:
     """Standard deviation of normal errors by the median of their sizes, which outliers do not change."""
-    half = len(sizes) // 2
-    return float(np.partition(sizes, half)[half]) / 0.6745
+    return median(sizes) / 0.6745
+
+
+def median(values: Array) -> float:
+    """The upper one of two in the middle: numpy's own median takes several times as long for few values."""
+    half = len(values) // 2
+    return float(np.partition(values, half)[half])
