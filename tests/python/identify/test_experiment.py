@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.identify.experiment import DriveLog, TorsionLoop
 
-from tests.strategies import built
+from tests.strategies import built, suited
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def loop(history: Literal["cyclic", "virgin"]) -> TorsionLoop:
 def test_a_loop_is_predicted_from_twist_zero_on(
     kind: type[Any], data: st.DataObject, history: Literal["cyclic", "virgin"], zero: float
 ) -> None:
-    gear = sw.Gear(stiffness=SPRING, hysteresis=data.draw(built(kind)))
+    gear = sw.Gear(stiffness=SPRING, hysteresis=suited(data.draw(built(kind)), sw.Gear().kinematics))
     path = np.tile(TWIST - zero, 2 if history == "cyclic" else 1)
     predicted, _ = loop(history).predict(gear, [], np.array([0.0, zero]))
     traced = gear.trace(path)[-len(TWIST) :]  # which begins at twist 0 too, by a way of its own
@@ -47,7 +47,7 @@ def test_a_loop_is_predicted_from_twist_zero_on(
 def test_the_derivative_by_the_zero_of_the_twist_is_what_differences_show(
     kind: type[Any], data: st.DataObject, history: Literal["cyclic", "virgin"]
 ) -> None:
-    gear, measured = sw.Gear(stiffness=SPRING, hysteresis=data.draw(built(kind))), loop(history)
+    gear, measured = sw.Gear(stiffness=SPRING, hysteresis=suited(data.draw(built(kind)), sw.Gear().kinematics)), loop(history)
 
     def difference(h: float) -> Array:
         up, down = (measured.predict(gear, [], np.array([0.0, ZERO + step]))[0][0] for step in (h, -h))
