@@ -120,7 +120,7 @@ def read_test(
 
 def _look(folder: Path, name: str, rig: Rig, progress: Callable[[str], None]) -> Frame:
     progress(name)
-    return look(folder / name, camera=rig.camera)
+    return replace(look(folder / name, camera=rig.camera), name=name)  # as the steps name it, folder and all
 
 
 def loops(steps: Sequence[Step], rig: Rig, angles: Angles | Iterable[Angles] = ()) -> list[Loop]:

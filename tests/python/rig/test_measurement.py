@@ -6,6 +6,7 @@ import dataclasses
 import hashlib
 import math
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -205,6 +206,16 @@ def test_a_photograph_without_a_marker_is_told_and_everything_else_remains(teste
     (words,) = [remark for remark in test.remarks if remark.startswith("step-006.png: ")]
     assert "marker" in words
     assert any(remark.startswith("step 6 is left out: step-006.png: ") for remark in test.loops[0].remarks)
+
+
+def test_photographs_may_lie_in_a_folder_of_their_own(tested: Path, tmp_path: Path) -> None:
+    (tmp_path / "photos").mkdir()
+    for path in tested.iterdir():
+        shutil.copy(path, tmp_path / "photos" / path.name if path.suffix == ".png" else tmp_path / path.name)
+    moved = [dataclasses.replace(step, image=f"photos/{step.image}") for step in read_steps(tested)]
+    write_steps(moved, tmp_path / "steps.csv")
+    (loop,), (wanted,) = read_test(tmp_path).loops, read_test(tested).loops
+    np.testing.assert_array_equal(loop.angle, wanted.angle)
 
 
 def test_the_record_is_held_against_the_plan_of_its_folder(tested: Path) -> None:
