@@ -267,6 +267,8 @@ def with_derivatives(drive: sw.Drive, paths: list[str], volts: Any, dt: float, c
             raise AssertionError(DIFFERENT) from error
         raise
     assert all(np.array_equal(found.run[name], run[name]) for name in outputs(drive)), DIFFERENT
+    if not isinstance(drive.gear.structure, sw.structure.Lumped):  # stages give way, too
+        return
     for path in found.parameters:
         whole, *parts = (found[name, path] for name in ("transmission_error", "twist", "kinematic_error"))
         size = sum(np.abs(part) for part in (whole, *parts))
