@@ -260,19 +260,26 @@ def _torque_low(found: Influence) -> tuple[str, str]:
 
 def _torque_area(found: Influence) -> tuple[str, str]:
     sweep, tested = found.amplitude[OWN], found.amplitude[SPECIMEN]
-    area = usual(sweep, "area")
+    if sweep["area"].max() == 0.0:
+        return UNDECIDABLE, f"{_LOSSLESS} up to {nm(found.torque)}; loops of it at three torques would decide."
     slope = sweep.exponent("area", study.USUAL * found.torque)
     still, other = _greatest_still(sweep), _greatest_still(tested)
-    local = sweep.local_exponents("area")
-    steepest = float(np.nanmax(local)) if np.any(np.isfinite(local)) else np.nan
-    verdict = CONFIRMED if _rises(area) else CONTRADICTED
     begin = f"nothing is lost up to {nm(still)}, then " if still > 0.0 else ""
-    return verdict, (
-        f"Over the torque {begin}the area grows with a power of up to {number(steepest, 3)}, and of "
+    return CONFIRMED if _rises(usual(sweep, "area")) else CONTRADICTED, (
+        f"Over the torque {begin}the area grows with a power of up to {number(float(_steepest(sweep)), 3)}, and of "
         f"{number(slope.value, 3)} ± {number(slope.half_width, 2)} from {share_words(study.USUAL)} of {nm(found.torque)} on; "
         f"document T’s gear loses nothing up to {nm(other)} and no more than {quantity(float(tested['area'].max()), 'J', 4)} "
         "once its soft range is used up."
     )
+
+
+_LOSSLESS = "The gear’s model loses 0 J at every torque"
+
+
+def _steepest(sweep: Sweep) -> float:
+    """The largest power between neighbouring levels."""
+    local = sweep.local_exponents("area")
+    return float(np.nanmax(local)) if np.any(np.isfinite(local)) else float("nan")
 
 
 def _greatest_still(sweep: Sweep) -> float:
@@ -375,11 +382,12 @@ def loss_factor(sweep: Sweep) -> float:
 
 
 def _damping(found: Influence) -> tuple[str, str]:
-    own, tested = (study.LOSS_FACTOR / loss_factor(found.amplitude[each]) for each in (OWN, SPECIMEN))
+    own, tested = (loss_factor(found.amplitude[each]) for each in (OWN, SPECIMEN))
+    here = f"{percent(study.LOSS_FACTOR / own)} of this gear’s loop and " if own > 0.0 else ""
     return UNDECIDABLE, (
-        f"A loss factor of steel of {number(study.LOSS_FACTOR, 1)} (order of magnitude) would make {percent(own)} of this "
-        f"gear’s loop and {percent(tested)} of document T’s, which no loop tells from friction; loops too small to slip would "
-        "decide."
+        f"A loss factor of steel of {number(study.LOSS_FACTOR, 1)} (order of magnitude) would make {here}"
+        f"{percent(study.LOSS_FACTOR / tested)} of document T’s, which no loop tells from friction; loops too small to slip "
+        "would decide."
     )
 
 
@@ -399,7 +407,7 @@ def _bearing(found: Influence) -> tuple[str, str]:
 def _held_higher(found: Influence) -> str:
     assert found.preload is not None
     high = found.preload["high_stiffness"]
-    now, more = high[list(study.PRELOADS).index(1.0)], high[list(study.PRELOADS).index(1.5)]
+    now, more = high[_at(found.preload, 1.0)], high[_at(found.preload, 1.5)]
     return (
         f"A loop at the input seems {percent(more / now - 1.0)} stiffer in unloading with 50 % more friction, for the shaft "
         "is held at first; no part is stiffer."
@@ -410,7 +418,7 @@ def _preload_low(found: Influence) -> tuple[str, str]:
     if found.preload is None:
         return UNDECIDABLE, _no_friction(found)
     width = found.preload["width"]
-    now, more = width[list(study.PRELOADS).index(1.0)], width[list(study.PRELOADS).index(1.15)]
+    now, more = width[_at(found.preload, 1.0)], width[_at(found.preload, 1.15)]
     wider = 2.0 * 0.15 * found.friction
     return CONFIRMED if _rises(width) else IN_PART, (
         f"Friction of {quantity(found.friction, 'N.m')} at the input, 15 % higher, widens the loop by exactly 2 ΔF = "
@@ -423,7 +431,7 @@ def _preload_area(found: Influence) -> tuple[str, str]:
     if found.preload is None:
         return UNDECIDABLE, _no_friction(found)
     area = found.preload["area"]
-    now, more = area[list(study.PRELOADS).index(1.0)], area[list(study.PRELOADS).index(1.15)]
+    now, more = area[_at(found.preload, 1.0)], area[_at(found.preload, 1.15)]
     share = found.friction / found.input_torque
     return CONFIRMED if _rises(area) else IN_PART, (
         f"15 % more friction enlarges the loop by {percent(more / now - 1.0)}; but weights give a torque, not an angle: a loop "
@@ -442,7 +450,7 @@ def _warm_high(found: Influence) -> tuple[str, str]:
     fall = found.rates.stiffness
     change = exp(-40.0 * fall) - 1.0
     high = found.temperature["high_stiffness"]
-    seen = float(high[-1] / high[list(study.WARMTH).index(293.15)] - 1.0)
+    seen = float(high[-1] / high[_at(found.temperature, 293.15)] - 1.0)
     return CONFIRMED if 0.0 > change > -0.1 else CONTRADICTED, (
         f"By {percent(change)} over 40 K, with {number(1e4 * fall, 3)} × 10⁻⁴ per kelvin ({found.rates.sources[0]}); a "
         f"loop at the input shows {percent(seen)}, because friction that falls holds the shaft for less."
@@ -451,7 +459,7 @@ def _warm_high(found: Influence) -> tuple[str, str]:
 
 def _warm_low(found: Influence) -> tuple[str, str]:
     fall, low = found.rates.friction, found.temperature["low_stiffness"]
-    change = float(low[-1] / low[list(study.WARMTH).index(293.15)] - 1.0)
+    change = float(low[-1] / low[_at(found.temperature, 293.15)] - 1.0)
     if found.friction <= 0.0:
         return UNDECIDABLE, _no_friction(found)
     return CONFIRMED if fall else CONTRADICTED, (
@@ -462,12 +470,19 @@ def _warm_low(found: Influence) -> tuple[str, str]:
 
 def _warm_area(found: Influence) -> tuple[str, str]:
     area = found.temperature["area"]
-    change = float(area[-1] / area[list(study.WARMTH).index(293.15)] - 1.0)
+    if area.max() == 0.0:
+        return UNDECIDABLE, f"{_LOSSLESS} and temperature; loops of it at two temperatures would decide."
+    change = float(area[-1] / area[_at(found.temperature, 293.15)] - 1.0)
     steel = exp(40.0 * found.rates.stiffness) - 1.0
     return IN_PART, (
         f"Dry friction changes the area at the input by {percent(change)} from 20 to 60 °C and the modulus alone by less than "
         f"{percent(steel)}, but viscosity by 0 %: document T’s images show states of rest, in which nothing flows."
     )
+
+
+def _at(sweep: Sweep, level: float) -> int:
+    """Where a level stands in a sweep."""
+    return int(np.argmin(np.abs(sweep.levels - level)))
 
 
 # ---- Words -----------------------------------------------------------------------------------------------------------

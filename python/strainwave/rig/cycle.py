@@ -14,7 +14,8 @@ from strainwave.rig.loop import COLUMNS, Side
 
 Array = NDArray[np.float64]
 
-POINTS = 400  # of a quarter of a cycle: the area is then within 1e-5 of the exact one
+POINTS = 200  # of a quarter of a cycle: the area is then within 1e-4 of the exact one
+ENDS = 1  # of a quarter where its ends alone are asked for: the laws are exact over any monotone step
 SETTLING = 2  # cycles run; the last one counts
 
 
@@ -145,8 +146,11 @@ def cycle(gear: Gear, amplitude: float, *, side: Side = "output", factors: Facto
     0.5
     """
     _check(gear, side)
-    amplitude = arguments.number("amplitude", amplitude, "N.m", "()", 0.0)
-    quarter = np.linspace(0.0, amplitude, POINTS + 1)
+    return _cycle(gear, arguments.number("amplitude", amplitude, "N.m", "()", 0.0), side, factors, POINTS)
+
+
+def _cycle(gear: Gear, amplitude: float, side: Side, factors: Factors, points: int) -> Cycle:
+    quarter = np.linspace(0.0, amplitude, points + 1)
     down = np.concatenate((quarter[::-1], -quarter[1:]))
     once = np.concatenate((down, -down[1:]))
     path = np.concatenate((quarter, *[once[1:]] * SETTLING))
@@ -194,20 +198,19 @@ def cycle_to(gear: Gear, peak: float, *, side: Side = "output", factors: Factors
     _check(gear, side)
     peak = arguments.number("peak", peak, "N.m", "()", 0.0)
     if side == "output":
-        return cycle(gear, peak, factors=factors)
+        return _cycle(gear, peak, side, factors, POINTS)
     most = peak * abs(float(gear.kinematics.ratio))
 
     def beyond(amplitude: float) -> float:
-        return cycle(gear, amplitude, side=side, factors=factors).peak - peak
+        return _cycle(gear, amplitude, side, factors, ENDS).peak - peak
 
     least = 1e-6 * most
     if beyond(least) >= 0.0:
         raise ValueError(
             f"peak = {peak:g} N.m does not turn the input: its friction holds as much; take a larger torque, or load the output"
         )
-    if beyond(most) <= 0.0:
-        return cycle(gear, most, side=side, factors=factors)
-    return cycle(gear, float(brentq(beyond, least, most, xtol=1e-9 * most)), side=side, factors=factors)
+    amplitude = most if beyond(most) <= 0.0 else float(brentq(beyond, least, most, xtol=1e-9 * most))
+    return _cycle(gear, amplitude, side, factors, POINTS)
 
 
 def _check(gear: Gear, side: Side) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from math import log
 
 import numpy as np
@@ -82,11 +83,13 @@ class Sweep(ComparedByFields):
 
 
 def power(x: Array, y: Array) -> Slope:
-    """The exponent of y ~ x^exponent with its 95 % interval, by regression of the logarithms.
+    """The exponent of y ~ x^exponent with its 95 % interval, by regression of the logarithms; none of fewer than three points.
 
     >>> round(power(np.array([1.0, 2.0, 4.0]), np.array([3.0, 12.0, 48.0])).value, 9)
     2.0
     """
+    if len(x) < 3:
+        return Slope(float("nan"), float("inf"), 0, 1.0)
     return regress(np.column_stack((np.ones_like(x), np.log(x))), np.log(y))[1]
 
 
@@ -191,14 +194,11 @@ def influence(
     _check_turns(torque, peak, held)
     trends = tuple(analyse_series(series)) if series is not None else ()
     progress("loops over the torque")
-    tested = printed_gear(0)
-    amplitude = {OWN: over_torque(gear, torque), SPECIMEN: over_torque(tested, PEAK, "input")}
-    drawn = {
-        OWN: tuple(cycle_to(gear, share * torque) for share in DRAWN),
-        SPECIMEN: tuple(cycle_to(tested, share * PEAK, side="input") for share in DRAWN),
-    }
+    tested, loops = _document_t()
+    amplitude = {OWN: over_torque(gear, torque), SPECIMEN: tested}
+    drawn = {OWN: tuple(cycle_to(gear, share * torque) for share in DRAWN), SPECIMEN: loops}
     progress("the catalogue")
-    rows = tuple(catalogue_rows())
+    rows = catalogue_rows()
     progress("loops over modulus, preload and temperature")
     warm = {t: rates.factors(t, _reference(gear)) for t in WARMTH}
     return Influence(
@@ -216,6 +216,14 @@ def influence(
         series,
         trends,
     )
+
+
+@cache
+def _document_t() -> tuple[Sweep, tuple[Cycle, ...]]:
+    """The loops of document T's gear at its input: over the torque, and those that are drawn."""
+    tested = printed_gear(0)
+    loops = tuple(cycle_to(tested, share * PEAK, side="input") for share in DRAWN)
+    return over_torque(tested, PEAK, "input"), loops
 
 
 def over_torque(gear: Gear, torque: float, side: Side = "output") -> Sweep:
@@ -278,9 +286,10 @@ def rates_of(gear: Gear) -> Rates:
     )
 
 
-def catalogue_rows() -> list[CatalogueRow]:
+@cache
+def catalogue_rows() -> tuple[CatalogueRow, ...]:
     """What the catalogue states of all gears of the family with ratio 30, by size and ratio."""
-    return [_catalogue_row(name) for name in catalogue() if name.startswith(f"{FAMILY}-")]
+    return tuple(_catalogue_row(name) for name in catalogue() if name.startswith(f"{FAMILY}-"))
 
 
 def _catalogue_row(name: str) -> CatalogueRow:
