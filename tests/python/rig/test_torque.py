@@ -8,14 +8,16 @@ import re
 
 import numpy as np
 import pytest
+import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.rig.loop import Loop
 from strainwave.rig.rig_file import load
-from strainwave.rig.setup import Masses, Rig, Value
+from strainwave.rig.setup import Cord, Masses, Rig, Value
 from strainwave.rig.steps import Step
 from strainwave.rig.torque import arm, blank, mass_sigma, torque_of, without_compliance
+from strainwave.rig.virtual.loading import load_by_steps
 
 RIG = Rig("bench", "input", Value(0.1), gravity=Value(9.81))
 STEPS_OF_CYCLE = [0.05 * abs(n) - 0.35 for n in range(14, -15, -1)]
@@ -213,3 +215,67 @@ def assert_positive(values: NDArray[np.float64]) -> None:
 def test_every_torque_of_weighed_masses_has_its_own_error() -> None:
     steps = loaded([0.35, 0.3, -0.05])
     assert_positive(torque_of(steps, load("couple-rig")).sigma)
+
+
+# Against the virtual rig, which follows cords, pulleys and gear by another road
+
+
+def random_rig(random: np.random.Generator, cord: Cord) -> Rig:
+    return Rig(
+        "bench",
+        "input",
+        Value(0.1),
+        gravity=Value(9.81),
+        cord=cord,
+        cord_tangent=Value(random.uniform(-0.3, 0.1)),
+        pulley_torque=Value(random.uniform(0.0, 0.03)),
+        pulley_share=Value(random.uniform(0.0, 0.1)),
+        compliance=Value(random.uniform(0.0, 0.05)),
+    )
+
+
+@pytest.mark.parametrize("cord", ["wound", "fixed point"])
+def test_the_torque_of_a_virtual_shaft_is_found_again(cord: Cord) -> None:
+    """Equilibria of a gear behind pulleys, two cycles; the evaluation knows masses and angles only."""
+    random = np.random.default_rng(7)
+    for _ in range(6):
+        rig = random_rig(random, cord)
+        gear = sw.Gear(
+            kinematics=sw.kinematics.PlainRatio(reduction=100.0),
+            stiffness=sw.stiffness.Linear(k=random.uniform(8e3, 4e4)),
+            hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[2e4], breakaway=[8.0]),
+        )
+        steps = loaded(STEPS_OF_CYCLE + STEPS_OF_CYCLE[1:])
+        truth = load_by_steps(gear, rig, steps)
+        np.testing.assert_allclose(torque_of(steps, rig, truth.angle).shaft, truth.shaft, rtol=0.0, atol=1e-9)
+
+
+def test_the_stated_uncertainty_covers_width_and_stiffness() -> None:
+    """Rigs as uncertain as the file says: deviations of the width at zero torque and of the soft stiffness, in their sigmas."""
+    random = np.random.default_rng(11)
+    said = dataclasses.replace(
+        RIG, disk_radius=Value(0.1, 3e-4), pulley_torque=Value(0.003, 8e-4), compliance=Value(0.02, 3e-3)
+    )
+    gear = sw.Gear(
+        kinematics=sw.kinematics.PlainRatio(reduction=100.0),
+        stiffness=sw.stiffness.Linear(k=5e3),
+        hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[5e4], breakaway=[10.0]),
+    )
+    steps, deviations = loaded(STEPS_OF_CYCLE), []
+    for _ in range(60):
+        drawn = {
+            name: Value(number.value + number.sigma * random.standard_normal())
+            for name in ("disk_radius", "pulley_torque", "compliance")
+            for number in [getattr(said, name)]
+        }
+        true = dataclasses.replace(said, **drawn)  # type: ignore[arg-type]
+        truth = load_by_steps(gear, true, steps)
+        seen = torque_of(steps, said)
+        own = without_compliance(truth.angle, seen.shaft, said.compliance)
+        real = truth.angle - true.compliance.value * truth.shaft
+        widths = [width_at_zero(Loop(a, t, side="input", name="")) for a, t in ((own, seen.shaft), (real, truth.shaft))]
+        soft = [float(np.polyfit(a[9:15], t[9:15], 1)[0]) for a, t in ((own, seen.shaft), (real, truth.shaft))]
+        of_width = 2.0 * seen.friction_sigma / soft[1]  # both branches cross zero torque where the gear is soft
+        of_soft = soft[1] * math.hypot(seen.scale, soft[1] * said.compliance.sigma)
+        deviations.append([(widths[0] - widths[1]) / of_width, (soft[0] - soft[1]) / of_soft])
+    assert np.std(deviations, axis=0) == pytest.approx(1.0, abs=4.0 / math.sqrt(2.0 * len(deviations)))
