@@ -264,11 +264,11 @@ def _budget(budget: Budget) -> dict[str, Any]:
 
 DOCUMENT = "document T, “Harmonic Drive Torsional Stiffness: Measurement and Hysteresis Analysis”"
 SOURCES = {
-    "Form of the table, rig, cycle of five steps": f"{DOCUMENT}, Tables 1 and 2; corrected by the errata E-T1 to E-T10",
+    "Form of the table, rig, cycle of five steps": f"{DOCUMENT}, Tables 1 and 2; corrected by the errata E-T1 to E-T11",
     "Torque of a couple: m is the total of both pans of a pair": "document T; erratum E-T7",
     "Angle from two markers by atan2, followed from photograph to photograph": "erratum E-T1",
     "Centres of the markers: circle, or ellipse, fitted by distance to sub-pixel edges": "erratum E-T2",
-    "Regression with errors in torque and angle": "York1968",
+    "Regression with errors in torque and angle": "York2004",
     "Differences between groups of repeated loops": "Welch1951",
     f"Soft spot: local compliance beyond {number(MULTIPLE)} times that of the regime's regression, by more than chance": (
         "a definition of this package; document T gives none"

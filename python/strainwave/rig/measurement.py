@@ -56,6 +56,7 @@ class TorsionTest(ComparedByFields):
         loops: of each position, unit and cycle
         hashes: SHA-256 of each photograph, by its name
         remarks: what went wrong or was left out, in words
+        deviations: where the record departs from the plan in the folder; None where there is no plan
     """
 
     folder: Path
@@ -65,6 +66,7 @@ class TorsionTest(ComparedByFields):
     loops: tuple[Loop, ...]
     hashes: Mapping[str, str]
     remarks: tuple[str, ...]
+    deviations: tuple[str, ...] | None = None
 
 
 def read_test(
@@ -78,8 +80,8 @@ def read_test(
     """Reads the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
-    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain. Where the folder holds `plan.csv`,
-    as planned, the remarks say how the record departs from it.
+    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain. Where the folder holds the
+    steps that were planned, `plan.csv`, the record is held against them.
 
     Args:
         folder: of the test
@@ -98,7 +100,7 @@ def read_test(
     if reference is not None and reference not in [step.image for step in steps]:
         raise ValueError(one_line(f"{folder}: reference = {quoted(reference)} is no photograph of a step"))
     found: list[Angles] = []
-    remarks = [str(each) for each in check(steps, read_steps(folder / PLAN))] if (folder / PLAN).exists() else []
+    remarks: list[str] = []
     frames: list[Frame] = []
     for place, of_place in _places(steps).items():
         named = [step for step in of_place if step.image is not None]
@@ -115,7 +117,14 @@ def read_test(
     if not made:
         raise ValueError(one_line(f"{folder}: no position has two steps with torque and angle; {listed(remarks)}"))
     hashes = {frame.name: frame.sha256 for frame in frames}
-    return TorsionTest(folder, rig, tuple(steps), tuple(found), tuple(made), hashes, tuple(dict.fromkeys(remarks)))
+    return TorsionTest(
+        folder, rig, tuple(steps), tuple(found), tuple(made), hashes, tuple(dict.fromkeys(remarks)), _deviations(folder, steps)
+    )
+
+
+def _deviations(folder: Path, steps: Sequence[Step]) -> tuple[str, ...] | None:
+    plan = folder / PLAN
+    return tuple(map(str, check(steps, read_steps(plan)))) if plan.exists() else None
 
 
 def _look(folder: Path, name: str, rig: Rig, progress: Callable[[str], None]) -> Frame:

@@ -12,14 +12,11 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identify.measurement import read_measurement
 from strainwave.rig.evaluation import Evaluation, evaluate
 from strainwave.rig.loop import Loop
+from strainwave.rig.measurement import PLAN as PLAN
 from strainwave.rig.measurement import TorsionTest, read_test
-from strainwave.rig.plan_check import check
 from strainwave.rig.recorded import read_loop
 from strainwave.rig.setup import Rig
 from strainwave.rig.sides import friction_at_rest, without_friction
-from strainwave.rig.steps_file import read_steps
-
-PLAN = "plan.csv"  # in the folder of a test
 
 
 @dataclass(frozen=True)
@@ -116,10 +113,8 @@ def _check_test(folder: Path, rig: Rig | None) -> None:
 
 def _deviations(tests: Sequence[TorsionTest]) -> list[str] | None:
     """Where tests depart from the plans beside them; None where there are none."""
-    planned = [test for test in tests if (test.folder / PLAN).exists()]
-    if not planned:
-        return None
-    return [str(finding) for test in planned for finding in check(test.steps, read_steps(test.folder / PLAN))]
+    planned = [test.deviations for test in tests if test.deviations is not None]
+    return [words for of_test in planned for words in of_test] if planned else None
 
 
 def _without_friction(loops: Sequence[Loop], table: Path, gear: Gear) -> list[Loop]:
