@@ -108,10 +108,10 @@ def summary(found: Influence) -> str:
 
 def _entry_lines(entry: Entry) -> Iterator[str]:
     yield from textwrap.wrap(f"{entry.parameter}, {entry.regime}: “{entry.words}”", LINE)
-    inside = {"initial_indent": "  ", "subsequent_indent": "  "}
-    yield from textwrap.wrap(f"{entry.verdict}: {entry.answer}", LINE, **inside)
+    inside = textwrap.TextWrapper(LINE, initial_indent="  ", subsequent_indent="  ")
+    yield from inside.wrap(f"{entry.verdict}: {entry.answer}")
     if entry.measured:
-        yield from textwrap.wrap(f"measured, {entry.measured_verdict}: {' '.join(entry.measured)}", LINE, **inside)
+        yield from inside.wrap(f"measured, {entry.measured_verdict}: {' '.join(entry.measured)}")
 
 
 def tables(found: Influence) -> dict[str, Recording]:

@@ -17,7 +17,8 @@ from strainwave.files.tables import open_csv
 from strainwave.files.units import convert
 from strainwave.messages import listed, quoted
 from strainwave.rig.analysis import analyse
-from strainwave.rig.loop import COLUMNS, Loop
+from strainwave.rig.loop import Loop
+from strainwave.rig.recorded import read_loop
 from strainwave.rig.regimes import RegimeName
 from strainwave.rig.trend import Design, Law, Trend, trends
 
@@ -177,7 +178,8 @@ def read_series(path: str | Path) -> Series:
     factors = {name: _values(numbers, name, FACTORS[name].unit) for name in numeric if name in FACTORS}
     quantities = {name: _values(numbers, name, QUANTITIES[name][1]) for name in numeric if name in QUANTITIES}
     files = [Path(path).parent / each for each in texts.get("file", [])]
-    quantities = {**figures_of([read_loop(each) for each in files]), **quantities} if files else quantities
+    measured = figures_of([read_loop(each) for each in files]) if files else {}
+    quantities = {**{name: np.array(values) for name, values in measured.items()}, **quantities}
     return Series(factors, quantities, texts.get("unit", ()), Path(path).name, (Path(path), *files))
 
 
@@ -213,21 +215,6 @@ def _with_condition(text: str) -> tuple[Path, dict[str, float]]:
 
 def _values(numbers: Recording, name: str, unit: str) -> Array:
     return numbers.values(name, unit) if unit else numbers[name]
-
-
-def read_loop(path: str | Path) -> Loop:
-    """A loop from a table with input_angle and input_torque, or twist and torque.
-
-    Raises:
-        ValueError: the file cannot be read, or has neither pair of columns
-    """
-    header = Recording.header(path)
-    for side, (angle, torque) in COLUMNS.items():
-        if {angle, torque} <= set(header):
-            recording = Recording.read(path, {angle: angle, torque: torque})
-            return Loop(recording.values(angle, "rad"), recording.values(torque, "N.m"), side=side, name=Path(path).name)
-    wanted = " or ".join(listed(pair) for pair in COLUMNS.values())
-    raise ValueError(f"{path} has the columns {listed(header)}; a loop needs {wanted}")
 
 
 def figures_of(loops: Sequence[Loop]) -> dict[str, list[float]]:

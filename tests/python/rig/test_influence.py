@@ -94,9 +94,9 @@ def test_a_gear_that_knows_its_temperature_is_taken_at_its_word() -> None:
 
 
 def test_steel_and_a_joint_stand_in_where_the_gear_knows_nothing(found: Influence) -> None:
-    """203.4 to 198.6 GPa over 72 K are 3.3e-4 per kelvin; 0.46 to 0.35 A over 9 K are 3 % per kelvin."""
+    """203.4 to 198.6 GPa over 72 K are 3.3e-4 per kelvin; 8.27 of 354 mA are 2.3 % per kelvin."""
     assert found.rates.stiffness == pytest.approx(3.3e-4, rel=0.01)
-    assert found.rates.friction == pytest.approx(0.0304, rel=0.01)
+    assert found.rates.friction == pytest.approx(0.0234, rel=0.01)
 
 
 def test_document_t_gear_loses_nothing_in_small_loops_and_no_more_beyond_its_stops(found: Influence) -> None:
@@ -123,7 +123,7 @@ def test_levels_at_which_friction_holds_the_shaft_are_left_out() -> None:
     found = influence(linear(friction_input=sw.friction.Coulomb(coulomb=0.09)), 15.0)
     assert found.preload is not None
     assert found.preload.levels.max() == 1.5
-    assert found.temperature.levels.min() > 273.15
+    assert found.temperature.levels.min() == 273.15  # at -20 degC friction is 2.5 times as large
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.rig.cycle import Factors, cycle_to
-from strainwave.rig.series import Series, analyse_series, read_loop, read_series, series_of
+from strainwave.rig.series import Series, analyse_series, read_series, series_of
 from strainwave.rig.virtual.printed import printed_gear
 
 UNCHANGED = Factors()
@@ -75,7 +75,6 @@ def test_document_t_rows_are_read_from_a_loop_at_the_input(tmp_path: Path) -> No
     loop = cycle_to(printed_gear(0), 0.36, side="input")
     columns = {"input_angle": loop.angle[::10], "input_torque": loop.torque[::10]}
     sw.Recording(columns, {"input_angle": "rad", "input_torque": "N.m"}).to_csv(tmp_path / "t.csv")
-    assert read_loop(tmp_path / "t.csv").side == "input"
     series = series_of([f"{tmp_path / 't.csv'},torque_max=0.36"])
     assert np.degrees(series.quantities["width"]) == pytest.approx(50.5, rel=1e-3)
     assert series.quantities["area"] == pytest.approx(0.3063483432, rel=2e-3)
