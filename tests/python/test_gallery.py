@@ -282,3 +282,32 @@ def test_the_tilt_actuator_shows_its_misalignment_as_the_closed_forms_say(galler
         assert found[name]["end"] == pytest.approx(90.0, abs=0.03)
         assert 1.0 < found[name]["peak"] < 1.05
     assert found["aligned"]["current"] < 1e-3
+
+
+def test_a_soft_reversal_swings_a_loop_on_the_output_alone(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """After small steps all rest; after large ones the loop on the arm swings, with the soft gear only, whatever the step."""
+    found = gallery("14")
+    swings, large = found["swings"], found["steps"] >= 0.4
+    soft = swings["document T's gear"]
+    assert (soft[~large, 0] < 1e-9).all()
+    assert np.ptp(soft[large], axis=0) == pytest.approx([0.0, 0.0], abs=5e-3)
+    assert soft[large, 0].min() > np.radians(0.5)
+    assert all((each[:, 0] < 1e-9).all() for name, each in swings.items() if name != "document T's gear")
+
+
+def test_the_limit_cycle_is_about_that_of_the_describing_function(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """A describing function leaves harmonics out: a tenth of amplitude and frequency is what it is usually good for."""
+    found = gallery("14")
+    run = found["runs"]["document T's gear"][-1][0].between(4.0, 6.0)
+    twist, rate = 0.5 * np.degrees(np.ptp(run["twist"])), found["swings"]["document T's gear"][-1, 1]
+    assert found["foretold"] == pytest.approx([twist, rate], rel=0.12)
+
+
+def test_small_commands_meet_a_stiff_gear(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Before its soft range begins the law is a spring, as `linearise` has it; large commands fall off no more."""
+    found = gallery("14")
+    answers = {size: np.abs(answer["output_angle"]) for size, answer in found["answers"].items()}
+    linear = np.abs(sw.linearise(found["slower"]).response(found["frequency"]))
+    assert answers[0.1] == pytest.approx(linear, rel=0.02)
+    assert (answers[1.0] > 0.99 * answers[0.1]).all()
+    assert answers[0.5].max() > 1.2

@@ -5,6 +5,7 @@ from strainwave.rig.budget import Budget, Contribution, angle_budget, stiffness_
 from strainwave.rig.catalogue_check import CatalogueCheck
 from strainwave.rig.comparison import Compared, Comparison, compare
 from strainwave.rig.couple import Couple, couple_of
+from strainwave.rig.influence import Influence
 from strainwave.rig.loop import Loop
 from strainwave.rig.lost_motion import Width
 from strainwave.rig.measurement import TorsionTest, loops, read_test
@@ -14,6 +15,7 @@ from strainwave.rig.recorded import loop_of, read_loop
 from strainwave.rig.regimes import Regime, Segmented, cycles, segment
 from strainwave.rig.result import Result
 from strainwave.rig.rig_file import load, rigs, write_rig
+from strainwave.rig.series import Series, analyse_series, read_series
 from strainwave.rig.setup import Camera, Masses, Rig, Value
 from strainwave.rig.sides import friction_at_rest, referred, without_friction
 from strainwave.rig.soft_spot import SoftSpot, soft_spots, words_on_band
@@ -21,6 +23,7 @@ from strainwave.rig.steps import Step
 from strainwave.rig.steps_file import append_step, read_steps, write_steps
 from strainwave.rig.stiffness import LocalStiffness, Stiffness, closure_of_secants, soft_parts
 from strainwave.rig.torque import Torque, arm, blank, torque_of
+from strainwave.rig.trend import Trend
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.printed import gear_of_regimes, printed_gear
 from strainwave.rig.virtual.render import Scene, render
@@ -43,6 +46,7 @@ __all__ = [
     "Finding",
     "Frame",
     "Image",
+    "Influence",
     "Loading",
     "LocalStiffness",
     "Loop",
@@ -56,16 +60,19 @@ __all__ = [
     "Row",
     "Scene",
     "Segmented",
+    "Series",
     "SoftSpot",
     "Stage",
     "Step",
     "Stiffness",
     "Torque",
     "TorsionTest",
+    "Trend",
     "Value",
     "VirtualTest",
     "Width",
     "analyse",
+    "analyse_series",
     "angle_budget",
     "append_step",
     "arm",
@@ -95,6 +102,7 @@ __all__ = [
     "reachable",
     "read_image",
     "read_loop",
+    "read_series",
     "read_steps",
     "read_test",
     "referred",
