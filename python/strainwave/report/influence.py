@@ -11,18 +11,8 @@ from typing import Any
 from strainwave.files.recording import Recording
 from strainwave.report import figures
 from strainwave.report import influence_figures as plots
-from strainwave.report.influence_claims import (
-    ARCMIN,
-    Entry,
-    chance,
-    change_of,
-    counts,
-    entries,
-    life,
-    over_size,
-    steps_and_falls,
-    told_of,
-)
+from strainwave.report.influence_claims import ARCMIN, Entry, counts, entries, life, over_size, steps_and_falls
+from strainwave.report.influence_trends import chance, change_of, told_of
 from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance

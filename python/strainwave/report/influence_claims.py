@@ -10,37 +10,32 @@ from math import degrees, exp
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.report.influence_trends import (
+    CONFIRMED,
+    CONTRADICTED,
+    HIGH,
+    HYSTERESIS,
+    IN_PART,
+    LIFE,
+    LOW,
+    MATERIAL,
+    PRELOAD,
+    RATIO,
+    TEMPERATURE,
+    TORQUE,
+    UNDECIDABLE,
+    by_series,
+    percent,
+    told_of,
+)
 from strainwave.report.typeset import fixed, number, quantity
 from strainwave.rig import influence as study
 from strainwave.rig.influence import OWN, SPECIMEN, CatalogueRow, Influence, Sweep, power
-from strainwave.rig.series import FACTORS, QUANTITIES
-from strainwave.rig.trend import Trend
 
 Array = NDArray[np.float64]
 
-CONFIRMED, IN_PART, CONTRADICTED, UNDECIDABLE = "confirmed", "confirmed in part", "contradicted", "undecidable"
-HIGH, LOW, HYSTERESIS = "High-stiffness regime", "Low-stiffness (reversal) regime", "Hysteresis"
-TORQUE, RATIO, MATERIAL = "Applied torque level", "Gear reduction ratio", "Flexspline material & heat treatment"
-PRELOAD, TEMPERATURE, LIFE = "Wave generator bearing preload", "Operating temperature", "Life of a unit"
 FAR_BELOW = 0.5  # ratio of stiffnesses: "remains low relative to", where document T speaks of an order of magnitude
 ARCMIN = 180.0 * 60.0 / np.pi
-
-# What of a series speaks to an entry: factor, quantity and the sign that document T expects; 0 for any change.
-SPEAKS: dict[tuple[str, str], tuple[tuple[str, str, int], ...]] = {
-    (TORQUE, HIGH): (("torque_max", "stiffness", 1), ("torque_max", "high_stiffness", 1)),
-    (TORQUE, LOW): (("torque_max", "low_stiffness", 1),),
-    (TORQUE, HYSTERESIS): (("torque_max", "area", 1), ("torque_max", "width", 1)),
-    (RATIO, HIGH): (("ratio", "stiffness", -1), ("ratio", "high_stiffness", -1)),
-    (RATIO, LOW): (("ratio", "low_stiffness", 0),),
-    (RATIO, HYSTERESIS): (("ratio", "area", 0), ("ratio", "width", 0)),
-    (MATERIAL, HIGH): (("modulus", "stiffness", 1), ("modulus", "high_stiffness", 1)),
-    (PRELOAD, HIGH): (("preload", "stiffness", 1), ("preload", "high_stiffness", 1)),
-    (PRELOAD, LOW): (("preload", "width", 1), ("preload", "friction", 1), ("preload", "low_stiffness", -1)),
-    (PRELOAD, HYSTERESIS): (("preload", "area", 1),),
-    (TEMPERATURE, HIGH): (("temperature", "stiffness", -1), ("temperature", "high_stiffness", -1)),
-    (TEMPERATURE, LOW): (("temperature", "friction", 0), ("temperature", "low_stiffness", 0)),
-    (TEMPERATURE, HYSTERESIS): (("temperature", "area", 0), ("temperature", "width", 0)),
-}
 
 
 @dataclass(frozen=True)
@@ -130,7 +125,7 @@ def entries(found: Influence) -> list[Entry]:
         ),
     ]
     return [
-        Entry(parameter, regime, words, *rule(found), *_by_series(found, parameter, regime))
+        Entry(parameter, regime, words, *rule(found), *by_series(found, parameter, regime))
         for parameter, regime, words, rule in rules
     ]
 
@@ -145,78 +140,6 @@ def life(found: Influence) -> Entry | None:
     words = "Future work may focus on … correlating the measured parameters with long-term wear and performance degradation."
     answer = "Document T measured nothing of it, and no model of this package wears."
     return Entry(LIFE, "All", words, UNDECIDABLE, answer, verdict, tuple(map(told_of, told)))
-
-
-# ---- What a series says ----------------------------------------------------------------------------------------------
-
-
-def _by_series(found: Influence, parameter: str, regime: str) -> tuple[str, tuple[str, ...]]:
-    speaking = [
-        (trend, sign)
-        for factor, quantity_, sign in SPEAKS.get((parameter, regime), ())
-        for trend in found.trends
-        if (trend.factor, trend.quantity) == (factor, quantity_)
-    ]
-    if not speaking:
-        return "", ()
-    return _verdict(speaking), tuple(told_of(trend) for trend, _ in speaking)
-
-
-def _verdict(speaking: list[tuple[Trend, int]]) -> str:
-    clear = [(trend, sign) for trend, sign in speaking if trend.significant and not trend.together_with]
-    if not clear:
-        return UNDECIDABLE
-    holds = {sign == 0 or np.sign(trend.slope.value) == sign for trend, sign in clear}
-    return IN_PART if len(holds) == 2 else CONFIRMED if True in holds else CONTRADICTED
-
-
-def told_of(trend: Trend) -> str:
-    """A trend in one sentence, with its interval and its probabilities."""
-    name, factor = QUANTITIES[trend.quantity][0], FACTORS[trend.factor]
-    if not np.isfinite(trend.slope.value):
-        return (
-            f"{name}: {factor.words} changed along with {_factors(trend.together_with)}, so their effects cannot be told apart."
-        )
-    change = change_of(trend)
-    found = f"{name} {change}" if trend.significant else f"{name}: no effect of {factor.words} told; it {change}"
-    others = [chance(p).removeprefix("= ") for p in (trend.corrected, trend.shuffled)]
-    tests = f"p {chance(trend.slope.p)}; {others[0]} for all tests together; {others[1]} by shuffling; {trend.points} loops"
-    doubt = f"; changed along with {_factors(trend.together_with)}, whose effect it may be" if trend.together_with else ""
-    return f"{found} ({tests}){doubt}."
-
-
-def chance(p: float) -> str:
-    """A probability, with its sign of equality.
-
-    >>> chance(0.0312), chance(2e-9)
-    ('= 0.031', '< 0.0001')
-    """
-    return f"= {number(p, 2)}" if p >= 1e-4 else "< 0.0001"
-
-
-def _factors(names: tuple[str, ...]) -> str:
-    return " and ".join(FACTORS[each].words for each in names)
-
-
-def change_of(trend: Trend) -> str:
-    """The coefficient with its interval, in words."""
-    factor, (low, high) = FACTORS[trend.factor], trend.interval
-    if trend.law == "power":
-        return (
-            f"goes with the power {number(trend.slope.value, 3)} of the {factor.words}, "
-            f"95 %: {number(low, 3)} to {number(high, 3)}"
-        )
-    if trend.law == "linear":
-        unit, step = QUANTITIES[trend.quantity][1] or "1", factor.step
-        ends = " to ".join(quantity(step * end, unit) for end in (low, high))
-        return f"changes by {quantity(step * trend.slope.value, unit)} per {factor.step_words or factor.unit}, 95 %: {ends}"
-    relative = [percent(exp(factor.step * each) - 1.0, 3) for each in (trend.slope.value, low, high)]
-    return f"changes by {relative[0]} per {factor.step_words}, 95 %: {relative[1]} to {relative[2]}"
-
-
-def percent(share: float, digits: int = 2) -> str:
-    """A share in per cent."""
-    return f"{number(100.0 * share, digits)} %"
 
 
 # ---- Torque level ----------------------------------------------------------------------------------------------------

@@ -39,8 +39,7 @@ def loops_figure(loops: Sequence[Cycle], name: str) -> str:
         axes = figure.subplots()
         for loop, shade in zip(reversed(loops), reversed(shades), strict=True):
             label = quantity(loop.peak, "N.m", 3)
-            closed = slice(None, None, 4)
-            axes.plot(angle * loop.angle[closed], loop.torque[closed], color=LIGHT["model"], alpha=float(shade), label=label)
+            axes.plot(angle * loop.angle, loop.torque, color=LIGHT["model"], alpha=float(shade), label=label)
         where = "output" if loops[0].side == "output" else "input"
         figures.label_axes(axes, f"torque on the {where}", "N.m", f"angle of the {where} [{unit}]", "1")
         figures.legend(figure, axes)

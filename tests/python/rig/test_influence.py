@@ -11,7 +11,7 @@ from markupsafe import escape
 from strainwave.files.gear_set import GearSet
 from strainwave.report import influence_claims as claims
 from strainwave.report.influence import influence_report, summary, tables
-from strainwave.report.influence_claims import CONFIRMED, CONTRADICTED, IN_PART, UNDECIDABLE
+from strainwave.report.influence_trends import CONFIRMED, CONTRADICTED, IN_PART, SPEAKS, UNDECIDABLE
 from strainwave.rig.cycle import cycle_to
 from strainwave.rig.influence import (
     OWN,
@@ -142,7 +142,7 @@ def test_what_cannot_be_varied_is_refused(coulomb: float, torque: float | None, 
 def test_each_entry_has_a_verdict_a_number_and_words(found: Influence) -> None:
     entries = claims.entries(found)
     assert len(entries) == 16
-    assert {(each.parameter, each.regime) for each in entries} == set(claims.SPEAKS) | {
+    assert {(each.parameter, each.regime) for each in entries} == set(SPEAKS) | {
         (claims.MATERIAL, claims.LOW),
         (claims.MATERIAL, claims.HYSTERESIS),
     }
