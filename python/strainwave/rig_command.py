@@ -128,11 +128,11 @@ def measure(
     from strainwave.rig.guide import Settling
 
     settling = Settling(_count("--pictures", pictures), _positive("--interval", interval), _positive("--patience", patience))
+    bench = _rig_of_test(out, name)
+    made = _plan(bench, torque, step, positions, units, cycles, unequal)
+    source = _source(camera, bench, made.steps, gear)
     with making(out), claiming(out):
-        bench = _rig_of_test(out, name)
-        made = _plan(bench, torque, step, positions, units, cycles, unequal)
         _keep_plan(made, out)
-        source = _source(camera, bench, made.steps, gear)
         written.append(out)
         done = _conduct(Console(stderr=True), out, bench, made, source, settling)
     if done < len(made.steps):
@@ -374,7 +374,10 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Sour
 
     if camera == "virtual":
         return rehearsal(bench, steps, gear_named(gear))
-    return Device(int(camera)) if camera.isdecimal() else Filled(Path(camera))
+    try:
+        return Device(int(camera)) if camera.isdecimal() else Filled(Path(camera))
+    except ImportError as error:
+        raise ValueError(f"--camera {camera}: {error}") from None
 
 
 def _keep_plan(made: Plan, out: Path) -> None:

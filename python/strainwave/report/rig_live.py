@@ -67,6 +67,11 @@ def plot_lines(points: Sequence[Point], width: int, letters: str) -> list[str]:
     return loop_lines(angle, np.array([point.torque for point in told], float), width, letters)
 
 
+def _typed() -> str:
+    """A line of the standard input."""
+    return input()
+
+
 @dataclass
 class Terminal:
     """Speaks with whoever stands at the rig, over a terminal or a pipe.
@@ -83,7 +88,7 @@ class Terminal:
     steps: int
     change: Callable[[Step, Step | None], str]
     torque: Callable[[Step], float]
-    read: Callable[[], str] = input
+    read: Callable[[], str] = _typed
     before: dict[int, Look] = field(default_factory=dict)
 
     def ask(self, step: Step, before: Step | None) -> str:

@@ -23,20 +23,15 @@ class Source(Protocol):
         """Puts a new picture into a folder and returns its path, None if there is none yet."""
 
 
-@dataclass
 class Device:
-    """A camera that opencv can open, by its number."""
+    """A camera that opencv can open, by its number.
 
-    number: int
-    capture: Any = None
+    Raises:
+        ImportError: opencv is not installed
+        OSError: the camera cannot be opened
+    """
 
-    def take(self, folder: Path) -> Path:
-        """A picture of now, as PNG.
-
-        Raises:
-            ImportError: opencv is not installed
-            OSError: the camera cannot be opened, or gives no picture
-        """
+    def __init__(self, number: int) -> None:
         try:
             import cv2
         except ImportError:
@@ -44,11 +39,13 @@ class Device:
                 "a camera needs opencv, which is not installed; install strainwave[video], "
                 "or let another program fill a folder and give that folder as --camera"
             ) from None
-        if self.capture is None:
-            self.capture = cv2.VideoCapture(self.number)
-            if not self.capture.isOpened():
-                self.capture = None
-                raise OSError(f"camera {self.number} cannot be opened; is it plugged in, and in use by no other program?")
+        self.number = number
+        self.capture: Any = cv2.VideoCapture(number)
+        if not self.capture.isOpened():
+            raise OSError(f"camera {number} cannot be opened; is it plugged in, and in use by no other program?")
+
+    def take(self, folder: Path) -> Path:
+        """A picture of now, as PNG; `OSError` if the camera gives none."""
         came, picture = self.capture.read()
         if not came:
             raise OSError(f"camera {self.number} gives no picture; is it still plugged in?")

@@ -1,0 +1,376 @@
+"""The command `strainwave rig`: plans, guides, follows, analyses and simulates torsion tests."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.files.recording import Recording
+from strainwave.rig.plan import plan
+from strainwave.rig.steps_file import read_steps, write_steps
+
+from tests.python.command import Result, refused, strainwave
+
+PUBLISHED = Path(sw.__file__).with_name("published")
+LOOP, GEAR = PUBLISHED / "torsional-stiffness-loop.csv", PUBLISHED / "torsional-stiffness.toml"
+SMALL = ("--torque", 0.1, "--positions", "0")  # nine steps
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A virtual test of one position with 29 steps."""
+    folder = tmp_path_factory.mktemp("test")
+    result = strainwave("rig", "simulate", "--positions", 0, "--out", "test", folder=folder)
+    assert result.returncode == 0, result.stderr
+    return folder / "test"
+
+
+@pytest.fixture(scope="module")
+def analysed(made: Path) -> Result:
+    """The analysis of it, in `found` beside it."""
+    result = strainwave("rig", "analyse", "test", "--gear", GEAR, "--out", "found", folder=made.parent)
+    assert result.returncode == 0, result.stderr
+    return result
+
+
+@pytest.fixture(scope="module")
+def short(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A virtual test of nine steps."""
+    folder = tmp_path_factory.mktemp("short")
+    assert strainwave("rig", "simulate", *SMALL, "--out", "test", folder=folder).returncode == 0
+    return folder / "test"
+
+
+@pytest.fixture
+def test(short: Path, tmp_path: Path) -> Path:
+    """The same, to be changed at will."""
+    return Path(shutil.copytree(short, tmp_path / "test"))
+
+
+@pytest.fixture
+def typed(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    """What is answered at the rig, one after the other; then nobody is there any more."""
+    answers: list[str] = []
+
+    def read() -> str:
+        if not answers:
+            raise EOFError
+        return answers.pop(0)
+
+    monkeypatch.setattr("builtins.input", read)
+    return answers
+
+
+# ---- plan ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_plan_is_printed_step_by_step_and_written(tmp_path: Path) -> None:
+    result = strainwave("rig", "plan", "--units", "A,B", "--out", "plan.csv", folder=tmp_path)
+    assert result.returncode == 0
+    assert "0.36 N.m is no step of these masses" in result.stdout
+    assert "positive pans: lay 7 x 25 g on each" in result.stdout
+    expected = plan(sw.rig.load("couple-rig"), units=["A", "B"])
+    assert tuple(read_steps(tmp_path / "plan.csv")) == expected.steps
+    rows = [line for line in result.stdout.splitlines() if line.lstrip()[:1].isdecimal() and "pans" in line]
+    assert len(rows) == len(expected.steps) == 2 * 3 * 29
+
+
+def test_options_change_the_plan(tmp_path: Path) -> None:
+    coarse = strainwave("rig", "plan", "--positions", "0", "--step", 0.1, "--cycles", 2, "--unequal", folder=tmp_path)
+    assert "+0.3677" in coarse.stdout
+    assert "side force" in coarse.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (("--rig", "nope"), 'no rig "nope" comes with the package'),
+        (("--rig", "nope.toml"), "nope.toml"),
+        (("--torque", "-1"), "peak = -1.0 N.m must lie in (0, inf)"),
+        (("--torque", "9"), "do not make"),
+        (("--positions", "0,left"), "--positions 0,left: write numbers with commas between"),
+        (("--positions", "0,0"), "must each name a thing once"),
+        (("--cycles", "0"), "cycles = 0 must be 1 or more"),
+        (("--out", "plan.txt"), "--out plan.txt must end in .csv"),
+    ],
+)
+def test_a_plan_that_cannot_be_made_is_refused(tmp_path: Path, options: tuple[str, ...], expected: str) -> None:
+    refused(tmp_path, ("rig", "plan", *options), expected)
+
+
+# ---- simulate and analyse ----------------------------------------------------------------------------------------------
+
+
+def test_a_virtual_test_gives_back_the_row_of_document_t(made: Path, analysed: Result) -> None:
+    out = made.parent / "found"
+    names = {"report.html", "results.json", "loop-0deg.csv", "loop-0deg.parquet", "angles.csv", "angles.parquet"}
+    assert {path.name for path in out.iterdir()} == names
+    found = json.loads((out / "results.json").read_text())
+    (loop,) = found["loops"]
+    printed = {"positive_unloading": 4.51, "negative_loading": 0.31, "negative_unloading": 4.85, "positive_loading": 0.30}
+    for regime, value in printed.items():
+        softest = loop["stiffness"][regime]["softest"]
+        assert softest["low"] < value < softest["high"], regime
+        assert abs(softest["value"] / value - 1.0) < 0.01
+    assert np.degrees(loop["width_at_zero"]["low"]) < 50.5 < np.degrees(loop["width_at_zero"]["high"])
+    assert found["deviations_from_plan"] == []
+    steps = read_steps(made)
+    assert set(found["photographs"]) == {step.image for step in steps}
+    assert f"for a twin: strainwave twin --gear {GEAR} --torsion found/loop-0deg.csv" in analysed.stdout
+
+
+def test_the_photographs_stay_as_they_are_and_the_report_has_their_hashes(test: Path, tmp_path: Path) -> None:
+    before = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in test.iterdir()}
+    assert strainwave("rig", "analyse", "test", folder=tmp_path).returncode == 0
+    after = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in test.iterdir() if path.is_file()}
+    assert after == before
+    html = (test / "analysis" / "report.html").read_text()
+    assert all(digest in html for name, digest in before.items() if name.endswith(".png") or name in ("steps.csv", "rig.toml"))
+
+
+def test_the_loop_feeds_a_twin_without_retyping(made: Path, analysed: Result) -> None:
+    said = next(line for line in analysed.stdout.splitlines() if line.startswith("for a twin: "))
+    result = strainwave(*said.removeprefix("for a twin: strainwave ").split(), folder=made.parent)
+    assert result.returncode == 0, result.stderr
+    assert (made.parent / "twin" / "gear.toml").exists()
+
+
+def test_a_loop_that_others_measured_is_analysed(tmp_path: Path) -> None:
+    result = strainwave("rig", "analyse", LOOP, "--gear", GEAR, "--rated-torque", 0.36, folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    (loop,) = json.loads((tmp_path / "out" / "rig" / "results.json").read_text())["loops"]
+    assert np.degrees(loop["hysteresis_loss"]["value"]) == pytest.approx(50.5, abs=1e-3)
+    assert loop["area"]["value"] == pytest.approx(0.3063483432, rel=1e-4)
+    again = Recording.read(tmp_path / "out" / "rig" / "loop-0deg.csv")
+    assert np.allclose(again.values("input_angle", "deg"), Recording.read(LOOP)["input_angle"])
+
+
+def test_loops_of_several_files_are_compared(tmp_path: Path) -> None:
+    other = Recording.read(LOOP)
+    Recording({"input_angle": 1.02 * other["input_angle"], "input_torque": other["input_torque"]}, other.units).to_csv(
+        tmp_path / "other.csv"
+    )
+    result = strainwave("rig", "analyse", LOOP, "other.csv", "--positions", "0,60", folder=tmp_path)
+    assert "Flexspline at 60°" in result.stdout
+    assert "they differ" in result.stdout
+
+
+def test_friction_from_a_table_is_taken_out(tmp_path: Path) -> None:
+    speed = np.array([1.0, 2.0, 5.0, 10.0, 20.0])
+    Recording({"speed": speed, "torque": 0.02 + 1e-3 * speed}, {"speed": "rad/s", "torque": "N.m"}).to_csv(
+        tmp_path / "friction.csv"
+    )
+    result = strainwave("rig", "analyse", LOOP, "--gear", GEAR, "--friction", "friction.csv", folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "±0.02 N.m at the input, taken out" in result.stdout.replace("·", ".")
+
+
+def test_departures_from_the_plan_are_told(test: Path, tmp_path: Path) -> None:
+    steps = read_steps(test)
+    write_steps([step for step in steps if step.number != 3], test / "steps.csv")
+    result = strainwave("rig", "analyse", "test", folder=tmp_path)
+    assert "Step 3 of the plan is skipped" in result.stdout
+
+
+def test_a_photograph_that_tells_nothing_is_left_out_and_told(test: Path, tmp_path: Path) -> None:
+    (test / "step-004.png").write_bytes(b"not a picture")
+    result = strainwave("rig", "analyse", "test", folder=tmp_path)
+    assert result.returncode == 0
+    assert "step-004.png" in result.stdout
+    assert len(Recording.read(test / "analysis" / "loop-0deg.csv")) == 8
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("nowhere",), "nowhere: there is no such folder or file"),
+        ((".",), "holds no steps.csv"),
+        (("test", "--reference", "x.png"), 'reference = "x.png" is no photograph of a step'),
+        (("test", "--rig", "nope"), 'no rig "nope"'),
+        (("test", "--gear", "nope"), 'no set "nope"'),
+        (("test", "--rated-torque", "-1"), "rated_torque = -1.0 N.m must lie in (0, inf)"),
+        (("test", "--friction", "x.csv"), "needs a gear"),
+        (("test", "--positions", "1,2"), "there are 2 positions for 0 files"),
+        ((LOOP, "--reference", "x.png"), "are for folders of tests"),
+        ((GEAR,), "torsional-stiffness.toml"),
+    ],
+)
+def test_what_cannot_be_analysed_is_refused(test: Path, tmp_path: Path, arguments: tuple[object, ...], expected: str) -> None:
+    refused(tmp_path, ("rig", "analyse", *arguments), expected)
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("mass_positive [kg]", "mass_positive [m]"), "steps.csv"),
+        (("mass_positive [kg]", "mass_positive"), 'column "mass_positive" has no unit'),
+        (("0.1,", "-0.1,"), "mass_positive"),
+        (("0.1,", "much,"), '"much" is not a number'),
+    ],
+)
+def test_a_record_that_is_wrong_is_refused_with_its_place(
+    test: Path, tmp_path: Path, change: tuple[str, str], expected: str
+) -> None:
+    record = test / "steps.csv"
+    assert change[0] in record.read_text()
+    record.write_text(record.read_text().replace(*change, 1))
+    refused(tmp_path, ("rig", "analyse", "test"), "steps.csv", expected)
+
+
+def test_photographs_that_are_not_there_are_refused_where_none_is_left(test: Path, tmp_path: Path) -> None:
+    for path in test.glob("*.png"):
+        path.unlink()
+    refused(tmp_path, ("rig", "analyse", "test"), "no position has two steps with torque and angle")
+
+
+def test_results_are_whole_or_not_there(made: Path, tmp_path: Path) -> None:
+    (tmp_path / "found" / "report.html").mkdir(parents=True)
+    refused(tmp_path, ("rig", "analyse", made, "--out", "found"), "report.html cannot be written: it is a folder")
+
+
+# ---- measure ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_test_is_rehearsed_broken_off_and_resumed(tmp_path: Path, typed: list[str]) -> None:
+    measure = ("rig", "measure", "--camera", "virtual", "--interval", 1e-6, *SMALL, "--out", "test")
+    typed += ["", "t 23.5", "", "q"]
+    first = strainwave(*measure, folder=tmp_path)
+    assert first.returncode == 0, first.stderr
+    assert "stopped after step 3 of 9" in first.stdout
+    assert "Step 1 of 9: flexspline at 0 degrees; positive pans: lay 2 x 25 g on each" in first.stderr
+    assert [step.temperature for step in read_steps(tmp_path / "test")] == [None, pytest.approx(296.65), None]
+    typed += [""] * 6
+    second = strainwave(*measure, folder=tmp_path)
+    assert "all 9 steps are made" in second.stdout
+    assert "Step 4 of 9" in second.stderr
+    assert "Step 3 of 9" not in second.stderr
+    steps = read_steps(tmp_path / "test")
+    assert [step.image for step in steps] == [f"{number:04}.png" for number in range(1, 10)]
+    assert {path.name for path in (tmp_path / "test").iterdir()} == {
+        *(str(s.image) for s in steps),
+        "rig.toml",
+        "steps.csv",
+        "plan.csv",
+    }
+    assert strainwave("rig", "analyse", "test", folder=tmp_path).returncode == 0
+
+
+def test_another_plan_does_not_go_on_with_a_test(tmp_path: Path, typed: list[str]) -> None:
+    measure = ("rig", "measure", "--camera", "virtual", "--interval", 1e-6, "--out", "test")
+    typed += ["", "q"]
+    assert strainwave(*measure, *SMALL, folder=tmp_path).returncode == 0
+    refused(tmp_path, (*measure, "--positions", "0"), "plan.csv holds another plan")
+
+
+def test_a_folder_that_another_program_fills_is_a_camera(tmp_path: Path, short: Path) -> None:
+    camera = tmp_path / "camera"
+    camera.mkdir()
+
+    def filled() -> str:  # the other program takes a picture while the guide waits for the next
+        def take() -> None:
+            time.sleep(0.05)
+            shutil.copyfile(short / "step-001.png", camera / f"{len(list(camera.iterdir()))}.png")
+
+        threading.Thread(target=take).start()
+        return ""
+
+    with pytest.MonkeyPatch.context() as patch:
+        answers = iter([filled, lambda: "q"])
+        patch.setattr("builtins.input", lambda: next(answers)())
+        options = ("--camera", "camera", "--pictures", 1, "--interval", 0.01, "--out", "test")
+        result = strainwave("rig", "measure", *options, *SMALL, folder=tmp_path)
+    assert "stopped after step 1 of 9" in result.stdout
+    assert (tmp_path / "test" / "0001.png").read_bytes() == (short / "step-001.png").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (("--camera", "nowhere"), "--camera nowhere: there is no such folder"),
+        (("--camera", "virtual", "--gear", "nope"), 'no set "nope"'),
+        (("--camera", "virtual", "--positions", "30"), "position = 30 degrees must be 0, 60 or 120"),
+        (("--camera", "virtual", "--interval", "0"), "--interval 0 s must be above 0"),
+        (("--camera", "virtual", "--pictures", "0"), "--pictures 0 must be 1 or more"),
+        (("--camera", "virtual", "--rig", "nope"), 'no rig "nope"'),
+    ],
+)
+def test_a_test_that_cannot_be_made_is_refused_and_leaves_nothing(
+    tmp_path: Path, options: tuple[str, ...], expected: str
+) -> None:
+    refused(tmp_path, ("rig", "measure", "--out", "test", *options), expected)
+
+
+def test_a_camera_without_opencv_says_what_to_install(
+    tmp_path: Path, typed: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    typed.append("")
+    result = strainwave("rig", "measure", "--camera", 0, *SMALL, "--out", "test", folder=tmp_path)
+    assert result.returncode == 2
+    assert "install strainwave[video]" in result.stderr.splitlines()[-1]
+
+
+def test_a_guide_that_is_killed_leaves_what_was_done(tmp_path: Path) -> None:
+    command = [
+        sys.executable,
+        "-m",
+        "strainwave",
+        "rig",
+        "measure",
+        "--camera",
+        "virtual",
+        "--interval",
+        "0.001",
+        "--out",
+        "test",
+    ]
+    with subprocess.Popen(
+        [*command, *map(str, SMALL)], cwd=tmp_path, stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdin is not None
+        assert process.stderr is not None
+        process.stdin.write("\n\n")
+        process.stdin.flush()
+        while "0002.png" not in (line := process.stderr.readline()):
+            assert line
+        process.kill()
+    assert [step.image for step in read_steps(tmp_path / "test")] == ["0001.png", "0002.png"]
+
+
+# ---- watch -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_folder_is_followed(made: Path, tmp_path: Path) -> None:
+    result = strainwave("rig", "watch", made, "--idle", 1e-3, "--interval", 1e-3, folder=tmp_path)
+    assert result.returncode == 0
+    lines = result.stderr.splitlines()
+    assert len(lines) == 29
+    assert lines[0].startswith("step-001.png  +0.343 N·m  +0.0000°")
+    assert "29 photographs, 29 of them told an angle" in result.stdout
+
+
+def test_without_a_record_the_plan_tells_the_torque(test: Path, tmp_path: Path) -> None:
+    (test / "steps.csv").unlink()
+    shutil.copyfile(test / "step-001.png", test / "step-003.png")
+    result = strainwave("rig", "watch", "test", "--idle", 0.2, "--interval", 1e-3, folder=tmp_path)
+    assert "step-002.png  +0.049 N·m  −0.6" in result.stderr
+    assert "is the same picture as" in result.stderr
+    (test / "plan.csv").unlink()
+    result = strainwave("rig", "watch", "test", "--idle", 0.2, "--interval", 1e-3, folder=tmp_path)
+    assert "step-002.png  torque not known" in result.stderr
+
+
+def test_a_folder_that_cannot_be_followed_is_refused(test: Path, tmp_path: Path) -> None:
+    refused(tmp_path, ("rig", "watch", "nowhere"), "nowhere: there is no such folder")
+    refused(tmp_path, ("rig", "watch", "test", "--idle", "0"), "--idle 0 s must be above 0")
+    refused(tmp_path, ("rig", "watch", "test", "--plan", "nope.csv"), "nope.csv")
