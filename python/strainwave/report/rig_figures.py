@@ -142,8 +142,8 @@ def _dimension(axes: Axes, width: Width, share: float) -> None:
     axes.annotate("", xy=start, xytext=stop, arrowprops=arrow)
     middle = ((1.0 - share) * width.angle[0] + share * width.angle[1], width.torque)
     place: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "bottom", "fontweight": "bold"}
-    axes.annotate(width.letter, middle, (0.0, 2.5), color=ink, **place)
-    if width.name:
+    if width.name:  # the second arrow of one width needs no letter of its own
+        axes.annotate(width.letter, middle, (0.0, 2.5), color=ink, **place)
         axes.plot([], [], color=ink, linewidth=0.9, label=f"{width.letter}: {width.name}")
 
 

@@ -53,7 +53,7 @@ def _loading(rig: Rig) -> Iterator[Row]:
 
 def _masses(rig: Rig) -> Iterator[Row]:
     for masses in rig.masses:
-        yield _row(f"Masses, {masses.count} of", Value(masses.mass, masses.sigma, masses.source), 1e3, "g each")
+        yield _row(f"{masses.count} masses of", Value(masses.mass, masses.sigma, masses.source), 1e3, "g each")
 
 
 def _target(rig: Rig) -> Iterator[Row]:
@@ -150,11 +150,11 @@ def centre_words(angles: Sequence[Angles]) -> list[str]:
     words = []
     for each in angles:
         if each.centre is None:
-            words.append(f"{each.reference}: the turn is too small to tell about which point the disk turned.")
+            words.append(f"With {each.reference} at 0: the turn is too small to tell about which point the disk turned.")
         else:
             x, y, rms = each.centre
             words.append(
-                f"{each.reference}: the disk turned about ({fixed(x, 1)}, {fixed(y, 1)}) px; "
+                f"With {each.reference} at 0: the disk turned about ({fixed(x, 1)}, {fixed(y, 1)}) px; "
                 f"the markers keep to circles about it within {fixed(rms, 3)} px rms."
             )
     return words
