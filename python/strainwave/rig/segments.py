@@ -17,7 +17,8 @@ SHORTEST = 0.04  # of the torque of a regime: a shorter stretch is none
 CANDIDATES = 24  # places tried for a knee
 SEARCHED = 500  # points, at most, by which the first place of a knee is found; it is then moved by all
 PRICE = 2.0  # per parameter, in logarithms of the number of points: a knee that noise brings forth is to be rare
-ROUNDING = 1e-7  # of the span: what residuals may be by the digits of a file
+BLUNT = 3e-5  # of the span of the angle: residuals so small call for no knee; the digits of a file leave as much
+ROUNDING = 1e-7  # of the span: a point so near to a knee lies on it
 ROUNDS = 25  # of Gauss and Newton
 
 
@@ -78,10 +79,11 @@ def fit_segments(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: 
         known = tried[-1].knees if tried else np.empty(0)
         tried.append(_best(torque, angle, variance if stated else np.ones(len(torque)), count, known))
     n = len(torque)
-    exact = n * (ROUNDING * float(np.ptp(angle))) ** 2
+    exact = (BLUNT * float(np.ptp(angle))) ** 2
 
     def price(each: _Chain) -> float:
-        misfit = each.misfit if stated else n * np.log(max(each.misfit, exact) / n)
+        squares = each.residual**2
+        misfit = np.sum(squares / np.maximum(variance, exact)) if stated else n * np.log(max(float(squares.mean()), exact))
         return float(misfit + PRICE * np.log(n) * each.parameters)
 
     best = min(tried, key=price)

@@ -56,7 +56,7 @@ def read_steps(path: str | Path) -> list[Step]:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "steps.csv")
     ...     _ = path.write_text("number,mass_positive [g],image\\n1,350,a.png\\n2,300,b.png\\n")
-    ...     [(step.mass_positive, step.image) for step in read_steps(path)]
+    ...     [(round(step.mass_positive, 6), step.image) for step in read_steps(path)]
     [(0.35, 'a.png'), (0.3, 'b.png')]
     """
     table = open_csv(_file(path))
