@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -187,7 +188,7 @@ def _out_of_order(frames: list[Frame]) -> list[Frame]:
     known: dict[str, str] = {}
     for i, frame in enumerate(frames):
         doubts = []
-        if i and by_number(frame.name) < by_number(frames[i - 1].name):
+        if i and _numbered_alike(frame.name, frames[i - 1].name) and by_number(frame.name) < by_number(frames[i - 1].name):
             doubts.append(f"stands after {quoted(frames[i - 1].name)}, before it by its name")
         earlier = next((each for each in reversed(frames[:i]) if each.taken is not None), None)
         if earlier is not None and frame.taken is not None and earlier.taken is not None and frame.taken < earlier.taken:
@@ -198,6 +199,11 @@ def _out_of_order(frames: list[Frame]) -> list[Frame]:
         if doubts:
             frames[i] = replace(frame, warnings=(*frame.warnings, *doubts))
     return frames
+
+
+def _numbered_alike(one: str, other: str) -> bool:
+    """Whether names differ in their numbers alone, so that these tell an order."""
+    return re.sub(r"\d+", "0", one.casefold()) == re.sub(r"\d+", "0", other.casefold())
 
 
 def _unlike(sights: Sequence[_Sight]) -> list[tuple[str, ...]]:

@@ -263,6 +263,11 @@ def test_images_out_of_order_or_twice_are_warned_of(tmp_path: Path) -> None:
     assert 'is the same picture as "IMG_10.png"' in twice[2].warnings
 
 
+def test_names_that_are_no_numbers_tell_no_order() -> None:
+    assert not any(frame.warnings for frame in follow([sight(0.0, "start.png"), sight(0.3, "end.png")]).frames)
+    assert follow([sight(0.0, "10.png"), sight(0.3, "9.png")]).frames[1].warnings
+
+
 def test_files_that_cannot_be_read_are_faults_of_their_images(tmp_path: Path) -> None:
     Pillow.fromarray(picture(target(0.0, **PAIR), **SMALL)).save(tmp_path / "a.png")
     (tmp_path / "b.png").write_bytes(b"")
