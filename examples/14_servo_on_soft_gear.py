@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from scipy.optimize import fsolve
 
 gear = sw.rig.printed_gear(0).replace(damping=20.0)
-ratio, width = gear.kinematics.ratio, np.degrees(gear.hysteresis.lost_motion)  # 50.5 deg at the input
+ratio, width = gear.kinematics.ratio, 0.505  # deg at the output; 50.5 deg at the input, Table 2
 motor, arm = sw.motor.TorqueSource(inertia=1e-4), sw.loads.Inertia(inertia=5.0)
 loop = sw.control.PositionSpeed(position_gain=40.0, speed_proportional=0.05, speed_integral=1.0, limit=5.0, feedback="output")
 drive = sw.Drive(gear=gear, motor=motor, control=loop, load=arm)

@@ -89,7 +89,9 @@ def test_a_drive_that_twists_its_spring_too_far_is_told_so() -> None:
 def test_the_ratio_of_its_spring_has_to_be_that_of_the_gear() -> None:
     spring = Backlash(law=made(MultiCompliance), clearance=PLAY)
     kinematics = sw.kinematics.PlainRatio(reduction=80.0)
-    with pytest.raises(ValueError, match=r"^gear: stiffness\.reduction = 100 must be 80, the ratio of kinematics without its sign"):
+    with pytest.raises(
+        ValueError, match=r"^gear: stiffness\.reduction = 100 must be 80, the ratio of kinematics without its sign"
+    ):
         sw.Gear(kinematics=kinematics, stiffness=spring)
     assert sw.Gear(kinematics=kinematics, stiffness=spring.replace(law=spring.law.replace(reduction=80.0)))
 
