@@ -84,14 +84,12 @@ def simulate(
 
     from strainwave.rig.reading import PLAN
     from strainwave.rig.steps_file import write_steps
-    from strainwave.rig.virtual.rehearsal import gear_named, usual_scene
+    from strainwave.rig.virtual.rehearsal import gear_named
     from strainwave.rig.virtual.test import simulate_test
 
     bench = _rig(name)
     steps = _plan(bench, torque, step, positions, units, cycles, unequal).steps
-    test = simulate_test(
-        gear_named(gear), bench, steps, folder=out, scene=usual_scene(bench), seed=seed, progress=sys.stderr.isatty()
-    )
+    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed, progress=sys.stderr.isatty())
     write_steps(steps, out / PLAN)
     print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
     print(f"to analyse it: strainwave rig analyse {out}")

@@ -31,7 +31,7 @@ from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
 from tests.reference_drive import DRIVE, command
-from tests.strategies import built, log_uniform, made, models, signed
+from tests.strategies import built, log_uniform, made, models, signed, suited
 
 Array = NDArray[np.float64]
 
@@ -410,7 +410,8 @@ def test_a_smaller_misalignment_leaves_less_error(combine: str, order: int, size
 def test_an_error_beside_noise_of_no_amplitude_is_the_error_alone(error: Any) -> None:
     silent = Stochastic(amplitude=0.0, speed_sensitivity=10.0, seed=3)
     assert silent.error(TURN).tolist() == silent.slope(TURN).tolist() == len(TURN) * [0.0]
-    drive = STEADY_DRIVE.replace(gear=STEADY_DRIVE.gear.replace(kinematic_error=error))
+    gear = STEADY_DRIVE.gear
+    drive = STEADY_DRIVE.replace(gear=gear.replace(kinematic_error=suited(error, gear.kinematics)))
     assert drive.replace(gear=drive.gear.replace(kinematic_noise=silent)).rest() == drive.rest()
 
 

@@ -311,3 +311,15 @@ def test_small_commands_meet_a_stiff_gear(gallery: Callable[[str], dict[str, Any
     assert answers[0.1] == pytest.approx(linear, rel=0.02)
     assert (answers[1.0] > 0.99 * answers[0.1]).all()
     assert answers[0.5].max() > 1.2
+
+
+def test_a_gear_comes_back_from_its_photographs(gallery: Callable[[str], dict[str, Any]]) -> None:
+    """Dry friction takes its torque times the angle that the input slides, no more, from the loop."""
+    found = gallery("15")
+    model, gear = found["model"], found["gear"]
+    assert found["held"]["found"] == pytest.approx(found["held"]["true"], rel=0.01)
+    for stiffness in ("k1", "k2", "k3"):
+        assert getattr(model.stiffness, stiffness) == pytest.approx(getattr(gear.stiffness, stiffness), rel=0.01)
+    measured, clean = (sw.rig.analyse(found[name]).area.value for name in ("loop", "clean"))
+    slid = 2.0 * np.ptp(found["loop"].angle)  # once to each end; where it turns back it rests
+    assert measured - clean == pytest.approx(0.02 * slid, rel=0.02)

@@ -86,7 +86,8 @@ def misalignment_report(found: MisalignmentStudy, provenance: Provenance | None 
 
 def summary(found: MisalignmentStudy) -> str:
     """What the study found, as lines of text."""
-    return "\n".join([*_ramp_lines(found), "", *_level_lines(found), "", *_recovery_lines(found), "", *_claim_lines(found)])
+    lines = [*_ramp_lines(found), "", *_level_lines(found), "", *_recovery_lines(found), "", *_claim_lines(found)]
+    return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")  # what a terminal shows is also searched and copied
 
 
 def setting(found: MisalignmentStudy) -> dict[str, str]:

@@ -15,7 +15,7 @@ from strainwave.rig.sources import Virtual
 from strainwave.rig.steps import Step
 from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.printed import printed_gear
-from strainwave.rig.virtual.render import Scene
+from strainwave.rig.virtual.render import usual_scene
 
 DOCUMENT_T = "document-t"  # the gears whose loops are the rows of document T's Table 2
 
@@ -29,11 +29,6 @@ def gear_named(name: str) -> Gear | Callable[[Step], Gear]:
     if name == DOCUMENT_T:
         return lambda step: printed_gear(round(degrees(step.position)))
     return GearSet.read(name).gear
-
-
-def usual_scene(rig: Rig) -> Scene:
-    """What the camera of a rig sees: two markers, noise of an 8-bit camera, light from one side."""
-    return Scene(camera=rig.camera, gradient=0.3, noise=4.0 / 255.0)
 
 
 def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gear], seed: int | None = None) -> Virtual:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.rig.setup import Camera
+from strainwave.rig.setup import Camera, Rig
 
 Array = NDArray[np.float64]
 FINE = 4  # cells of a pixel, each way, on which edges are computed
@@ -89,6 +89,16 @@ class Scene:
         cosine, sine = np.cos(angle), np.sin(angle)  # against the clock, y pointing down
         turned: Array = middle + at_zero @ np.array([[cosine, -sine], [sine, cosine]])
         return turned
+
+
+def usual_scene(rig: Rig) -> Scene:
+    """What the camera of a rig sees: two markers, noise of an 8-bit camera, light from one side.
+
+    >>> from strainwave.rig import load
+    >>> round(255.0 * usual_scene(load("couple-rig")).noise, 9)
+    4.0
+    """
+    return Scene(camera=rig.camera, gradient=0.3, noise=4.0 / 255.0)
 
 
 def seen(points: Array, camera: Camera, size: tuple[int, int]) -> Array:

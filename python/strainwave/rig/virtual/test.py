@@ -23,7 +23,7 @@ from strainwave.rig.setup import Rig
 from strainwave.rig.steps import Step
 from strainwave.rig.steps_file import append_step
 from strainwave.rig.virtual.loading import Loading, load_by_steps
-from strainwave.rig.virtual.render import Scene, render
+from strainwave.rig.virtual.render import Scene, render, usual_scene
 from strainwave.simulation.run import progressing
 
 Array = NDArray[np.float64]
@@ -96,7 +96,7 @@ def simulate_test(
         rig: the rig as it is; the values of its numbers are true
         steps: what is laid on the pans, as a plan has it; what they lack of times counts on from 0
         folder: where to write; it must not hold a test yet
-        scene: what the camera sees; two usual markers through the rig's camera if not given
+        scene: what the camera sees; the usual one of the rig, with noise and light from one side, if not given
         seed: of all that is random
         stated: the rig as `rig.toml` tells it; the true one if not given
         wait: between the change of the masses and the photograph [s]
@@ -128,7 +128,7 @@ def simulate_test(
     """
     arguments.whole("seed", seed, 0)
     faults = _checked(faults or {}, steps)
-    folder, scene = Path(folder), scene or Scene(camera=rig.camera)
+    folder, scene = Path(folder), scene or usual_scene(rig)
     recorded = [
         replace(step, image=f"step-{step.number:03}.png", time=wait * k if step.time is None else step.time)
         for k, step in enumerate(steps)

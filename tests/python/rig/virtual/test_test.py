@@ -80,7 +80,8 @@ def test_16_bits_are_kept(tmp_path: Path) -> None:
 def test_the_cameras_errors_are_those_of_the_rig_where_no_scene_is_given(tmp_path: Path) -> None:
     camera = sw.rig.Camera(tilt=0.2, distance=1500.0)
     run(tmp_path, steps=STEPS[:1], scene=None, rig=replace(RIG, camera=camera))
-    expected = render(Scene(camera=camera), 0.0, np.random.default_rng([3, 1]))
+    scene = Scene(camera=camera, gradient=0.3, noise=4.0 / 255.0)
+    expected = render(scene, 0.0, np.random.default_rng([3, 1]))
     assert np.array_equal(picture(tmp_path / "step-001.png"), expected)
 
 
