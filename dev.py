@@ -47,7 +47,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def prepare(groups: Sequence[str] = (), extra: str = "") -> None:
     """Installs the package with dependency groups and an extra, unless that is done, and compiles what was edited."""
-    stamp, state = STAMPS / "-".join(("package", *groups, extra)).strip("-"), digest(ROOT / "pyproject.toml", PINS)
+    stamp, state = STAMPS / "-".join(("package", *groups, extra)).strip("-"), digest(ROOT / "pyproject.toml", PINS) + modules()
     if not (PYTHON.exists() and stamp.exists() and stamp.read_text() == state):
         install(groups, extra)
         STAMPS.mkdir(parents=True, exist_ok=True)
@@ -98,6 +98,12 @@ def uv() -> Path:
 
 def digest(*files: Path) -> str:
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()
+
+
+def modules() -> str:
+    """Which modules there are: an installation remembers where each of them was."""
+    names = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "python").rglob("*.py"))
+    return hashlib.sha256("\0".join(names).encode()).hexdigest()
 
 
 def environment() -> dict[str, str]:

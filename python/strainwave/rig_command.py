@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from strainwave.report.provenance import Provenance
-    from strainwave.rig.guide import Settling
-    from strainwave.rig.plan import Pans, Plan
-    from strainwave.rig.setup import Rig
-    from strainwave.rig.sources import Source
-    from strainwave.rig.steps import Step
+    from strainwave.rig.bench.setup import Rig
+    from strainwave.rig.bench.steps import Step
+    from strainwave.rig.running.guide import Settling
+    from strainwave.rig.running.plan import Pans, Plan
+    from strainwave.rig.running.sources import Source
 
 rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, analyse, simulate.")
 
@@ -52,7 +52,7 @@ def plan_command(
 
     The cycle is document T's: the positive peak, down to zero, to the negative peak, back to zero, and up to the positive peak.
     """
-    from strainwave.rig.steps_file import write_steps
+    from strainwave.rig.bench.steps_file import write_steps
 
     if out is not None and out.suffix != ".csv":
         raise ValueError(f"--out {out} must end in .csv")
@@ -82,8 +82,8 @@ def simulate(
     """Make a virtual test: photographs, masses and rig as a real test leaves them, and the truth beside them."""
     import sys
 
-    from strainwave.rig.reading import PLAN
-    from strainwave.rig.steps_file import write_steps
+    from strainwave.rig.bench.steps_file import write_steps
+    from strainwave.rig.reading.reading import PLAN
     from strainwave.rig.virtual.rehearsal import gear_named
     from strainwave.rig.virtual.test import simulate_test
 
@@ -123,7 +123,7 @@ def measure(
     from rich.console import Console
 
     from strainwave.files.writing import claiming, making, written
-    from strainwave.rig.guide import Settling
+    from strainwave.rig.running.guide import Settling
 
     settling = Settling(_count("--pictures", pictures), _positive("--interval", interval), _positive("--patience", patience))
     bench = _rig_of_test(out, name)
@@ -173,7 +173,7 @@ def analyse(
     from strainwave.files.gear_set import GearSet
     from strainwave.report.rig import rig_report, summary
     from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
-    from strainwave.rig.reading import Given, evaluate_paths
+    from strainwave.rig.reading.reading import Given, evaluate_paths
 
     target = _target(paths, out)
     with Console(stderr=True).status("reading") as status:
@@ -214,9 +214,9 @@ def watch(
     from rich.console import Console
 
     from strainwave.report.rig_live import Point, live
-    from strainwave.rig.reading import PLAN
-    from strainwave.rig.steps_file import read_steps
-    from strainwave.rig.watching import Watch
+    from strainwave.rig.bench.steps_file import read_steps
+    from strainwave.rig.reading.reading import PLAN
+    from strainwave.rig.running.watching import Watch
 
     if not folder.is_dir():
         raise FileNotFoundError(f"{folder}: there is no such folder")
@@ -260,8 +260,8 @@ def influence(
     from strainwave.report.influence import influence_report, summary, tables
     from strainwave.report.page import write
     from strainwave.report.provenance import Provenance
-    from strainwave.rig.influence import influence as run
-    from strainwave.rig.series import read_series, series_of
+    from strainwave.rig.influence.influence import influence as run
+    from strainwave.rig.influence.series import read_series, series_of
 
     if measured is not None and loop:
         raise ValueError("--measured and --loop are two ways to give one series; give one of them")
@@ -323,7 +323,7 @@ def _write(folder: Path, files: Mapping[str, str | bytes]) -> None:
 
 
 def _rig(name: str) -> Rig:
-    from strainwave.rig.rig_file import load
+    from strainwave.rig.bench.rig_file import load
 
     return load(name)
 
@@ -337,7 +337,7 @@ def _rig_of_test(folder: Path, name: str | None) -> Rig:
 
 
 def _plan(bench: Rig, torque: float, step: float | None, positions: str, units: str, cycles: int, unequal: bool) -> Plan:
-    from strainwave.rig.plan import plan
+    from strainwave.rig.running.plan import plan
 
     places = [radians(each) for each in _numbers("--positions", positions)]
     specimens = [each.strip() for each in units.split(",")]
@@ -367,7 +367,7 @@ def _count(option: str, value: int) -> int:
 
 
 def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Source:
-    from strainwave.rig.sources import Device, Filled
+    from strainwave.rig.running.sources import Device, Filled
     from strainwave.rig.virtual.rehearsal import gear_named, rehearsal
 
     if camera == "virtual":
@@ -380,8 +380,8 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Sour
 
 def _keep_plan(made: Plan, out: Path) -> None:
     """Writes the plan beside the test, or refuses another one than a test that was broken off has."""
-    from strainwave.rig.reading import PLAN
-    from strainwave.rig.steps_file import read_steps, write_steps
+    from strainwave.rig.bench.steps_file import read_steps, write_steps
+    from strainwave.rig.reading.reading import PLAN
 
     if not (out / PLAN).exists():
         write_steps(made.steps, out / PLAN)
@@ -392,10 +392,10 @@ def _keep_plan(made: Plan, out: Path) -> None:
 def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source, settling: Settling) -> int:
     """Guides through the steps that are left; returns how many are done."""
     from strainwave.report.rig_live import Terminal
-    from strainwave.rig.guide import conduct, done_before
-    from strainwave.rig.rig_file import write_rig
-    from strainwave.rig.sources import Virtual
-    from strainwave.rig.watching import Reader, torque_of_masses
+    from strainwave.rig.bench.rig_file import write_rig
+    from strainwave.rig.running.guide import conduct, done_before
+    from strainwave.rig.running.sources import Virtual
+    from strainwave.rig.running.watching import Reader, torque_of_masses
 
     done, reader = done_before(made.steps, out), Reader(bench.camera)
     if not (out / "rig.toml").exists():

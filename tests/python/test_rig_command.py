@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.recording import Recording
-from strainwave.rig.plan import plan
-from strainwave.rig.steps_file import read_steps, write_steps
+from strainwave.rig.bench.steps_file import read_steps, write_steps
+from strainwave.rig.running.plan import plan
 
 from tests.python.command import Result, refused, strainwave
 

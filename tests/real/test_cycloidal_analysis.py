@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.rig import Loop, LoopAnalysis, analyse
-from strainwave.rig.regimes import NAMES
+from strainwave.rig.analysis.regimes import NAMES
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cycloidal-loops"
 LOOPS = sorted(path.name for path in FOLDER.glob("torque-displacement_of_*.csv"))

@@ -17,9 +17,9 @@ from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
 from strainwave.report.typeset import fixed, number, quantity
-from strainwave.rig.influence import OWN, SPECIMEN, Influence, Sweep
-from strainwave.rig.series import FACTORS, QUANTITIES
-from strainwave.rig.trend import SHUFFLES, Trend
+from strainwave.rig.influence.influence import OWN, SPECIMEN, Influence, Sweep
+from strainwave.rig.influence.series import FACTORS, QUANTITIES
+from strainwave.rig.influence.trend import SHUFFLES, Trend
 
 LINE = 110  # letters of a line on a terminal
 

@@ -29,8 +29,8 @@ from strainwave.report.influence_trends import (
     told_of,
 )
 from strainwave.report.typeset import fixed, number, quantity
-from strainwave.rig import influence as study
-from strainwave.rig.influence import OWN, SPECIMEN, CatalogueRow, Influence, Sweep, power
+from strainwave.rig.influence import influence as study
+from strainwave.rig.influence.influence import OWN, SPECIMEN, CatalogueRow, Influence, Sweep, power
 
 Array = NDArray[np.float64]
 

@@ -14,10 +14,10 @@ from strainwave.report.figures import LIGHT
 from strainwave.report.influence_claims import by_size
 from strainwave.report.typeset import quantity
 from strainwave.report.typeset import unit as typeset_unit
-from strainwave.rig.cycle import Cycle
-from strainwave.rig.influence import CatalogueRow, Sweep
-from strainwave.rig.series import FACTORS, QUANTITIES, Series
-from strainwave.rig.trend import Trend
+from strainwave.rig.influence.cycle import Cycle
+from strainwave.rig.influence.influence import CatalogueRow, Sweep
+from strainwave.rig.influence.series import FACTORS, QUANTITIES, Series
+from strainwave.rig.influence.trend import Trend
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -27,10 +27,10 @@ from strainwave.report.rig_tables import (
     stiffness_table,
 )
 from strainwave.report.typeset import fixed, number
-from strainwave.rig.analysis import table
-from strainwave.rig.evaluation import Evaluation
-from strainwave.rig.result import Result
-from strainwave.rig.soft_spot import MULTIPLE
+from strainwave.rig.analysis.analysis import table
+from strainwave.rig.analysis.result import Result
+from strainwave.rig.analysis.soft_spot import MULTIPLE
+from strainwave.rig.reading.evaluation import Evaluation
 
 
 def rig_report(found: Evaluation, provenance: Provenance | None = None, files: Sequence[str] = ()) -> str:
@@ -45,7 +45,7 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
         HTML; the same for the same arguments
 
     >>> from strainwave.rig import Loop
-    >>> from strainwave.rig.evaluation import evaluate
+    >>> from strainwave.rig.reading.evaluation import evaluate
     >>> loop = Loop([3.0, 2.0, -3.0, -2.0, 3.0], [1.0, 0.0, -1.0, 0.0, 1.0], side="output", name="example")
     >>> rig_report(evaluate([loop])).startswith("<!doctype html>")
     True

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.rig.analysis import LoopAnalysis
-from strainwave.rig.evaluation import Evaluation
+from strainwave.rig.analysis.analysis import LoopAnalysis
 from strainwave.rig.loop import Loop
+from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.rig.vision.angle import Angles
 
 MARKER_COLUMNS = {

@@ -13,8 +13,8 @@ import numpy as np
 
 from strainwave.report.terminal_plot import loop_lines
 from strainwave.report.typeset import number
-from strainwave.rig.guide import HELP, Look
-from strainwave.rig.steps import Step
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.running.guide import HELP, Look
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -7,7 +7,7 @@ from math import floor, isfinite, log10
 from typing import NamedTuple
 
 from strainwave.report.typeset import fixed, number
-from strainwave.rig.result import Result
+from strainwave.rig.analysis.result import Result
 
 DIGITS = 4  # of a value whose uncertainty is not known
 FINEST = 6  # digits of a value, however well it is known

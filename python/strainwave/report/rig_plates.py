@@ -11,13 +11,13 @@ import numpy as np
 from strainwave.report import rig_figures
 from strainwave.report.rig_figures import Branch, Compared, StiffnessCurve, Width
 from strainwave.report.rig_setup import pictures
-from strainwave.rig.analysis import LoopAnalysis
-from strainwave.rig.comparison import Comparison
-from strainwave.rig.evaluation import Evaluation
+from strainwave.rig.analysis.analysis import LoopAnalysis
+from strainwave.rig.analysis.comparison import Comparison
+from strainwave.rig.analysis.lost_motion import LOST_MOTION
+from strainwave.rig.analysis.regimes import NAMES
+from strainwave.rig.analysis.result import Result, student
 from strainwave.rig.loop import Loop
-from strainwave.rig.lost_motion import LOST_MOTION
-from strainwave.rig.regimes import NAMES
-from strainwave.rig.result import Result, student
+from strainwave.rig.reading.evaluation import Evaluation
 
 if TYPE_CHECKING:
     from markupsafe import Markup

@@ -10,8 +10,8 @@ import numpy as np
 
 from strainwave.report.rig_figures import Pictures
 from strainwave.report.typeset import fixed, number, uncertain
-from strainwave.rig.evaluation import Evaluation
-from strainwave.rig.setup import Camera, Rig, Value
+from strainwave.rig.bench.setup import Camera, Rig, Value
+from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.rig.vision.angle import Angles, Frame
 
 ARCSEC = 3600.0

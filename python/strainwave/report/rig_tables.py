@@ -11,15 +11,15 @@ import numpy as np
 from strainwave.report import rig_plates
 from strainwave.report.rig_numbers import Stated, sentence, stated
 from strainwave.report.typeset import fixed, number
-from strainwave.rig.analysis import DEFINITIONS, Definition, LoopAnalysis, table
-from strainwave.rig.budget import Budget
-from strainwave.rig.catalogue_check import CatalogueCheck
-from strainwave.rig.comparison import Compared, Comparison
-from strainwave.rig.evaluation import Evaluation, budgets
-from strainwave.rig.regimes import NAMES
-from strainwave.rig.result import Result
-from strainwave.rig.soft_spot import MULTIPLE, words_on_band
-from strainwave.rig.stiffness import closure_of_secants, soft_parts
+from strainwave.rig.analysis.analysis import DEFINITIONS, Definition, LoopAnalysis, table
+from strainwave.rig.analysis.catalogue_check import CatalogueCheck
+from strainwave.rig.analysis.comparison import Compared, Comparison
+from strainwave.rig.analysis.regimes import NAMES
+from strainwave.rig.analysis.result import Result
+from strainwave.rig.analysis.soft_spot import MULTIPLE, words_on_band
+from strainwave.rig.analysis.stiffness import closure_of_secants, soft_parts
+from strainwave.rig.reading.evaluation import Evaluation, budgets
+from strainwave.rig.torque.budget import Budget
 from strainwave.rig.virtual.printed import PEAK, TABLE_2
 
 ARCMIN = 60.0

@@ -1,29 +1,29 @@
 """The torsion test rig: images of two markers and masses on pans in, the loop of a gear, its stiffness and lost motion out."""
 
-from strainwave.rig.analysis import LoopAnalysis, Row, analyse, table
-from strainwave.rig.budget import Budget, Contribution, angle_budget, stiffness_budget, torque_budget
-from strainwave.rig.catalogue_check import CatalogueCheck
-from strainwave.rig.comparison import Compared, Comparison, compare
-from strainwave.rig.couple import Couple, couple_of
-from strainwave.rig.influence import Influence
+from strainwave.rig.analysis.analysis import LoopAnalysis, Row, analyse, table
+from strainwave.rig.analysis.catalogue_check import CatalogueCheck
+from strainwave.rig.analysis.comparison import Compared, Comparison, compare
+from strainwave.rig.analysis.lost_motion import Width
+from strainwave.rig.analysis.regimes import Regime, Segmented, cycles, segment
+from strainwave.rig.analysis.result import Result
+from strainwave.rig.analysis.sides import friction_at_rest, referred, without_friction
+from strainwave.rig.analysis.soft_spot import SoftSpot, soft_spots, words_on_band
+from strainwave.rig.analysis.stiffness import LocalStiffness, Stiffness, closure_of_secants, soft_parts
+from strainwave.rig.bench.rig_file import load, rigs, write_rig
+from strainwave.rig.bench.setup import Camera, Masses, Rig, Value
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.bench.steps_file import append_step, read_steps, write_steps
+from strainwave.rig.influence.influence import Influence
+from strainwave.rig.influence.series import Series, analyse_series, read_series
+from strainwave.rig.influence.trend import Trend
 from strainwave.rig.loop import Loop
-from strainwave.rig.lost_motion import Width
-from strainwave.rig.measurement import TorsionTest, loops, read_test
-from strainwave.rig.plan import Plan, Stage, plan, reachable, task
-from strainwave.rig.plan_check import Finding, check
-from strainwave.rig.recorded import loop_of, read_loop
-from strainwave.rig.regimes import Regime, Segmented, cycles, segment
-from strainwave.rig.result import Result
-from strainwave.rig.rig_file import load, rigs, write_rig
-from strainwave.rig.series import Series, analyse_series, read_series
-from strainwave.rig.setup import Camera, Masses, Rig, Value
-from strainwave.rig.sides import friction_at_rest, referred, without_friction
-from strainwave.rig.soft_spot import SoftSpot, soft_spots, words_on_band
-from strainwave.rig.steps import Step
-from strainwave.rig.steps_file import append_step, read_steps, write_steps
-from strainwave.rig.stiffness import LocalStiffness, Stiffness, closure_of_secants, soft_parts
-from strainwave.rig.torque import Torque, arm, blank, torque_of
-from strainwave.rig.trend import Trend
+from strainwave.rig.reading.measurement import TorsionTest, loops, read_test
+from strainwave.rig.reading.recorded import loop_of, read_loop
+from strainwave.rig.running.plan import Plan, Stage, plan, reachable, task
+from strainwave.rig.running.plan_check import Finding, check
+from strainwave.rig.torque.budget import Budget, Contribution, angle_budget, stiffness_budget, torque_budget
+from strainwave.rig.torque.couple import Couple, couple_of
+from strainwave.rig.torque.torque import Torque, arm, blank, torque_of
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.printed import gear_of_regimes, printed_gear
 from strainwave.rig.virtual.render import Scene, render

@@ -16,8 +16,8 @@ from strainwave.report.rig_files import angle_files, loop_files, loop_names, pla
 from strainwave.report.rig_numbers import stated
 from strainwave.report.rig_setup import rig_rows
 from strainwave.rig import Camera, Loop, Step, Value, load
-from strainwave.rig.evaluation import Evaluation, evaluate
-from strainwave.rig.result import Result
+from strainwave.rig.analysis.result import Result
+from strainwave.rig.reading.evaluation import Evaluation, evaluate
 from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.printed import printed_gear
 from strainwave.rig.virtual.render import Scene, render

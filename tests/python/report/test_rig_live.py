@@ -8,8 +8,8 @@ from io import StringIO
 import numpy as np
 from rich.console import Console
 from strainwave.report.rig_live import Point, Terminal, live, point_line
-from strainwave.rig.guide import Look
-from strainwave.rig.steps import Step
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.running.guide import Look
 
 POINTS = [
     Point("0001.png", 0.36, Look(0.0, 2e-5)),

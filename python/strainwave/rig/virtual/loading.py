@@ -13,8 +13,8 @@ from strainwave import arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_file import at
-from strainwave.rig.setup import Rig
-from strainwave.rig.steps import Step
+from strainwave.rig.bench.setup import Rig
+from strainwave.rig.bench.steps import Step
 
 Array = NDArray[np.float64]
 POINTS = 64  # of a stretch that is searched at once

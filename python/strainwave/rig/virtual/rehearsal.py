@@ -10,9 +10,9 @@ import numpy as np
 
 from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
-from strainwave.rig.setup import Rig
-from strainwave.rig.sources import Virtual
-from strainwave.rig.steps import Step
+from strainwave.rig.bench.setup import Rig
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.running.sources import Virtual
 from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.printed import printed_gear
 from strainwave.rig.virtual.render import usual_scene

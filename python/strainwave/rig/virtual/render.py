@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.rig.setup import Camera, Rig
+from strainwave.rig.bench.setup import Camera, Rig
 
 Array = NDArray[np.float64]
 FINE = 4  # cells of a pixel, each way, on which edges are computed

@@ -18,10 +18,10 @@ from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import save
 from strainwave.files.writing import making, replacing
-from strainwave.rig.rig_file import write_rig
-from strainwave.rig.setup import Rig
-from strainwave.rig.steps import Step
-from strainwave.rig.steps_file import append_step
+from strainwave.rig.bench.rig_file import write_rig
+from strainwave.rig.bench.setup import Rig
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.bench.steps_file import append_step
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.render import Scene, render, usual_scene
 from strainwave.simulation.run import progressing

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from strainwave.messages import quoted, shortened
-from strainwave.rig.setup import Camera
+from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import PERFECT
 from strainwave.rig.vision.follow import Angles, camera_seen, follow
 from strainwave.rig.vision.frame import Frame, look

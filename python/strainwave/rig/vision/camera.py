@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.rig.setup import Camera
+from strainwave.rig.bench.setup import Camera
 
 Array = NDArray[np.float64]
 PERFECT = Camera()

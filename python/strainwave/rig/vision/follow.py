@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.messages import quoted
-from strainwave.rig.setup import Camera
+from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, slopes_at
 from strainwave.rig.vision.frame import Frame
 from strainwave.rig.vision.image import by_number

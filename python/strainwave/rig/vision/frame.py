@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from strainwave.messages import one_line
-from strainwave.rig.setup import Camera
+from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import PERFECT
 from strainwave.rig.vision.image import Grey, Image, read_image
 from strainwave.rig.vision.marker import Marker, found_and_partial

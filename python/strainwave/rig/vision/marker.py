@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.rig.setup import Camera
+from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.blob import blobs
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, in_picture
 from strainwave.rig.vision.edge import Edge, edge, fit_points

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.stats import ncx2
-from strainwave.rig.setup import Camera
+from strainwave.rig.bench.setup import Camera
 from strainwave.rig.virtual.render import Scene, render, seen
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from strainwave.rig.setup import Camera
+from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import changes_nothing, flat, in_picture, slopes_at
 
 Array = NDArray[np.float64]

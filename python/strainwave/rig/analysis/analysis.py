@@ -1,0 +1,295 @@
+"""What a torsion loop says: stiffness, widths, losses, soft spots, and how sure all of this is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Literal
+
+import numpy as np
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.files.gear_set import GearSet
+from strainwave.messages import shortened
+from strainwave.rig.analysis.catalogue_check import CatalogueCheck, check_catalogue, rated_torque_of
+from strainwave.rig.analysis.lost_motion import LOST_MOTION, Width, area, closure, drift, separation, widest, widest_in_torque
+from strainwave.rig.analysis.regimes import NAMES, RegimeName, Segmented, cycles, part, segment
+from strainwave.rig.analysis.result import Result, result
+from strainwave.rig.analysis.soft_spot import SoftSpot, soft_spots
+from strainwave.rig.analysis.stiffness import Stiffness, segments_of, stiffness_of
+from strainwave.rig.loop import Loop
+
+Definition = Literal["secant", "regression", "softest"]
+DEFINITIONS: dict[Definition, str] = {
+    "secant": "torque of the peak over the angle from zero torque to the peak",
+    "regression": "line through all points of the regime, with errors in torque and angle",
+    "softest": "slope of the softest straight stretch of the regime",
+}
+BENT = 4.0  # chi-square per degree of freedom: from here on a regime is not one straight line
+NEAR = 0.1  # of the rated torque: a cycle with such peaks is one at rated torque
+OPEN = 3.0  # standard deviations, and a share of the width, from which on a closure error is told
+TOLD = 0.02  # of the hysteresis
+
+
+@dataclass(frozen=True, eq=False)
+class LoopAnalysis(ComparedByFields):
+    """What a loop says; what it does not tell is None, and `remarks` say why.
+
+    Attributes:
+        loop: as it was measured
+        cut: its branches and regimes
+        stiffnesses: of each regime that was measured from zero torque to the peak, in the order of the cycle
+        hysteresis: widest separation at equal torque, as document T has it
+        width_at_zero: separation at zero torque after the peaks of this cycle [rad]
+        rated_torque: of the gear, at the loaded shaft [N.m]
+        hysteresis_loss: separation at zero torque after rated torque, as catalogues have it [rad]
+        lost_motion: mean separation at plus and minus 4 % of the rated torque, as catalogues have it [rad]
+        torque_width: widest separation in torque at equal angle [N.m], and that angle [rad]
+        area: energy lost in a cycle [J]
+        closure: angle at the end of the cycle less that at its beginning [rad]
+        drift: movement of the middle of the loop per cycle [rad], where it has several cycles
+        soft_spots: bands softer than the rest of their regime
+        catalogue: beside the figures of a gear set
+        errors_stated: whether the loop came with errors; else these are of the scatter about straight stretches
+        remarks: what a reader must know, in words
+    """
+
+    loop: Loop
+    cut: Segmented
+    stiffnesses: tuple[Stiffness, ...]
+    hysteresis: Width | None
+    width_at_zero: Result | None
+    rated_torque: float | None
+    hysteresis_loss: Result | None
+    lost_motion: Result | None
+    torque_width: tuple[float, float] | None
+    area: Result | None
+    closure: Result | None
+    drift: Result | None
+    soft_spots: tuple[SoftSpot, ...]
+    catalogue: tuple[CatalogueCheck, ...]
+    errors_stated: bool
+    remarks: tuple[str, ...]
+
+    @property
+    def peaks(self) -> tuple[float, float]:
+        """Lowest and highest torque of the branches [N.m]."""
+        branches = [each for each in (self.cut.falling, self.cut.rising) if each is not None]
+        return min(each.low for each in branches), max(each.high for each in branches)
+
+    def stiffness(self, name: RegimeName) -> Stiffness | None:
+        """Stiffness of a regime; None where it was not measured from end to end."""
+        return next((each for each in self.stiffnesses if each.name == name), None)
+
+    def stiffness_by(self, name: RegimeName, definition: Definition) -> Result | None:
+        """Stiffness of a regime by one definition [N.m/rad]."""
+        arguments.one_of("definition", definition, DEFINITIONS)
+        found = self.stiffness(name)
+        if found is None:
+            return None
+        return {"secant": found.secant, "regression": found.regression, "softest": found.softest}[definition]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row in the form of document T's Table 2.
+
+    Attributes:
+        position: of the flexspline in its mount [rad]
+        unit: which specimen
+        positive_unloading, negative_loading, negative_unloading, positive_loading: stiffness [N.m/rad]
+        hysteresis: widest separation at equal torque [rad]
+    """
+
+    position: float
+    unit: str
+    positive_unloading: Result | None
+    negative_loading: Result | None
+    negative_unloading: Result | None
+    positive_loading: Result | None
+    hysteresis: Result | None
+
+
+def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float | None = None) -> LoopAnalysis:
+    """What a loop says. Of several cycles the last complete one is analysed; `cycles` gives each as a loop of its own.
+
+    Args:
+        loop: a loop, or a part of one, in the order measured
+        gear_set: the gear, to compare with its catalogue figures
+        rated_torque: of the gear at the loaded shaft [N.m]; that of the set if not given
+
+    Raises:
+        ValueError: the loop cannot be one, see `segment`; or it gives energy
+        TypeError: an argument is not of its kind
+
+    >>> import numpy as np
+    >>> angle = np.radians([0.0, -4.5, -59.0, -54.5, 0.0])
+    >>> found = analyse(Loop(angle, [0.36, 0.0, -0.36, 0.0, 0.36], side="input", name="example", angle_sigma=1e-4))
+    >>> [f"{each.secant.value:.2f}" for each in found.stiffnesses], f"{np.degrees(found.hysteresis.width.value):.1f}"
+    (['4.58', '0.38', '4.58', '0.38'], '50.0')
+    """
+    if not isinstance(loop, Loop):
+        raise TypeError(f"loop must be a Loop, not {shortened(loop)}")
+    if gear_set is not None and not isinstance(gear_set, GearSet):
+        raise TypeError(f"gear_set must be a GearSet, as sw.GearSet.read(...) gives it, not {shortened(gear_set)}")
+    if rated_torque is not None:
+        arguments.number("rated_torque", rated_torque, "N.m", low=0.0)
+    elif gear_set is not None:
+        rated_torque = rated_torque_of(gear_set, loop.side)
+    stated = bool(np.any(loop.angle_sigma > 0.0) or np.any(loop.torque_sigma > 0.0))
+    cut, freedom = (segment(loop), inf) if stated else _with_scatter(loop)
+    found = _analysis(loop, cut, freedom, rated_torque, stated)
+    if gear_set is not None:
+        checks, words = check_catalogue(cut, gear_set, found.width_at_zero, rated_torque)
+        found = replace(found, catalogue=checks, remarks=(*found.remarks, *words))
+    return found
+
+
+def _with_scatter(loop: Loop) -> tuple[Segmented, float]:
+    """The loop with the scatter about straight stretches as the error of its angles, and the degrees of freedom of this."""
+    told = [fitted for regime in segment(loop).regimes if (fitted := segments_of(regime)) is not None and fitted.freedom > 0]
+    freedom = sum(each.freedom for each in told)
+    if freedom == 0:
+        return segment(loop), inf
+    scatter = float(np.sqrt(sum(each.freedom * each.scatter**2 for each in told) / freedom))
+    least = 1e-9 * float(np.ptp(loop.angle))
+    return segment(replace(loop, angle_sigma=np.full(len(loop), max(scatter, least)))), float(freedom)
+
+
+def _analysis(loop: Loop, cut: Segmented, freedom: float, rated: float | None, stated: bool) -> LoopAnalysis:
+    stiffnesses = tuple(found for each in cut.regimes if (found := stiffness_of(each, cut.loop, freedom)) is not None)
+    both = (cut.falling, cut.rising)
+    wide = at_zero = in_torque = lost = energy = None
+    if cut.closed and both[0] is not None and both[1] is not None:
+        falling, rising = both[0], both[1]
+        energy = area(part(cut.loop, cut.cycle, loop.name), freedom)
+        if energy.value < 0.0 and not energy.high >= 0.0:  # a gear without a loop has one of either sign, by chance
+            raise ValueError(
+                f"{loop.name}: the loop gives {-energy.value:.4g} J instead of losing energy; "
+                "put its points in the order measured"
+            )
+        wide = widest(falling, rising, cut.loop, freedom)
+        at_zero = separation(falling, rising, 0.0, cut.loop, freedom)
+        in_torque = widest_in_torque(falling, rising)
+        if rated is not None:
+            at = [separation(falling, rising, sign * LOST_MOTION * rated, cut.loop, freedom) for sign in (-1.0, 1.0)]
+            lost = None if at[0] is None or at[1] is None else _mean(at[0], at[1], freedom)
+    analysis = LoopAnalysis(
+        loop, cut, stiffnesses, wide, at_zero, rated, None, lost, in_torque, energy, closure(cut, freedom),
+        _drift(loop, cut), soft_spots(stiffnesses), (), stated, (),
+    )  # fmt: skip
+    low, high = analysis.peaks
+    if rated is not None and max(abs(high - rated), abs(low + rated)) <= NEAR * rated:
+        analysis = replace(analysis, hysteresis_loss=at_zero)
+    return replace(analysis, remarks=(*loop.remarks, *cut.remarks, *_remarks(analysis)))
+
+
+def _mean(one: Result, other: Result, freedom: float) -> Result:
+    random = 0.5 * float(np.hypot(one.random, other.random))
+    return result(
+        0.5 * (one.value + other.value), one.unit, random=random, shared=0.5 * (one.shared + other.shared), freedom=freedom
+    )
+
+
+def _drift(loop: Loop, cut: Segmented) -> Result | None:
+    if cut.cycles < 2:
+        return None
+    centres, sigmas = [], []
+    for each in cycles(cut.loop):
+        branches = segment(each)
+        if branches.falling is not None and branches.rising is not None:
+            near = [np.interp(0.0, branch.torque, branch.angle) for branch in (branches.falling, branches.rising)]
+            centres.append(0.5 * float(near[0] + near[1]))
+            sigmas.append(float(np.median(branches.falling.angle_sigma)) / 2.0**0.5)
+    return drift(np.array(centres), max(sigmas)) if len(centres) > 1 else None
+
+
+def _remarks(found: LoopAnalysis) -> Iterator[str]:
+    """What the numbers leave unsaid."""
+    cut, loop = found.cut, found.loop
+    if cut.cycles > 1:
+        yield f"{cut.cycles} complete cycles: the numbers are those of the last one"
+    if not cut.closed:
+        yield "the cycle is not complete: it has no width, no area and no closure error"
+    if not found.errors_stated:
+        yield (
+            "no errors were stated: intervals come from the scatter about straight stretches, and leave out what is common to "
+            "all points, such as the scale of the torque"
+        )
+    if found.closure is not None and found.hysteresis is not None:
+        yield from _of_closure(found, found.closure, found.hysteresis)
+    yield from (_of_bend(each) for each in found.stiffnesses if each.misfit > BENT and not each.whole)
+    yield from _of_catalogue(found)
+    if loop.side == "input":
+        yield (
+            "measured at the input with the output held: friction of the wave generator is inside the loop, whose widths and "
+            "area are those of gear and friction together"
+            if not any("taken out" in each for each in loop.remarks)
+            else "measured at the input with the output held; widths and area are as good as the friction taken out of it"
+        )
+
+
+def _of_closure(found: LoopAnalysis, gap: Result, wide: Width) -> Iterator[str]:
+    large = abs(gap.value) > TOLD * abs(wide.width.value)
+    if not large or not (np.isnan(gap.sigma) or abs(gap.value) > OPEN * gap.sigma):
+        return
+    yield (
+        f"the cycle ends {np.degrees(gap.value):.3g} degrees from where it began: drift, settling, or a first cycle that was "
+        "not yet steady. One cycle cannot tell these apart; the area is that of the loop closed by a straight line"
+        if found.drift is None
+        else f"the cycle ends {np.degrees(gap.value):.3g} degrees from where it began; the middle of the loop moves by "
+        f"{np.degrees(found.drift.value):.3g} degrees per cycle"
+    )
+
+
+def _of_bend(stiffness: Stiffness) -> str:
+    low, high = stiffness.segments.stretch(stiffness.segments.softest)
+    return (
+        f"{stiffness.name.replace('_', ' ')} is not one straight line (chi-square {stiffness.misfit:.2g} per degree of "
+        f"freedom): its softest stretch runs from {low:.3g} to {high:.3g} N.m, {100 * stiffness.share:.0f} % of its torque"
+    )
+
+
+def _of_catalogue(found: LoopAnalysis) -> Iterator[str]:
+    rated = found.rated_torque
+    if rated is None:
+        if found.width_at_zero is not None:
+            yield "no rated torque is known: hysteresis loss and lost motion as catalogues define them cannot be stated"
+        return
+    if found.hysteresis_loss is None and found.width_at_zero is not None:
+        low, high = found.peaks
+        yield (
+            f"the cycle ran from {low:.3g} to {high:.3g} N.m, not to the rated torque of {rated:.3g} N.m either way: its "
+            "width at zero torque is not the hysteresis loss of a catalogue"
+        )
+    if found.lost_motion is None and found.cut.closed:
+        yield f"the cycle does not reach 4 % of the rated torque of {rated:.3g} N.m either way: no lost motion"
+
+
+def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") -> tuple[Row, ...]:
+    """Rows in the form of document T's Table 2, one a loop.
+
+    T's table is one of slopes of the softest stretch: under this reading its loops close (erratum E-T4). Where a regime is one
+    straight line, all three definitions agree.
+
+    Args:
+        analyses: of the loops, in the order of the rows
+        definition: of the stiffness
+
+    >>> import numpy as np
+    >>> angle = np.radians([0.0, -4.5, -59.0, -54.5, 0.0])
+    >>> loop = Loop(angle, [0.36, 0.0, -0.36, 0.0, 0.36], side="input", name="example", angle_sigma=1e-4)
+    >>> (row,) = table([analyse(loop)])
+    >>> round(row.positive_unloading.value, 2)
+    4.58
+    """
+    arguments.one_of("definition", definition, DEFINITIONS)
+    return tuple(_row(each, [each.stiffness_by(name, definition) for name in NAMES]) for each in analyses)
+
+
+def _row(analysis: LoopAnalysis, stiffnesses: Sequence[Result | None]) -> Row:
+    down, soft_down, up, soft_up = stiffnesses
+    width = None if analysis.hysteresis is None else analysis.hysteresis.width
+    return Row(analysis.loop.position, analysis.loop.unit, down, soft_down, up, soft_up, width)

@@ -1,0 +1,184 @@
+"""A measured loop beside the figures of a catalogue: K1, K2, K3, hysteresis loss, lost motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import hypot
+from typing import Any
+
+import numpy as np
+
+from strainwave.files.gear_set import GearSet
+from strainwave.messages import shortened
+from strainwave.rig.analysis.lost_motion import LOST_MOTION, separation
+from strainwave.rig.analysis.regimes import Branch, Segmented, segment
+from strainwave.rig.analysis.result import Result, inverse, result
+from strainwave.rig.analysis.stiffness import COMPLIANCE, UNIT, shared
+from strainwave.rig.influence.cycle import cycle_to
+from strainwave.rig.loop import Loop, Side
+
+
+@dataclass(frozen=True)
+class CatalogueCheck:
+    """A figure of the catalogue beside what was measured.
+
+    Attributes:
+        name: of the figure
+        measured: on the loop; None where the loop does not reach
+        stated: by the set, at the loaded shaft, in `unit`
+        unit: of both
+        spread: of units about the figure, relative; None if not known
+        why: where the figure comes from, or why it was not measured
+    """
+
+    name: str
+    measured: Result | None
+    stated: float
+    unit: str
+    spread: float | None
+    why: str
+
+    @property
+    def within(self) -> bool | None:
+        """Whether the measured figure lies within the spread and its own error; None where one of them is not known."""
+        if self.measured is None or self.spread is None:
+            return None
+        error = 0.5 * (self.measured.high - self.measured.low)
+        return abs(self.measured.value - self.stated) <= hypot(self.spread * self.stated, 0.0 if np.isnan(error) else error)
+
+    def __str__(self) -> str:
+        if self.measured is None:
+            return f"{self.name}: {self.stated:.4g} {self.unit} in the set; {self.why}"
+        share = f"{100.0 * self.measured.value / self.stated:.0f} % of the {self.stated:.4g} {self.unit} of the set"
+        verdict = {True: ", within the spread of units", False: ", beyond the spread of units", None: ""}[self.within]
+        return f"{self.name}: {self.measured}, {share}{verdict}"
+
+
+def rated_torque_of(gear_set: GearSet, side: Side) -> float | None:
+    """Rated torque of a set at the loaded shaft [N.m]; None where the set states none.
+
+    >>> rated_torque_of(GearSet.read("csg-20-100"), "output"), rated_torque_of(GearSet.read("csg-20-100"), "input")
+    (52.0, 0.52)
+    """
+    if "rated_torque" not in gear_set.ratings:
+        return None
+    return gear_set.ratings["rated_torque"].to("N.m").value / _factor(gear_set, side)
+
+
+def check_catalogue(
+    cut: Segmented, gear_set: GearSet, width_at_zero: Result | None, rated_torque: float | None
+) -> tuple[tuple[CatalogueCheck, ...], tuple[str, ...]]:
+    """Compares a loop with a set, and says what cannot be compared.
+
+    K1 is the secant of the loading branch from the middle of the loop to T1, K2 the slope from T1 to T2, K3 from T2 to the
+    peak, the mean of both senses: what a first loading would show. The width of the set's own loop is that of its model under
+    the same torques.
+    """
+    if cut.falling is None or cut.rising is None or not cut.closed:
+        return (), ("the cycle is not complete: it is not compared with the catalogue",)
+    stiffnesses, words = tuple(_stiffnesses(cut, gear_set)), tuple(_words(cut, gear_set))
+    try:
+        own = _own_loop(cut, gear_set)
+    except ValueError as error:  # its friction holds all of the torque, or it has stages
+        return stiffnesses, (*words, f"widths are not compared with those of the set's own loop: {error}")
+    return (*stiffnesses, *_widths(cut, own, width_at_zero, rated_torque)), words
+
+
+def _factor(gear_set: GearSet, side: Side) -> float:
+    """Torque of the output over that of the loaded shaft."""
+    return abs(float(gear_set.gear.kinematics.ratio)) if side == "input" else 1.0
+
+
+def published(gear_set: GearSet, side: Side) -> dict[str, float] | None:
+    """K1, K2, K3 [N.m/rad] and T1, T2 [N.m] of the whole gear at a shaft; None where its spring has no such knees.
+
+    A set divides them between spring and hysteresis, which is undone here: T = t + F and K1 = k1 T1 / t1, with F the sum of
+    the breakaways (docs/catalogue.md).
+
+    >>> {name: round(value, 1) for name, value in published(GearSet.read("csg-20-100"), "output").items()}
+    {'K1': 16000.0, 'K2': 25000.0, 'K3': 29000.0, 'T1': 7.0, 'T2': 25.0}
+    """
+    spring: Any = gear_set.gear.stiffness
+    held = getattr(gear_set.gear.hysteresis, "breakaway", None)
+    if held is None or not all(hasattr(spring, name) for name in ("k1", "k2", "k3", "t1", "t2")):
+        return None
+    factor, slipping = _factor(gear_set, side), float(np.sum(held))
+    stiffness = {"K1": spring.k1 * (1.0 + slipping / spring.t1), "K2": spring.k2, "K3": spring.k3}
+    torque = {"T1": spring.t1 + slipping, "T2": spring.t2 + slipping}
+    return {name: k / factor**2 for name, k in stiffness.items()} | {name: t / factor for name, t in torque.items()}
+
+
+def _stiffnesses(cut: Segmented, gear_set: GearSet) -> Iterator[CatalogueCheck]:
+    figures = published(gear_set, cut.loop.side)
+    if figures is None or cut.falling is None or cut.rising is None:
+        return
+    peak = min(-cut.falling.low, cut.rising.high)
+    ends = {"K1": (0.0, figures["T1"]), "K2": (figures["T1"], figures["T2"]), "K3": (figures["T2"], peak)}
+    for name, (low, high) in ends.items():
+        entry = gear_set.sources.get(f"gear.stiffness.{name.lower()}")
+        reached = low < high <= peak
+        measured = _loading(cut.falling, cut.rising, low, high, cut.loop) if reached else None
+        why = entry.source if entry is not None else ""
+        if not reached:
+            why = f"the loop ends at {peak:.3g} N.m, the figure is for {low:.3g} N.m and beyond"
+        yield CatalogueCheck(name, measured, figures[name], UNIT, None if entry is None else entry.spread, why)
+
+
+def _loading(falling: Branch, rising: Branch, low: float, high: float, loop: Loop) -> Result | None:
+    """Slope of the loading branches between two sizes of torque; from zero on, of the middle of the loop."""
+    middle = 0.5 * (_angle(falling, 0.0) + _angle(rising, 0.0))
+    starts = (middle, middle) if low == 0.0 else (_angle(rising, low), _angle(falling, -low))
+    turned = [_angle(rising, high) - starts[0], starts[1] - _angle(falling, -high)]
+    compliance = 0.5 * sum(turned) / (high - low)
+    if compliance <= 0.0:
+        return None
+    error = float(np.median(loop.angle_sigma)) / (high - low)  # four readings, halved
+    of_rig = shared(1.0 / compliance, loop) * compliance**2
+    return inverse(result(compliance, COMPLIANCE, random=error, shared=of_rig), UNIT)
+
+
+def _angle(branch: Branch, torque: float) -> float:
+    return float(np.interp(torque, branch.torque, branch.angle))
+
+
+def _own_loop(cut: Segmented, gear_set: GearSet) -> Segmented:
+    """What the model of the set would show under the same peaks."""
+    assert cut.falling is not None
+    assert cut.rising is not None
+    model = cycle_to(gear_set.gear, 0.5 * (cut.rising.high - cut.falling.low), side=cut.loop.side)
+    return segment(Loop(model.angle, model.torque, side=cut.loop.side, name=gear_set.name))
+
+
+def _widths(
+    cut: Segmented, own: Segmented, width_at_zero: Result | None, rated_torque: float | None
+) -> Iterator[CatalogueCheck]:
+    """Widths beside those of the set's own loop."""
+    peak = float(own.loop.torque.max())
+    stated = _separation(own, 0.0)
+    if width_at_zero is not None and stated is not None:
+        why = f"model of the set after ±{peak:.3g} N.m"
+        yield CatalogueCheck("width at zero torque", width_at_zero, stated.value, "rad", None, why)
+    if rated_torque is None:
+        return
+    measured, stated = (_separation(each, LOST_MOTION * rated_torque) for each in (cut, own))
+    if measured is not None and stated is not None:
+        yield CatalogueCheck(
+            "lost motion", measured, stated.value, "rad", None, "model of the set, width at 4 % of rated torque"
+        )
+
+
+def _separation(cut: Segmented, torque: float) -> Result | None:
+    if cut.falling is None or cut.rising is None:
+        return None
+    return separation(cut.falling, cut.rising, torque, cut.loop)
+
+
+def _words(cut: Segmented, gear_set: GearSet) -> Iterator[str]:
+    if cut.loop.side == "input":
+        yield (
+            "the catalogue states the gear at the output, and its figures are divided by the ratio and its square; "
+            "friction of the wave generator is in the loop and in no K"
+        )
+    if published(gear_set, cut.loop.side) is None:
+        yield f"{shortened(gear_set.name)} has no K1, K2 and K3 to compare with"

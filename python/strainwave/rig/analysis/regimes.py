@@ -1,0 +1,367 @@
+"""The four regimes of a torsion loop: where it turns back, where its torque changes sign, and what belongs to no cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+from strainwave.identify.branches import turning_points
+from strainwave.rig.analysis.step_remarks import remarks_on_steps
+from strainwave.rig.loop import Loop
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+RegimeName = Literal["positive_unloading", "negative_loading", "negative_unloading", "positive_loading"]
+NAMES: tuple[RegimeName, ...] = ("positive_unloading", "negative_loading", "negative_unloading", "positive_loading")
+FALLING, RISING = -1, 1
+
+MAJOR = 0.5  # of the span: a run that comes back by less is no branch of the cycle
+REACHED = 0.1  # of the span of torque: a branch that begins or ends so near an extreme reaches it
+MISSING = 0.05  # of the span of torque, or one and a half steps: what a cycle may lack where it closes
+DETOURS = 0.1  # turns per point that lead to no peak: more, and the points do not follow each other as measured
+LEAST = 4  # such turns, below which they may be smaller loops
+
+
+@dataclass(frozen=True, eq=False)
+class Branch(ComparedByFields):
+    """One way from peak to peak, from the lower torque to the higher whichever way it was run.
+
+    Attributes:
+        sense: 1 where the torque rises with time, -1 where it falls
+        rows: of the loop, shape (n,)
+        torque: never falls along the branch; noise that takes it back is levelled [N.m], shape (n,)
+        angle: [rad], shape (n,)
+        angle_sigma: [rad], shape (n,)
+        torque_sigma: [N.m], shape (n,)
+    """
+
+    sense: int
+    rows: Rows
+    torque: Array
+    angle: Array
+    angle_sigma: Array
+    torque_sigma: Array
+
+    @property
+    def low(self) -> float:
+        """Lowest torque [N.m]."""
+        return float(self.torque[0])
+
+    @property
+    def high(self) -> float:
+        """Highest torque [N.m]."""
+        return float(self.torque[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class Regime(ComparedByFields):
+    """A quarter of the cycle, between zero torque and a peak, from the lower torque to the higher.
+
+    Attributes:
+        name: which quarter
+        torque: [N.m], shape (n,); begins or ends with 0, which is interpolated where the branch passes it between two points
+        angle: [rad], shape (n,)
+        angle_sigma: [rad], shape (n,)
+        torque_sigma: [N.m], shape (n,)
+        rows: of the loop, shape (n,); -1 where it was interpolated
+    """
+
+    name: RegimeName
+    torque: Array
+    angle: Array
+    angle_sigma: Array
+    torque_sigma: Array
+    rows: Rows
+
+    @property
+    def from_zero(self) -> bool:
+        """Whether it begins or ends at zero torque; else the branch begins or ends a little before."""
+        return bool(np.any(self.torque == 0.0))
+
+    @property
+    def measured(self) -> NDArray[np.bool_]:
+        """Which of its points were measured, shape (n,)."""
+        return np.asarray(self.rows >= 0)
+
+
+@dataclass(frozen=True, eq=False)
+class Segmented(ComparedByFields):
+    """A loop cut into what it is made of.
+
+    Attributes:
+        loop: the loop
+        falling, rising: the branches of the cycle; None where the loop has none that passes zero torque or reaches a peak
+        regimes: those that were measured from zero torque to the peak, in the order of the cycle
+        cycle: rows of the closed cycle in the order measured; empty where it does not close
+        cycles: how many complete cycles the loop holds
+        remarks: what was left out, and why, in words
+    """
+
+    loop: Loop
+    falling: Branch | None
+    rising: Branch | None
+    regimes: tuple[Regime, ...]
+    cycle: Rows
+    cycles: int
+    remarks: tuple[str, ...]
+
+    @property
+    def closed(self) -> bool:
+        """Whether it comes back to the torque it began at, over both peaks."""
+        return len(self.cycle) > 0
+
+
+def segment(loop: Loop) -> Segmented:
+    """Cuts a loop into branches and regimes; of several cycles the last complete one.
+
+    A branch ends where torque and angle, each in shares of its span, turn back together. So it ends at the corner of a loop
+    with a level stretch, and after the creep at a peak.
+
+    Raises:
+        ValueError: there are fewer than three points, the torque or the angle never changes, one falls where the other grows,
+            the times fall, or the points do not follow each other as measured
+
+    >>> loop = Loop([3.0, 2.0, -3.0, -2.0, 3.0], [1.0, 0.0, -1.0, 0.0, 1.0], side="output", name="example")
+    >>> [regime.name for regime in segment(loop).regimes]
+    ['positive_unloading', 'negative_loading', 'negative_unloading', 'positive_loading']
+    """
+    _check(loop)
+    ends, minor = _ends(loop)
+    runs = [_Run(loop, first, last, minor) for first, last in pairwise(ends)]
+    cycle, falling, rising = _cycle(loop, runs)
+    regimes = tuple(regime for name in NAMES if (regime := _regime(name, falling, rising, loop)) is not None)
+    remarks = tuple(remarks_on_steps(loop, [turn for run in runs for turn in run.turns[::2]], regimes, NAMES))
+    return Segmented(loop, falling, rising, regimes, cycle, _count(runs), remarks)
+
+
+def cycles(loop: Loop) -> list[Loop]:
+    """The complete cycles of a loop, each as a loop; the loop itself where it has one or none.
+
+    >>> torque = [1.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 1.0]
+    >>> twice = Loop([3.0, 2.0, -3.0, -2.0, 3.0, 2.0, -3.0, -2.0, 3.1], torque, side="output", name="example")
+    >>> [len(each) for each in cycles(twice)]
+    [5, 5]
+    """
+    _check(loop)
+    ends, minor = _ends(loop)
+    runs = [_Run(loop, first, last, minor) for first, last in pairwise(ends)]
+    pairs = _pairs(runs)
+    if len(pairs) < 2:
+        return [loop]
+    return [part(loop, slice(a.first, b.last + 1), f"{loop.name}, cycle {n}") for n, (a, b) in enumerate(pairs, 1)]
+
+
+def part(loop: Loop, rows: slice | Rows, name: str) -> Loop:
+    """Some rows of a loop as a loop."""
+    series = ("angle", "torque", "angle_sigma", "torque_sigma", "time", "temperature")
+    taken: dict[str, Any] = {key: None if getattr(loop, key) is None else getattr(loop, key)[rows] for key in series}
+    return replace(loop, name=name, **taken)
+
+
+# ---- Where it turns ---------------------------------------------------------------------------------------------------
+
+
+def _check(loop: Loop) -> None:
+    n = len(loop)
+    if n < 3:
+        raise ValueError(
+            f"{loop.name}: {n} points are no loop; measure steps from one peak of the torque to the other and back"
+        )
+    for name, values, unit in (("torque", loop.torque, "N.m"), ("angle", loop.angle, "rad")):
+        if np.ptp(values) == 0.0:
+            raise ValueError(
+                f"{loop.name}: the {name} is {values[0]:g} {unit} throughout; a loop must load and unload the gear"
+            )
+    if loop.time is not None and np.any(np.diff(loop.time) < 0.0):
+        row = int(np.flatnonzero(np.diff(loop.time) < 0.0)[0]) + 1
+        raise ValueError(
+            f"{loop.name}: time[{row}] = {loop.time[row]:g} s is before time[{row - 1}] = {loop.time[row - 1]:g} s; "
+            "put the points in the order measured"
+        )
+    ends, minor = _ends(loop)
+    inner = [_Run(loop, first, last, minor) for first, last in pairwise(ends)][1:-1]
+    detours = len(minor) + sum(not run.complete for run in inner)
+    if detours > max(LEAST, DETOURS * n):
+        raise ValueError(
+            f"{loop.name}: torque and angle turn back {detours} times in {n} points without reaching a peak; "
+            "put the points in the order measured, not sorted by torque or angle"
+        )
+    if np.cov(loop.angle, loop.torque)[0, 1] < 0.0:
+        raise ValueError(
+            f"{loop.name}: the torque falls as the angle grows; give both the same sense, as an elastic gear has them: "
+            "reverse the sign of one of the two"
+        )
+
+
+def _path(loop: Loop) -> Array:
+    """Torque and angle in shares of their spans, together: both grow while the gear is loaded."""
+    return np.asarray(loop.torque / np.ptp(loop.torque) + loop.angle / np.ptp(loop.angle))
+
+
+def _ends(loop: Loop) -> tuple[list[int], list[int]]:
+    """Rows between which the branches run, first and last row included; and those where a branch turns for a while."""
+    path = _path(loop)
+    turns = turning_points(path)
+    ends = [0, *turns, len(path) - 1]
+    least = MAJOR * float(np.ptp(path))
+    while len(ends) > 3:  # smaller loops go, the smallest first; the first and the last run may be short
+        ranges = np.abs(np.diff(path[ends]))[1:-1]
+        if not ranges.min() < least:
+            break
+        smallest = 1 + int(np.argmin(ranges))
+        del ends[smallest : smallest + 2]
+    return ends, [row for row in turns if row not in ends]
+
+
+class _Run:
+    """Rows of a loop on the way from one turn to the next, without those of smaller loops on the way."""
+
+    def __init__(self, loop: Loop, first: int, last: int, minor: Sequence[int]) -> None:
+        path = _path(loop)
+        self.first, self.last = first, last
+        self.sense = RISING if path[last] > path[first] else FALLING
+        rows = np.arange(first, last + 1)
+        self.turns = [row for row in minor if first < row < last]
+        kept = np.ones(len(rows), bool)
+        for turn in self.turns[::2]:
+            kept &= (rows <= turn) | (self.sense * path[rows] > self.sense * path[turn])
+        self.rows = rows[kept]
+        torque = loop.torque
+        tolerance = REACHED * float(np.ptp(torque))
+        low, high = sorted((float(torque[first]), float(torque[last])))
+        self.low, self.high = low, high
+        self.complete = low <= torque.min() + tolerance and high >= torque.max() - tolerance
+
+
+def _pairs(runs: Sequence[_Run]) -> list[tuple[_Run, _Run]]:
+    """Complete cycles one after the other: a branch and the way back."""
+    found: list[tuple[_Run, _Run]] = []
+    i = 0
+    while i < len(runs) - 1:
+        if runs[i].complete and runs[i + 1].complete:
+            found.append((runs[i], runs[i + 1]))
+            i += 2
+        else:
+            i += 1
+    return found
+
+
+def _count(runs: Sequence[_Run]) -> int:
+    return len(_pairs(runs))
+
+
+def _cycle(loop: Loop, runs: Sequence[_Run]) -> tuple[Rows, Branch | None, Branch | None]:
+    """Rows of the last cycle, and its branches."""
+    pairs = _pairs(runs)
+    if pairs and not (len(runs) == 3 and _completes(loop, runs[0], runs[2])):
+        first, second = pairs[-1]
+        return np.arange(first.first, second.last + 1), *_in_order(_branch(loop, [first]), _branch(loop, [second]))
+    whole = [i for i, run in enumerate(runs) if run.complete]
+    if len(runs) == 3 and 1 in whole:
+        whole = [1]
+    if not whole:
+        return np.empty(0, int), *_best(loop, runs)
+    middle = whole[-1]
+    pieces = [runs[i] for i in (middle + 1, middle - 1) if 0 <= i < len(runs)]
+    rows = np.empty(0, int)
+    if len(pieces) == 2 and _meet(loop, pieces[0], pieces[1]):
+        rows = np.arange(pieces[1].first, pieces[0].last + 1)
+    elif len(pieces) == 2:
+        pieces = sorted(pieces, key=lambda run: run.high - run.low)[-1:]
+    return rows, *_in_order(_branch(loop, [runs[middle]]), _branch(loop, pieces) if pieces else None)
+
+
+def _best(loop: Loop, runs: Sequence[_Run]) -> tuple[Branch | None, Branch | None]:
+    """Of a loop that has no whole branch: the longest run of each sense."""
+    found: list[Branch | None] = []
+    for sense in (FALLING, RISING):
+        same = [run for run in runs if run.sense == sense]
+        found.append(_branch(loop, [max(same, key=lambda run: run.high - run.low)]) if same else None)
+    return found[0], found[1]
+
+
+def _meet(loop: Loop, late: _Run, early: _Run) -> bool:
+    """Whether the end of a loop comes back to the torque of its beginning."""
+    torque = loop.torque
+    step = float(np.median(np.abs(np.diff(torque))))
+    lacking = late.sense * (float(torque[early.first]) - float(torque[late.last]))
+    return lacking <= max(MISSING * float(np.ptp(torque)), 1.5 * step)
+
+
+def _completes(loop: Loop, early: _Run, late: _Run) -> bool:
+    """Whether the beginning of a loop has the peak that its end does not come back to."""
+    torque, sense = loop.torque, late.sense
+    lacking = float((sense * torque[early.rows]).max() - sense * torque[late.last])
+    step = float(np.median(np.abs(np.diff(torque))))
+    return sense == early.sense and lacking > 0.5 * step and _meet(loop, late, early)
+
+
+def _in_order(one: Branch | None, other: Branch | None) -> tuple[Branch | None, Branch | None]:
+    falling = [each for each in (one, other) if each is not None and each.sense == FALLING]
+    rising = [each for each in (one, other) if each is not None and each.sense == RISING]
+    return falling[0] if falling else None, rising[0] if rising else None
+
+
+def _branch(loop: Loop, runs: Sequence[_Run]) -> Branch:
+    """From one run, or from the end of a loop and its beginning; where these overlap, the end counts."""
+    from scipy.optimize import isotonic_regression
+
+    late, *early = runs
+    rows = late.rows
+    for run in early:
+        beyond = late.sense * loop.torque[run.rows] > late.sense * loop.torque[late.rows[-1]]
+        rows = np.concatenate((rows, run.rows[beyond]))
+    if late.sense == FALLING:
+        rows = rows[::-1]
+    torque = isotonic_regression(loop.torque[rows]).x
+    return Branch(late.sense, rows, torque, loop.angle[rows], loop.angle_sigma[rows], loop.torque_sigma[rows])
+
+
+# ---- Quarters ---------------------------------------------------------------------------------------------------------
+
+
+def _regime(name: RegimeName, falling: Branch | None, rising: Branch | None, loop: Loop) -> Regime | None:
+    """The part of a branch between zero torque and a peak; None where it was not measured from end to end."""
+    branch = falling if name in ("positive_unloading", "negative_loading") else rising
+    sign = 1.0 if name.startswith("positive") else -1.0
+    peak = float((sign * loop.torque).max())
+    if branch is None or peak <= 0.0:
+        return None
+    ends, near = sorted((sign * branch.low, sign * branch.high)), REACHED * float(np.ptp(loop.torque))
+    if ends[0] > near or ends[1] < peak - near:
+        return None
+    torque = loop.torque[branch.rows]
+    inside = sign * torque >= 0.0
+    found = Regime(
+        name, torque[inside], branch.angle[inside], branch.angle_sigma[inside], branch.torque_sigma[inside], branch.rows[inside]
+    )
+    crosses = ends[0] < 0.0 and not np.any(torque == 0.0)
+    return _with_crossing(found, branch, 0 if sign > 0.0 else len(found.rows)) if crosses else found
+
+
+def _with_crossing(regime: Regime, branch: Branch, at: int) -> Regime:
+    torque, angle, angle_sigma, torque_sigma = _crossing(branch)
+    return replace(
+        regime,
+        torque=np.insert(regime.torque, at, torque),
+        angle=np.insert(regime.angle, at, angle),
+        angle_sigma=np.insert(regime.angle_sigma, at, angle_sigma),
+        torque_sigma=np.insert(regime.torque_sigma, at, torque_sigma),
+        rows=np.insert(regime.rows, at, -1),
+    )
+
+
+def _crossing(branch: Branch) -> tuple[float, float, float, float]:
+    """Torque 0, the angle there on the straight line between its neighbours, and the errors of both."""
+    after = int(np.searchsorted(branch.torque, 0.0, "right"))
+    near = slice(after - 1, after + 1)
+    torque, angle = branch.torque[near], branch.angle[near]
+    share = np.array([torque[1], -torque[0]]) / (torque[1] - torque[0])
+    angle_sigma, torque_sigma = (float(np.hypot(*(share * sigma[near]))) for sigma in (branch.angle_sigma, branch.torque_sigma))
+    return 0.0, float(share @ angle), angle_sigma, torque_sigma

@@ -1,0 +1,234 @@
+"""A regime as straight stretches with knees between them, and what its points scatter about these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+from strainwave.rig.analysis.result import Result, result
+
+Array = NDArray[np.float64]
+
+KNEES = 2  # at most: stiff, soft, stiff again
+SHORTEST = 0.04  # of the torque of a regime: a shorter stretch is none
+CANDIDATES = 24  # places tried for a knee
+SEARCHED = 500  # points, at most, by which the first place of a knee is found; it is then moved by all
+PRICE = 2.0  # per parameter, in logarithms of the number of points: a knee that noise brings forth is to be rare
+BLUNT = 3e-5  # of the span of the angle: residuals so small call for no knee; the digits of a file leave as much
+ROUNDING = 1e-7  # of the span: a point so near to a knee lies on it
+ROUNDS = 25  # of Gauss and Newton
+
+
+@dataclass(frozen=True, eq=False)
+class Segments(ComparedByFields):
+    """Angle over torque as a chain of straight lines.
+
+    Attributes:
+        knees: torque where one line passes into the next [N.m], shape (k,), ascending
+        compliances: of each stretch [rad/(N.m)], shape (k + 1,)
+        compliance_sigmas: their standard deviations [rad/(N.m)], shape (k + 1,)
+        knee_results: the knees with their intervals [N.m]
+        low, high: ends of the regime [N.m]
+        scatter: root mean square of the angle about the lines, for the points less the parameters [rad]
+        freedom: points less parameters
+    """
+
+    knees: Array
+    compliances: Array
+    compliance_sigmas: Array
+    knee_results: tuple[Result, ...]
+    low: float
+    high: float
+    scatter: float
+    freedom: int
+
+    @property
+    def softest(self) -> int:
+        """Which stretch has the greatest compliance."""
+        return int(np.argmax(self.compliances))
+
+    def stretch(self, number: int) -> tuple[float, float]:
+        """Torques between which a stretch runs [N.m]."""
+        ends = [self.low, *self.knees.tolist(), self.high]
+        return ends[number], ends[number + 1]
+
+
+def fit_segments(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: Array) -> Segments:
+    """Straight stretches through the points of a regime, with as many knees, up to two, as the points call for.
+
+    A knee is taken where it lowers the sum of squares by more than noise does: by four times the logarithm of the number of
+    points, in variances. Where no errors are stated, the variance is that of the scatter.
+
+    Args:
+        torque, angle: the points, shape (n,), n >= 2, the torque ascending, if not strictly
+        angle_sigma, torque_sigma: standard deviations, shape (n,); all zero where they are not known
+
+    >>> torque = np.linspace(0.0, 0.36, 19)
+    >>> found = fit_segments(torque, torque / 4.0 + np.maximum(torque - 0.1, 0.0) * 3.0, np.zeros(19), np.zeros(19))
+    >>> found.knees.round(6).tolist(), found.compliances.round(6).tolist()
+    ([0.1], [0.25, 3.25])
+    """
+    span = float(torque[-1] - torque[0])
+    variance = _variance(torque, angle, angle_sigma, torque_sigma, np.full(len(torque), np.ptp(angle) / span))
+    stated = bool(np.any(variance > 0.0))
+    tried: list[_Chain] = []
+    for count in _counts(torque):
+        known = tried[-1].knees if tried else np.empty(0)
+        tried.append(_best(torque, angle, variance if stated else np.ones(len(torque)), count, known))
+    n = len(torque)
+    exact = (BLUNT * float(np.ptp(angle))) ** 2
+
+    def price(each: _Chain) -> float:
+        squares = each.residual**2
+        misfit = np.sum(squares / np.maximum(variance, exact)) if stated else n * np.log(max(float(squares.mean()), exact))
+        return float(misfit + PRICE * np.log(n) * each.parameters)
+
+    best = min(tried, key=price)
+    if stated and np.any(torque_sigma > 0.0):  # each stretch turns errors of torque into angle by its own compliance
+        local = best.slopes[0] + np.heaviside(_past(torque, best.knees), 0.5) @ np.diff(best.slopes)
+        variance = _variance(torque, angle, angle_sigma, torque_sigma, local)
+        best = _refined(torque, angle, variance, best.knees)
+    return best.segments(torque, stated)
+
+
+def _counts(torque: Array) -> range:
+    """Numbers of knees that so many points can tell."""
+    different = len(np.unique(torque))
+    return range(0, min(KNEES, max(0, (different - 2) // 2)) + 1)
+
+
+def _variance(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: Array, compliance: Array) -> Array:
+    variance = angle_sigma**2 + (compliance * torque_sigma) ** 2
+    return np.asarray(np.maximum(variance, 1e-6 * variance.mean()))
+
+
+@dataclass(frozen=True, eq=False)
+class _Chain(ComparedByFields):
+    """A chain of lines fitted: slopes, knees, misfit in variances, derivatives by all parameters, residual."""
+
+    slopes: Array
+    knees: Array
+    misfit: float
+    columns: Array
+    residual: Array
+
+    @property
+    def parameters(self) -> int:
+        return 2 + 2 * len(self.knees)
+
+    def segments(self, torque: Array, stated: bool) -> Segments:
+        freedom = len(torque) - self.parameters
+        scatter = float(np.sqrt(np.sum(self.residual**2) / freedom)) if freedom > 0 else float("nan")
+        size = 1.0 if stated else (self.misfit / freedom if freedom > 0 else float("nan"))
+        lengths = _lengths(self.columns)
+        unit = self.columns / lengths
+        covariance = size * np.linalg.pinv(unit.T @ unit, rcond=1e-12) / np.outer(lengths, lengths)
+        count = len(self.knees)
+        sums = np.tril(np.ones((count + 1, count + 1)))
+        slopes = sums @ covariance[1 : count + 2, 1 : count + 2] @ sums.T
+        knees = tuple(
+            _knee(torque, float(knee), i, self.knees, float(np.sqrt(covariance[count + 2 + i, count + 2 + i])))
+            for i, knee in enumerate(self.knees)
+        )
+        return Segments(
+            self.knees, self.slopes, np.sqrt(np.diag(slopes)), knees, float(torque[0]), float(torque[-1]), scatter, freedom
+        )
+
+
+def _knee(torque: Array, knee: float, number: int, knees: Array, sigma: float) -> Result:
+    """A knee; beside a stretch of fewer than three points it lies anywhere between its neighbours."""
+    below = torque[(torque < knee) & (torque > (knees[number - 1] if number else -np.inf))]
+    above = torque[(torque > knee) & (torque < (knees[number + 1] if number + 1 < len(knees) else np.inf))]
+    if min(len(below), len(above)) >= 2:
+        return result(knee, "N.m", random=sigma)
+    low, high = float(torque[torque < knee].max(initial=torque[0])), float(torque[torque > knee].min(initial=torque[-1]))
+    return Result(knee, "N.m", (high - low) / 12.0**0.5, 0.0, low, high)
+
+
+def _best(torque: Array, angle: Array, variance: Array, count: int, known: Array) -> _Chain:
+    """The best chain with so many knees: from places on a grid, or beside the knee that is known, which lies between them.
+
+    Two knees of the grid around a sharp one would else hide another that is less sharp.
+    """
+    if count == 0:
+        return _refined(torque, angle, variance, np.empty(0))
+    span = float(torque[-1] - torque[0])
+    between = np.unique(np.concatenate((torque[1:-1], 0.5 * (torque[1:] + torque[:-1]))))
+    between = between[(between > torque[0] + SHORTEST * span) & (between < torque[-1] - SHORTEST * span)]
+    places = between[np.unique(np.linspace(0, len(between) - 1, CANDIDATES).astype(int))] if len(between) else between
+    chosen = places[:, np.newaxis]
+    if count == 2:
+        first, second = np.triu_indices(len(places), 1)
+        chosen = np.column_stack((places[first], places[second]))
+        beside = np.column_stack((places, np.broadcast_to(known, len(places))))
+        chosen = np.concatenate((chosen, np.sort(beside, axis=1))) if len(known) == 1 else chosen
+        chosen = chosen[chosen[:, 1] - chosen[:, 0] > SHORTEST * span]
+    if not len(chosen):
+        return _refined(torque, angle, variance, np.empty(0))
+    every = -(-len(torque) // SEARCHED)
+    misfit = _misfits(torque[::every], angle[::every], variance[::every], chosen)
+    return _refined(torque, angle, variance, chosen[int(np.argmin(misfit))])
+
+
+def _misfits(torque: Array, angle: Array, variance: Array, chosen: Array) -> Array:
+    """Sum of squares in variances for each choice of knees, shape (k, count) of `chosen`."""
+    span = float(torque[-1] - torque[0])
+    weights = 1.0 / np.sqrt(variance)
+    hinges = np.maximum(torque - chosen[:, :, np.newaxis], 0.0) / span
+    lines = np.broadcast_to(np.stack((np.ones_like(torque), torque / span)), (len(chosen), 2, len(torque)))
+    columns = np.concatenate((lines, hinges), axis=1) * weights
+    normal = columns @ columns.transpose(0, 2, 1) + 1e-12 * np.eye(2 + chosen.shape[1]) * np.sum(weights**2)
+    moments = columns @ (weights * angle)
+    found = np.linalg.solve(normal, moments[:, :, np.newaxis])[:, :, 0]
+    return np.asarray(np.sum((weights * angle - np.einsum("ki,kin->kn", found, columns)) ** 2, axis=1))
+
+
+def _refined(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
+    """Moves the knees to the best place: the lines are linear in the rest, and a knee moves by what its hinge calls for."""
+    span = float(torque[-1] - torque[0])
+    best = _lines(torque, angle, variance, knees)
+    for _ in range(ROUNDS if len(knees) else 0):
+        lengths = _lengths(best.columns)
+        step = np.linalg.lstsq(best.columns / lengths, best.residual / np.sqrt(variance), rcond=1e-10)[0] / lengths
+        step = step[2 + len(knees) :]
+        scale, better = 1.0, None
+        while better is None and scale > 1e-3:
+            moved = best.knees + scale * step
+            if np.all(np.diff([torque[0], *moved, torque[-1]]) > SHORTEST * span):
+                tried = _lines(torque, angle, variance, moved)
+                better = tried if tried.misfit < best.misfit else None
+            scale *= 0.5
+        if better is None:
+            break
+        done = best.misfit - better.misfit <= 1e-9 * best.misfit
+        best = better
+        if done:
+            break
+    return best
+
+
+def _past(torque: Array, knees: Array) -> Array:
+    """How far each torque is past each knee; 0 for a point on it, which belongs half to either side."""
+    past = torque[:, np.newaxis] - knees
+    past[np.abs(past) < ROUNDING * (torque[-1] - torque[0])] = 0.0
+    return past
+
+
+def _lengths(columns: Array) -> Array:
+    """Of each column, 1 where it is empty; columns of unit length make the answer the same in all units."""
+    lengths = np.sqrt(np.sum(columns**2, axis=0))
+    return np.asarray(np.where(lengths > 0.0, lengths, 1.0))
+
+
+def _lines(torque: Array, angle: Array, variance: Array, knees: Array) -> _Chain:
+    weights = 1.0 / np.sqrt(variance)
+    past = _past(torque, knees)
+    columns = np.column_stack((np.ones_like(torque), torque, np.maximum(past, 0.0)))
+    found = np.linalg.lstsq(weights[:, np.newaxis] * columns, weights * angle)[0]
+    residual = angle - columns @ found
+    slopes = np.cumsum(found[1:])
+    columns = np.column_stack((columns, -found[2:] * np.heaviside(past, 0.5))) * weights[:, np.newaxis]
+    return _Chain(slopes, knees, float(np.sum((weights * residual) ** 2)), columns, residual)

@@ -1,0 +1,280 @@
+"""Stiffness of a regime: its secant, the line through its points, its softest stretch, and its course along the torque."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.rig.analysis.line import fit_line
+from strainwave.rig.analysis.regimes import Regime, RegimeName
+from strainwave.rig.analysis.result import Result, inverse, result, student
+from strainwave.rig.analysis.segments import Segments, fit_segments
+from strainwave.rig.loop import Loop
+
+Array = NDArray[np.float64]
+
+WINDOW = 0.1  # of the torque of a regime: a local slope is that of the points within
+PLACES = 400  # of local slopes along a regime, at most
+UNIT, COMPLIANCE = "N.m/rad", "rad/(N.m)"
+
+
+@dataclass(frozen=True, eq=False)
+class LocalStiffness(ComparedByFields):
+    """Slope of short stretches along a regime.
+
+    Attributes:
+        torque: in the middle of each stretch [N.m], shape (m,), ascending
+        compliance: [rad/(N.m)], shape (m,)
+        sigma: its standard deviation, shared errors left out [rad/(N.m)], shape (m,)
+        width: torque over which each slope was taken [N.m], shape (m,)
+    """
+
+    torque: Array
+    compliance: Array
+    sigma: Array
+    width: Array
+
+    @property
+    def stiffness(self) -> Array:
+        """[N.m/rad], shape (m,); infinite where the angle does not grow."""
+        return _inverse(self.compliance)
+
+    @property
+    def low(self) -> Array:
+        """Lower end of the 95 % band of each stiffness [N.m/rad], shape (m,)."""
+        return _inverse(self.compliance + student(np.inf) * self.sigma)
+
+    @property
+    def high(self) -> Array:
+        """Upper end of the 95 % band of each stiffness [N.m/rad], shape (m,); infinite where the angle may not grow."""
+        return _inverse(self.compliance - student(np.inf) * self.sigma)
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffness(ComparedByFields):
+    """What a regime says of the stiffness, by three definitions that agree where its points lie on one straight line.
+
+    Attributes:
+        name: of the regime
+        secant: torque of the peak over the angle from zero torque to the peak [N.m/rad]; None where zero was not passed
+        regression: slope of the line of greatest likelihood through all its points [N.m/rad]
+        softest: slope of its softest straight stretch [N.m/rad]
+        stretch: where this one begins and ends [N.m]; without an error where it is the end of the regime
+        segments: all its straight stretches
+        local: its course along the torque
+        misfit: chi-square of the regression per degree of freedom [1]: near 1 where one line is enough
+        bend: largest distance of a point from the line, as angle [rad]
+    """
+
+    name: RegimeName
+    secant: Result | None
+    regression: Result
+    softest: Result
+    stretch: tuple[Result, Result]
+    segments: Segments
+    local: LocalStiffness
+    misfit: float
+    bend: float
+
+    @property
+    def whole(self) -> bool:
+        """Whether the softest stretch is the whole regime."""
+        return len(self.segments.knees) == 0
+
+    @property
+    def share(self) -> float:
+        """Share of the regime's torque that the softest stretch covers [1]."""
+        low, high = self.segments.stretch(self.segments.softest)
+        return (high - low) / (self.segments.high - self.segments.low)
+
+
+def stiffness_of(regime: Regime, loop: Loop, freedom: float = np.inf) -> Stiffness | None:
+    """Stiffness of a regime of a loop; None where its angle does not change, or fewer than two points were measured.
+
+    Args:
+        regime: the quarter
+        loop: the loop it is of, for what its points share
+        freedom: degrees of freedom of the errors, where these were taken from scatter
+    """
+    segments = segments_of(regime)
+    if segments is None:
+        return None
+    torque, angle, angle_sigma, torque_sigma = _columns(regime)
+    line = fit_line(angle, torque, angle_sigma, torque_sigma)
+    regression = _told(line.slope, line.sigma, loop, freedom, by_angle=line.share_x > 0.5)
+    low, high = segments.stretch(segments.softest)
+    return Stiffness(
+        regime.name,
+        _secant(regime, loop, freedom) if regime.from_zero else None,
+        regression,
+        _softest(segments, loop, freedom),
+        (_end(segments, low, loop), _end(segments, high, loop)),
+        segments,
+        local_stiffness(torque, angle, angle_sigma, torque_sigma),
+        line.misfit,
+        line.bend / abs(line.slope),
+    )
+
+
+def segments_of(regime: Regime) -> Segments | None:
+    """Straight stretches of a regime; None where its angle does not change, or fewer than two points were measured."""
+    torque, angle, angle_sigma, torque_sigma = _columns(regime)
+    if len(torque) < 2 or np.ptp(angle) == 0.0 or np.ptp(torque) == 0.0:
+        return None
+    return fit_segments(torque, angle, angle_sigma, torque_sigma)
+
+
+def _columns(regime: Regime) -> tuple[Array, Array, Array, Array]:
+    """Torque, angle and their errors of what was measured, ascending; points of one torque stay in the order measured."""
+    rows = regime.measured
+    torque = regime.torque[rows]
+    order = np.argsort(torque, kind="stable")
+    return torque[order], regime.angle[rows][order], regime.angle_sigma[rows][order], regime.torque_sigma[rows][order]
+
+
+def shared(stiffness: float, loop: Loop) -> float:
+    """Standard deviation of a stiffness by what all points of a loop share [N.m/rad]."""
+    return abs(stiffness) * hypot(loop.angle_scale, loop.torque_scale, stiffness * loop.compliance_sigma)
+
+
+def _told(stiffness: float, random: float, loop: Loop, freedom: float, *, by_angle: bool) -> Result:
+    """A stiffness; where errors of the angle make its error, it is the compliance that is spread normally."""
+    of_rig = shared(stiffness, loop)
+    if not by_angle or stiffness <= 0.0:
+        return result(stiffness, UNIT, random=random, shared=of_rig, freedom=freedom)
+    compliance = result(
+        1.0 / stiffness, COMPLIANCE, random=random / stiffness**2, shared=of_rig / stiffness**2, freedom=freedom
+    )
+    return inverse(compliance, UNIT)
+
+
+def _secant(regime: Regime, loop: Loop, freedom: float) -> Result:
+    """Between the point of zero torque and the peak."""
+    zero, peak = (0, -1) if regime.name.startswith("positive") else (-1, 0)
+    rise, turned = float(regime.torque[peak] - regime.torque[zero]), float(regime.angle[peak] - regime.angle[zero])
+    if turned == 0.0:
+        return result(np.inf, UNIT)
+    slope = rise / turned
+    near = 1 if zero == 0 else -2
+    step = float(regime.torque[near] - regime.torque[zero])
+    at_zero = float(regime.angle[near] - regime.angle[zero]) / step if step else 1.0 / slope
+    of_angle = hypot(float(regime.angle_sigma[peak]), float(regime.angle_sigma[zero]))
+    of_torque = hypot(float(regime.torque_sigma[peak]) / slope, float(regime.torque_sigma[zero]) * at_zero)
+    friction = abs(1.0 / slope - at_zero) * loop.friction_sigma  # it moves the whole branch along the torque
+    random = hypot(of_angle, of_torque) / abs(turned) * abs(slope)
+    friction *= abs(slope) / abs(turned)
+    found = _told(slope, random, loop, freedom, by_angle=True)
+    if not friction:
+        return found
+    compliance = inverse(found, COMPLIANCE) if slope > 0.0 else found
+    grown = hypot(compliance.shared, friction / slope**2)
+    return inverse(result(compliance.value, COMPLIANCE, random=compliance.random, shared=grown, freedom=freedom), UNIT)
+
+
+def _softest(segments: Segments, loop: Loop, freedom: float) -> Result:
+    number = segments.softest
+    compliance = float(segments.compliances[number])
+    if compliance <= 0.0:
+        return result(np.inf, UNIT)
+    random = float(segments.compliance_sigmas[number]) / compliance**2
+    return _told(1.0 / compliance, random, loop, freedom, by_angle=True)
+
+
+def _end(segments: Segments, torque: float, loop: Loop) -> Result:
+    """Where a stretch ends: a knee with its error, or the end of the regime."""
+    for knee in segments.knee_results:
+        if knee.value == torque:
+            grown = Result(torque, "N.m", knee.random, abs(torque) * loop.torque_scale, knee.low, knee.high)
+            return result(torque, "N.m", random=knee.random, shared=grown.shared) if knee.low > segments.low else grown
+    return result(torque, "N.m", random=0.0, shared=abs(torque) * loop.torque_scale)
+
+
+def local_stiffness(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: Array) -> LocalStiffness:
+    """Slopes of the angle over the torque of the points within a tenth of the regime's torque, or of three points at least.
+
+    >>> torque = np.linspace(0.0, 1.0, 5)
+    >>> local_stiffness(torque, 0.5 * torque, np.full(5, 0.01), np.zeros(5)).stiffness.round(9).tolist()
+    [2.0, 2.0, 2.0]
+    """
+    half = 0.5 * WINDOW * float(torque[-1] - torque[0])
+    n, found, seen = len(torque), [], set()
+    middles = torque if n <= PLACES else torque[np.linspace(0, n - 1, PLACES).astype(int)]
+    for middle in middles.tolist():
+        first, last = int(np.searchsorted(torque, middle - half)), int(np.searchsorted(torque, middle + half, "right")) - 1
+        while (last - first < 2 or torque[last] - torque[first] < half) and (first > 0 or last < n - 1):
+            first, last = max(first - 1, 0), min(last + 1, n - 1)
+        at_end = middle in (torque[0], torque[-1])  # of a few points: the neighbour says the same
+        if (first, last) in seen or last - first < (3 if at_end else 2) or torque[last] == torque[first]:
+            continue
+        seen.add((first, last))
+        found.append(_slope(*(each[first : last + 1] for each in (torque, angle, angle_sigma, torque_sigma))))
+    found.sort()
+    columns = np.array(found).reshape(-1, 4).T
+    return LocalStiffness(columns[0], columns[1], columns[2], columns[3])
+
+
+def _slope(torque: Array, angle: Array, angle_sigma: Array, torque_sigma: Array) -> tuple[float, float, float, float]:
+    """Mean torque, slope of the angle over it, its standard deviation, and the torque it was taken over."""
+    middle = float(torque.mean())
+    lever = (torque - middle) / np.sum((torque - middle) ** 2)
+    slope = float(lever @ angle)
+    sigma = float(np.sqrt(np.sum(lever**2 * (angle_sigma**2 + (slope * torque_sigma) ** 2))))
+    return middle, slope, sigma, float(torque[-1] - torque[0])
+
+
+def _inverse(compliance: Array) -> Array:
+    return np.asarray(np.divide(1.0, compliance, out=np.full(len(compliance), np.inf), where=compliance > 0.0))
+
+
+def closure_of_secants(stiffnesses: ArrayLike, torque: float) -> float:
+    """How far a cycle comes out from where it began, if these are the secants of its quarters from zero to the peak [rad].
+
+    Args:
+        stiffnesses: of positive unloading, negative loading, negative unloading, positive loading [N.m/rad], shape (4,)
+        torque: of the peaks [N.m]
+
+    Raises:
+        ValueError: there are not four of them, or one is not positive
+
+    >>> rows = [[4.51, 0.31, 4.85, 0.30], [4.36, 0.29, 3.59, 0.33], [4.19, 0.32, 5.08, 0.33]]
+    >>> [round(float(np.degrees(closure_of_secants(row, 0.36))), 2) for row in rows]
+    [1.9, -7.61, -2.82]
+    """
+    values = arguments.numbers("stiffnesses", stiffnesses)
+    if values.shape != (4,) or not np.all(values > 0.0):
+        raise ValueError(f"stiffnesses = {np.asarray(values).tolist()} must be four positive numbers [N.m/rad], one a regime")
+    peak = arguments.number("torque", torque, "N.m", low=0.0)
+    return float(peak / values @ np.array([-1.0, -1.0, 1.0, 1.0]))
+
+
+def soft_parts(stiffnesses: Sequence[float], width: float, torque: float) -> tuple[float, float]:
+    """Torque over which the softness of the loading regimes must act for the loop to close with this width [N.m].
+
+    The reading under which a table of four slopes and a width is one loop (erratum E-T4): a loading regime is as soft as
+    stated over part of its torque, and over the rest as stiff as the unloading regimes are in the mean.
+
+    Args:
+        stiffnesses: as for `closure_of_secants`
+        width: of the loop at zero torque [rad]
+        torque: of the peaks [N.m]
+
+    Returns:
+        the part of negative loading, and that of positive loading
+
+    >>> [round(part, 3) for part in soft_parts([4.51, 0.31, 4.85, 0.30], float(np.radians(50.5)), 0.36)]
+    [0.292, 0.283]
+    """
+    closure_of_secants(stiffnesses, torque)
+    down, soft_down, up, soft_up = (float(each) for each in stiffnesses)
+    stiff = 0.5 * (down + up)
+
+    def part(soft: float, unloading: float) -> float:
+        return (width - torque / stiff + torque / unloading) / (1.0 / soft - 1.0 / stiff)
+
+    return part(soft_down, up), part(soft_up, down)

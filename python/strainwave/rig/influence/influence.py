@@ -1,0 +1,323 @@
+"""What influences a torsion loop: document T's Table 3, row by row, by the models and by measured series."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from math import log
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave._core import Gear
+from strainwave.equality import ComparedByFields
+from strainwave.files.gear_set import GearSet, catalogue
+from strainwave.rig.influence.cycle import Cycle, Factors, cycle_to
+from strainwave.rig.influence.series import Series, analyse_series
+from strainwave.rig.influence.trend import Slope, Trend, regress
+from strainwave.rig.loop import Side
+from strainwave.rig.virtual.printed import PEAK, printed_gear
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)  # of the largest torque
+USUAL = 0.2  # share from which document T's sweep of amplitudes is taken to begin
+DRAWN = (0.2, 0.4, 0.6, 0.8, 1.0)  # shares whose loops are drawn
+NOTHING = 1e-9  # of the largest torque times the largest angle: a smaller area is that of rounding
+PRELOADS = (0.5, 0.7, 0.85, 1.0, 1.15, 1.3, 1.5, 2.0)  # of the friction at the input
+SAFELY = 1.5  # times its friction, which the input must turn at for the table's numbers
+SLIDES = 0.98  # of the torque: where friction holds more, there is no loop to speak of
+MODULI = (0.8, 0.9, 1.0, 1.1, 1.2)
+WARMTH = tuple(273.15 + each for each in (-20.0, 0.0, 20.0, 40.0, 60.0))  # K
+FAMILY = "hfuc"  # the only one with ratio 30
+FIGURES = ("area", "width", "width_at_zero", "stiffness", "high_stiffness", "low_stiffness")
+
+# ASME B31.3, Table C-6: modulus of carbon steel with 0.3 % carbon or less, 203.4 GPa at 21 degC, 198.6 GPa at 93 degC.
+STEEL = log(203.4 / 198.6) / 72.0  # 1/K
+# Groups of ferritic steel at 21 degC in the same table: least and largest modulus, GPa.
+STEELS = (191.7, 203.4)
+# Friction current of joint 3 of a UR3 at work, 230 cycles from 32 to 43 degC (UCI 963, CC BY 4.0): 354 mA on average, less
+# 8.27 mA per kelvin; 95 %: 2.7 to 13.8 mA.
+JOINT = 8.27e-3 / 0.3535  # 1/K
+LOSS_FACTOR = 1e-3  # of steel, order of magnitude
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep(ComparedByFields):
+    """Loops over one thing that is varied.
+
+    Args:
+        levels: of what is varied, shape (n,)
+        figures: of the loops by the names of `FIGURES`, each shape (n,)
+        side: the loaded shaft
+    """
+
+    levels: Array
+    figures: Mapping[str, Array]
+    side: Side
+
+    @classmethod
+    def of(cls, levels: Sequence[float], loops: Sequence[Cycle]) -> Sweep:
+        """The figures of loops at levels."""
+        figures = {name: np.array([getattr(loop, name) for loop in loops]) for name in FIGURES}
+        nothing = np.array([NOTHING * loop.peak * float(np.ptp(loop.angle)) for loop in loops])
+        for name in ("area", "width", "width_at_zero"):
+            figures[name] = np.where(figures["area"] > nothing, figures[name], 0.0)
+        return cls(np.array(levels), figures, loops[0].side)
+
+    def __getitem__(self, name: str) -> Array:
+        return self.figures[name]
+
+    def exponent(self, name: str, least: float = 0.0) -> Slope:
+        """Power of the levels to which a figure is closest, from a level on, where the figure is not zero."""
+        chosen = (self.levels >= least) & (self[name] > 0.0)
+        return power(self.levels[chosen], self[name][chosen])
+
+    def local_exponents(self, name: str) -> Array:
+        """Power between neighbouring levels, shape (n - 1,); not a number where the figure is zero."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.diff(np.log(self[name])) / np.diff(np.log(self.levels))
+        return np.where(np.isfinite(found), found, np.nan)
+
+
+def power(x: Array, y: Array) -> Slope:
+    """The exponent of y ~ x^exponent with its 95 % interval, by regression of the logarithms; none of fewer than three points.
+
+    >>> round(power(np.array([1.0, 2.0, 4.0]), np.array([3.0, 12.0, 48.0])).value, 9)
+    2.0
+    """
+    if len(x) < 3:
+        return Slope(float("nan"), float("inf"), 0, 1.0)
+    return regress(np.column_stack((np.ones_like(x), np.log(x))), np.log(y))[1]
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Relative falls per kelvin, each with where it comes from.
+
+    Attributes:
+        stiffness, hysteresis, friction: of the torques of spring, hysteresis and friction at the input [1/K]
+        sources: in the same order
+    """
+
+    stiffness: float
+    hysteresis: float
+    friction: float
+    sources: tuple[str, str, str]
+
+    def factors(self, temperature: float, reference: float) -> Factors:
+        """What the parts are multiplied by at a temperature [K]."""
+        falls = (self.stiffness, self.hysteresis, self.friction)
+        return Factors(*(float(np.exp(-fall * (temperature - reference))) for fall in falls))
+
+
+@dataclass(frozen=True)
+class CatalogueRow:
+    """What the maker states of a gear: K1, K2, K3 [N.m/rad] and T1 [N.m] at the output; half his bound on the loop [rad]."""
+
+    size: int
+    ratio: int
+    k1: float
+    k2: float
+    k3: float
+    t1: float
+    width: float
+
+
+@dataclass(frozen=True, eq=False)
+class Influence(ComparedByFields):
+    """Document T's Table 3 put to models and measurements.
+
+    Attributes:
+        gear_set: the gear
+        torque: largest torque at the output [N.m]
+        amplitude: loops over the torque at the output, and those of document T's gear at the input
+        drawn: the loops that are drawn of both
+        rows: what the catalogue states
+        material: loops over the modulus, all springs made of it
+        preload: loops at the input over the friction there, relative; None if the input has no friction that holds
+        temperature: loops at the input over the temperature
+        rates: by which the temperature acts
+        friction: what friction at the input holds [N.m]
+        shares: of the compliance of a staged gear by its parts: flexspline, bearing, mesh, circular spline
+        series: what was measured
+        trends: what it shows
+    """
+
+    gear_set: GearSet
+    torque: float
+    amplitude: Mapping[str, Sweep]
+    drawn: Mapping[str, tuple[Cycle, ...]] = field(repr=False)
+    rows: tuple[CatalogueRow, ...] = field(repr=False)
+    material: Sweep
+    preload: Sweep | None
+    temperature: Sweep
+    rates: Rates
+    friction: float
+    shares: Mapping[str, float]
+    series: Series | None = None
+    trends: tuple[Trend, ...] = ()
+
+    @property
+    def input_torque(self) -> float:
+        """Largest torque at the input [N.m]: that at the output over the ratio."""
+        return self.torque / abs(float(self.gear_set.gear.kinematics.ratio))
+
+
+OWN, SPECIMEN = "gear", "document T"
+
+
+def influence(
+    gear_set: GearSet, torque: float | None = None, series: Series | None = None, *, progress: Progress = lambda _: None
+) -> Influence:
+    """Varies what document T's Table 3 names, with the models, and tests what a measured series shows.
+
+    Args:
+        gear_set: the gear, without stages
+        torque: largest torque at the output [N.m]; the rated torque of the set if not given
+        series: what was measured
+        progress: is told what is being done
+
+    Raises:
+        ValueError: the set has no rated torque and none is given; friction at the input holds all of the torque; or as
+            `cycle` and `analyse_series`
+
+    >>> found = influence(GearSet.read("csg-25-100"))
+    >>> found.torque, bool(found.amplitude["gear"]["area"][-1] > 0.0)
+    (87.0, True)
+    """
+    gear = gear_set.gear
+    torque = arguments.number("torque", _rated(gear_set) if torque is None else torque, "N.m", "()", 0.0)
+    peak, rates, held = torque / abs(float(gear.kinematics.ratio)), rates_of(gear), held_at_rest(gear)
+    _check_turns(torque, peak, held)
+    trends = tuple(analyse_series(series)) if series is not None else ()
+    progress("loops over the torque")
+    tested, loops = _document_t()
+    amplitude = {OWN: over_torque(gear, torque), SPECIMEN: tested}
+    drawn = {OWN: tuple(cycle_to(gear, share * torque) for share in DRAWN), SPECIMEN: loops}
+    progress("the catalogue")
+    rows = catalogue_rows()
+    progress("loops over modulus, preload and temperature")
+    warm = {t: rates.factors(t, _reference(gear)) for t in WARMTH}
+    return Influence(
+        gear_set,
+        torque,
+        amplitude,
+        drawn,
+        rows,
+        _over(MODULI, lambda e: cycle_to(gear, torque, factors=Factors(e, 1.0, 1.0))),
+        _at_input(gear, peak, held, {f: Factors(friction=f) for f in PRELOADS}) if held > 0.0 else None,
+        _at_input(gear, peak, held, warm),
+        rates,
+        held,
+        compliance_shares(),
+        series,
+        trends,
+    )
+
+
+@cache
+def _document_t() -> tuple[Sweep, tuple[Cycle, ...]]:
+    """The loops of document T's gear at its input: over the torque, and those that are drawn."""
+    tested = printed_gear(0)
+    loops = tuple(cycle_to(tested, share * PEAK, side="input") for share in DRAWN)
+    return over_torque(tested, PEAK, "input"), loops
+
+
+def over_torque(gear: Gear, torque: float, side: Side = "output") -> Sweep:
+    """Loops over the torque level, up to `torque` [N.m]."""
+    levels = [share * torque for share in SHARES]
+    return Sweep.of(levels, [cycle_to(gear, level, side=side) for level in levels])
+
+
+def _over(levels: Sequence[float], loop: Callable[[float], Cycle]) -> Sweep:
+    return Sweep.of(levels, [loop(level) for level in levels])
+
+
+def _at_input(gear: Gear, peak: float, held: float, factors: Mapping[float, Factors]) -> Sweep:
+    """Loops at the input, but for levels at which friction holds the shaft."""
+    turning = {level: each for level, each in factors.items() if each.friction * held < SLIDES * peak}
+    return Sweep.of(list(turning), [cycle_to(gear, peak, side="input", factors=each) for each in turning.values()])
+
+
+def _check_turns(torque: float, peak: float, held: float) -> None:
+    if SAFELY * held >= SLIDES * peak:
+        raise ValueError(
+            f"torque = {torque:g} N.m at the output is {peak:.4g} N.m at the input, where friction holds {held:.4g} N.m: "
+            f"too little to vary the friction; take {torque * SAFELY * held / (SLIDES * peak):.3g} N.m or more"
+        )
+
+
+def _rated(gear_set: GearSet) -> float:
+    if "rated_torque" not in gear_set.ratings:
+        raise ValueError(f"{gear_set.name} has no rated torque; say up to which torque [N.m] at the output the loops go")
+    return float(gear_set.ratings["rated_torque"].value)
+
+
+def held_at_rest(gear: Gear) -> float:
+    """The torque that friction at the input holds at most [N.m], unloaded: half the width of its loop over a quiet turn."""
+    path = np.concatenate((np.linspace(0.0, 1.0, 101), np.linspace(1.0, 0.0, 101)[1:]))
+    found = np.asarray(gear.friction_input.quasistatic(path))
+    return 0.5 * float(np.ptp(found[len(found) // 4 :]))
+
+
+def _reference(gear: Gear) -> float:
+    return float(gear.softening.reference_temperature)
+
+
+def rates_of(gear: Gear) -> Rates:
+    """How the gear changes as it warms up: as its own laws say, or as steel and the friction of a measured joint do."""
+    softening, reference = gear.softening, _reference(gear)
+    levels = [
+        np.asarray(gear.friction_input.quasistatic([0.0, 1.0], temperature=t)).max() for t in (reference, reference + 10.0)
+    ]
+    own = levels[0] > 0.0 and levels[1] != levels[0]
+    return Rates(
+        softening.stiffness_fall if softening.active else STEEL,
+        softening.hysteresis_fall,
+        log(levels[0] / levels[1]) / 10.0 if own else JOINT,
+        (
+            "the gear's softening" if softening.active else "modulus of carbon steel, ASME B31.3, Table C-6",
+            "the gear's softening" if softening.active else "assumed: none",
+            "the gear's friction" if own else "friction current of a UR3's joint 3 over 230 cycles from 32 to 43 °C (UCI 963)",
+        ),
+    )
+
+
+@cache
+def catalogue_rows() -> tuple[CatalogueRow, ...]:
+    """What the catalogue states of all gears of the family with ratio 30, by size and ratio."""
+    return tuple(_catalogue_row(name) for name in catalogue() if name.startswith(f"{FAMILY}-"))
+
+
+def _catalogue_row(name: str) -> CatalogueRow:
+    """K1 and T1 as published are those of spring and hysteresis together, as the gear is loaded for the first time."""
+    _, size, ratio = name.split("-")
+    gear: Any = GearSet.read(name).gear  # of this family all have a spring of three segments and Maxwell elements
+    spring, held = gear.stiffness, float(sum(gear.hysteresis.breakaway))
+    t1 = spring.t1 + held
+    return CatalogueRow(int(size), int(ratio), spring.k1 * t1 / spring.t1, spring.k2, spring.k3, t1, 2.0 * held / spring.k1)
+
+
+def compliance_shares(name: str = "tilt-actuator") -> dict[str, float]:
+    """Shares of the compliance at the output, wave generator held, of a gear of stages (document A, Eq. 1 corrected).
+
+    1/K_out = 1/K_t + tan² alpha_t / (K_b r_g²) + 1 / (K_m r_g² cos² alpha_t) + 1/K_CS
+
+    >>> {part: round(share, 3) for part, share in compliance_shares().items()}
+    {'flexspline': 0.575, 'bearing': 0.123, 'mesh': 0.245, 'circular spline': 0.057}
+    """
+    gear: Any = GearSet.read(name).gear  # a linear spring within stages
+    stages, radius = gear.structure, float(gear.structure.pitch_radius)
+    slope = float(np.tan(stages.pressure_angle))
+    parts = {
+        "flexspline": 1.0 / gear.stiffness.k,
+        "bearing": slope**2 / (stages.bearing_stiffness * radius**2),
+        "mesh": (1.0 + slope**2) / (stages.mesh_stiffness * radius**2),
+        "circular spline": 1.0 / stages.circular_spline_stiffness,
+    }
+    return {part: each / sum(parts.values()) for part, each in parts.items()}

@@ -1,0 +1,274 @@
+"""From the record of a torsion test to its loops: angles of photographs and torques of masses, less what the rig adds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import degrees
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+from strainwave.messages import listed, one_line, quoted
+from strainwave.rig.analysis.regimes import cycles
+from strainwave.rig.bench.rig_file import load
+from strainwave.rig.bench.setup import Camera, Rig
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.bench.steps_file import read_steps
+from strainwave.rig.loop import Loop
+from strainwave.rig.reading.recorded import scatter
+from strainwave.rig.running.plan_check import check
+from strainwave.rig.torque.couple import remarks_on_couple
+from strainwave.rig.torque.torque import Torque, torque_of, without_compliance
+from strainwave.rig.vision.angle import Angles, Frame, follow, look
+
+Array = NDArray[np.float64]
+RIG, PLAN = "rig.toml", "plan.csv"
+Place = tuple[float, str]  # position of the flexspline [rad] and specimen
+_AGAINST = 5.0  # standard deviations that an angle must move against the torque to be told
+
+
+class Reading(NamedTuple):
+    """The angle of a step as it was read.
+
+    Attributes:
+        angle: [rad]
+        sigma: its standard deviation [rad]
+    """
+
+    angle: float
+    sigma: float
+
+
+@dataclass(frozen=True, eq=False)
+class TorsionTest(ComparedByFields):
+    """A torsion test as it was read.
+
+    Attributes:
+        folder: of the test
+        rig: on which it was made
+        steps: as recorded, all of them
+        angles: of the photographs, of each position and unit
+        loops: of each position, unit and cycle
+        hashes: SHA-256 of each photograph, by its name
+        remarks: what went wrong or was left out, in words
+        deviations: where the record departs from the plan in the folder; None where there is no plan
+    """
+
+    folder: Path
+    rig: Rig
+    steps: tuple[Step, ...]
+    angles: tuple[Angles, ...]
+    loops: tuple[Loop, ...]
+    hashes: Mapping[str, str]
+    remarks: tuple[str, ...]
+    deviations: tuple[str, ...] | None = None
+
+
+def read_test(
+    folder: str | Path,
+    *,
+    rig: Rig | None = None,
+    reference: str | None = None,
+    camera: Camera | None = None,
+    progress: Callable[[str], None] = lambda name: None,
+) -> TorsionTest:
+    """Reads the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
+
+    The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
+    E-T11). A photograph that tells no angle is told in the remarks; the other steps remain. Where the folder holds the
+    steps that were planned, `plan.csv`, the record is held against them.
+
+    Args:
+        folder: of the test
+        rig: instead of `rig.toml`
+        reference: name of the photograph whose angle is 0, for the position and unit that it belongs to
+        camera: instead of that of the rig
+        progress: is called with the name of each photograph before it is read
+
+    Raises:
+        ValueError: rig or steps cannot be read, the reference is no photograph of the test, or no step has torque and angle
+    """
+    folder = Path(folder)
+    rig = load(folder / RIG) if rig is None else rig
+    rig = rig if camera is None else replace(rig, camera=camera)
+    steps = read_steps(folder)
+    if reference is not None and reference not in [step.image for step in steps]:
+        raise ValueError(one_line(f"{folder}: reference = {quoted(reference)} is no photograph of a step"))
+    found: list[Angles] = []
+    remarks: list[str] = []
+    frames: list[Frame] = []
+    for place, of_place in _places(steps).items():
+        named = [step for step in of_place if step.image is not None]
+        frames_of_place = [_look(folder, str(step.image), rig, progress) for step in named]
+        useful = [step for step, frame in zip(named, frames_of_place, strict=True) if frame.markers is not None]
+        if useful:
+            chosen = reference if reference in [step.image for step in useful] else _at_peak(useful)
+            found.append(follow(frames_of_place, camera=rig.camera, reference=chosen))
+            frames_of_place = list(found[-1].frames)
+            remarks += [f"{_called(place)}: {each}" for each in found[-1].remarks]
+        frames += frames_of_place
+    remarks += [f"{frame.name}: {words}" for frame in frames for words in (frame.fault, *frame.warnings) if words]
+    made = loops(steps, rig, found)
+    if not made:
+        raise ValueError(one_line(f"{folder}: no position has two steps with torque and angle; {listed(remarks)}"))
+    hashes = {frame.name: frame.sha256 for frame in frames}
+    return TorsionTest(
+        folder, rig, tuple(steps), tuple(found), tuple(made), hashes, tuple(dict.fromkeys(remarks)), _deviations(folder, steps)
+    )
+
+
+def _deviations(folder: Path, steps: Sequence[Step]) -> tuple[str, ...] | None:
+    plan = folder / PLAN
+    return tuple(map(str, check(steps, read_steps(plan)))) if plan.exists() else None
+
+
+def _look(folder: Path, name: str, rig: Rig, progress: Callable[[str], None]) -> Frame:
+    progress(name)
+    return replace(look(folder / name, camera=rig.camera), name=name)  # as the steps name it, folder and all
+
+
+def loops(steps: Sequence[Step], rig: Rig, angles: Angles | Iterable[Angles] = ()) -> list[Loop]:
+    """The loops of a test: one for each position, unit and cycle.
+
+    Args:
+        steps: as made
+        rig: what turns masses into torque, and yields itself
+        angles: of the photographs; a step without one has its own angle, or is left out
+
+    Returns:
+        Loops in the order measured, each with what is to be said of it. What leads up to the first peak belongs to no cycle.
+
+    Raises:
+        ValueError: a cord from a fixed point has been turned beyond its arm
+
+    >>> from strainwave.rig import Rig, Step, Value
+    >>> rig = Rig("bench", "input", Value(0.1), gravity=Value(10.0), compliance=Value(0.01))
+    >>> masses = [0.3, 0.0, -0.3, 0.0, 0.3]
+    >>> steps = [Step(n, max(m, 0.0), max(-m, 0.0), angle=m / 4.0) for n, m in enumerate(masses, 1)]
+    >>> (loop,) = loops(steps, rig)
+    >>> loop.torque.round(3).tolist(), loop.angle.round(4).tolist()
+    ([0.3, 0.0, -0.3, 0.0, 0.3], [0.072, 0.0, -0.072, 0.0, 0.072])
+    """
+    pictures = [angles] if isinstance(angles, Angles) else list(angles)
+    return [loop for place, of_place in _places(steps).items() for loop in _loops_of(place, of_place, rig, pictures)]
+
+
+def _places(steps: Sequence[Step]) -> dict[Place, list[Step]]:
+    """The steps of each position and unit, in the order made."""
+    found: dict[Place, list[Step]] = {}
+    for step in steps:
+        found.setdefault((step.position, step.unit), []).append(step)
+    return found
+
+
+def _at_peak(steps: Sequence[Step]) -> str:
+    """The first photograph at the largest torque, of those that tell an angle."""
+    loads = [step.mass_positive - step.mass_negative if step.torque is None else step.torque for step in steps]
+    return str(steps[int(np.argmax(loads))].image)
+
+
+def _called(place: Place) -> str:
+    position, unit = place
+    return f"{f'unit {unit}, ' if unit else ''}flexspline at {degrees(position):.6g} degrees"
+
+
+def _loops_of(place: Place, steps: Sequence[Step], rig: Rig, pictures: Sequence[Angles]) -> list[Loop]:
+    readings, zero = _readings(steps, pictures)
+    angle = np.array([reading.angle for reading in readings])
+    torque = torque_of(steps, rig, angle)
+    rows = np.flatnonzero(np.isfinite(angle) & np.isfinite(torque.shaft)).tolist()
+    if len(rows) < 2:
+        return []
+    own = without_compliance(angle, torque.shaft, rig.compliance)
+    if zero is not None:
+        own = own - own[zero]
+    sigma = np.array([reading.sigma for reading in readings])[rows]
+    whole = Loop(
+        own[rows],
+        torque.shaft[rows],
+        side=rig.side,
+        name=_called(place),
+        angle_sigma=sigma if np.any(sigma > 0.0) else scatter(own[rows], torque.shaft[rows]),
+        torque_sigma=torque.sigma[rows],
+        torque_scale=torque.scale,
+        friction_sigma=torque.friction_sigma,
+        compliance_sigma=rig.compliance.sigma,
+        time=_series([steps[row].time for row in rows]),
+        temperature=_series([steps[row].temperature for row in rows]),
+        position=place[0],
+        unit=place[1],
+        remarks=tuple(_remarks(steps, readings, torque, pictures, rig)),
+    )
+    return _cycles(whole)
+
+
+def _readings(steps: Sequence[Step], pictures: Sequence[Angles]) -> tuple[list[Reading], int | None]:
+    """The angle of each step, not-a-number where there is none; and the step whose angle is 0 by choice."""
+    seen = {
+        frame.name: Reading(float(angle), float(sigma))
+        for angles in pictures
+        for frame, angle, sigma in zip(angles.useful, angles.angle, angles.sigma, strict=True)
+    }
+    nothing = Reading(np.nan, 0.0)
+    found = [seen.get(step.image or "", nothing if step.angle is None else Reading(step.angle, 0.0)) for step in steps]
+    references = {angles.reference for angles in pictures}
+    return found, next((row for row, step in enumerate(steps) if step.image in references), None)
+
+
+def _series(values: Sequence[float | None]) -> list[float] | None:
+    known = [value for value in values if value is not None]
+    return known if len(known) == len(values) else None
+
+
+def _cycles(loop: Loop) -> list[Loop]:
+    """Its cycles; the whole of it where it is not even one."""
+    try:
+        found = cycles(loop)
+    except ValueError as reason:
+        return [replace(loop, remarks=(*loop.remarks, str(reason)))]
+    outside = len(loop) - sum(map(len, found)) + len(found) - 1  # a cycle begins with the last point of the one before
+    words = f"{outside} of {len(loop)} points belong to no complete cycle and are left out"
+    return [replace(each, remarks=(*each.remarks, words)) for each in found] if outside else found
+
+
+def _remarks(
+    steps: Sequence[Step], readings: Sequence[Reading], torque: Torque, pictures: Sequence[Angles], rig: Rig
+) -> Iterator[str]:
+    faults = {frame.name: frame.fault for angles in pictures for frame in angles.frames if frame.markers is None}
+    for step, reading in zip(steps, readings, strict=True):
+        if not np.isfinite(reading.angle):
+            missing = "the photograph told no angle" if step.image else "no angle and no photograph"
+            reason = faults.get(step.image or "", missing)
+            yield f"step {step.number} is left out: {f'{step.image}: ' if step.image else ''}{reason}"
+        if step.mass_positive and step.mass_negative:
+            yield f"step {step.number} has masses on both pairs of pans; their difference counts"
+    for before, after in pairwise(steps):
+        if after.number > before.number + 1:
+            yield f"between steps {before.number} and {after.number} the numbers leave {after.number - before.number - 1} out"
+    yield from _remarks_on_motion(steps, readings, torque)
+    yield from (text for angles in pictures for text in remarks_on_couple(angles, steps, torque, rig))
+    for name, values in (("time", [step.time for step in steps]), ("temperature", [step.temperature for step in steps])):
+        if 0 < values.count(None) < len(values):
+            yield f"{values.count(None)} of {len(values)} steps have no {name}; that of the others is left out"
+
+
+def _remarks_on_motion(steps: Sequence[Step], readings: Sequence[Reading], torque: Torque) -> Iterator[str]:
+    """Steps that the pulleys held, and steps that went against the torque."""
+    held = [step.number for step, sense in zip(steps[1:], torque.sense[1:], strict=True) if sense == 0.0]
+    changed = [after.number for before, after in pairwise(steps) if _load(before) != _load(after)]
+    if stuck := [str(number) for number in held if number in changed]:
+        yield f"the pulleys hold more than the change of torque at step {listed(stuck)}: the shaft got less than the masses say"
+    for (before, after), (one, other), sense in zip(pairwise(steps), pairwise(readings), torque.sense[1:], strict=True):
+        turned = other.angle - one.angle
+        if turned * sense < -_AGAINST * np.hypot(one.sigma, other.sigma) < 0.0:
+            words = f"from step {before.number} to {after.number} the shaft turned against the torque"
+            yield f"{words}, by {degrees(abs(turned)):.3g} degrees"
+
+
+def _load(step: Step) -> tuple[float, float, float | None]:
+    return step.mass_positive, step.mass_negative, step.torque

@@ -1,0 +1,158 @@
+"""Follows the folder of a test while it is being run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from strainwave.rig.bench.setup import Camera, Rig
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.bench.steps_file import FILE, read_steps
+from strainwave.rig.running.guide import Look
+from strainwave.rig.vision.angle import Frame, follow, look
+from strainwave.rig.vision.image import PICTURES, by_number
+
+
+class Watched(NamedTuple):
+    """A photograph of a test that is being run.
+
+    Attributes:
+        name: of its file
+        torque: on the shaft [N.m]; None where neither the record nor a plan tells it
+        look: the angle from the first photograph of its position and unit
+        warnings: what makes it doubtful
+    """
+
+    name: str
+    torque: float | None
+    look: Look
+    warnings: tuple[str, ...]
+
+
+@dataclass
+class Watch:
+    """What is new in a folder, look by look.
+
+    Torques come from `steps.csv` once it has a row for a photograph; else from a plan, photograph by photograph.
+
+    Args:
+        folder: of the test
+        rig: which rig, for the torques
+        plan: the steps that are to be made, in order; none if not known
+
+    Raises:
+        FileNotFoundError: there is no such folder
+    """
+
+    folder: Path
+    rig: Rig | None = None
+    plan: Sequence[Step] = ()
+    frames: list[Frame] = field(default_factory=list)
+    sizes: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.folder.is_dir():
+            raise FileNotFoundError(f"{self.folder}: there is no such folder")
+
+    def new(self) -> list[Watched]:
+        """The photographs that came since the last look, once they have been written whole.
+
+        Raises:
+            ValueError: `steps.csv` cannot be read
+        """
+        steps = read_steps(self.folder) if (self.folder / FILE).exists() else []
+        recorded = {step.image: step for step in steps}
+        known = {frame.name for frame in self.frames}
+        names = [name for name in self._pictures() if name not in known and (name in recorded or self._complete(name))]
+        camera = Camera() if self.rig is None else self.rig.camera
+        self.frames += [look(self.folder / name, camera=camera) for name in names]
+        return [self._watched(name, recorded, camera) for name in names]
+
+    def _pictures(self) -> list[str]:
+        found = [
+            each.name for each in self.folder.iterdir() if each.suffix.lower() in PICTURES and not each.name.startswith(".")
+        ]
+        return sorted(found, key=by_number)
+
+    def _complete(self, name: str) -> bool:
+        size, before = (self.folder / name).stat().st_size, self.sizes.get(name)
+        self.sizes[name] = size
+        return size > 0 and size == before
+
+    def _steps(self, recorded: dict[str | None, Step]) -> list[Step | None]:
+        """Of each photograph so far, the step that it belongs to."""
+        return [recorded.get(frame.name) or self._planned(place) for place, frame in enumerate(self.frames)]
+
+    def _planned(self, place: int) -> Step | None:
+        return self.plan[place] if place < len(self.plan) else None
+
+    def _watched(self, name: str, recorded: dict[str | None, Step], camera: Camera) -> Watched:
+        steps = self._steps(recorded)
+        place = [frame.name for frame in self.frames].index(name)
+        mine = steps[place]
+        alike = [frame for frame, step in zip(self.frames[: place + 1], steps, strict=False) if _place(step) == _place(mine)]
+        frame, found = angle_of(alike, camera)
+        return Watched(name, None if mine is None else _torque(self.rig, mine), found, frame.warnings)
+
+
+def _place(step: Step | None) -> tuple[float, str] | None:
+    return None if step is None else (step.position, step.unit)
+
+
+def _torque(rig: Rig | None, step: Step) -> float | None:
+    if step.torque is not None or rig is None:
+        return step.torque
+    return torque_of_masses(rig, step)
+
+
+def torque_of_masses(rig: Rig, step: Step) -> float:
+    """Torque of what lies on the pans at the full radius, pulleys left out [N.m]: what is shown while a test is being made.
+
+    >>> from strainwave.rig import load
+    >>> round(torque_of_masses(load("couple-rig"), Step(1, mass_positive=0.35)), 4)
+    0.3432
+    """
+    return (step.mass_positive - step.mass_negative) * rig.gravity.value * rig.disk_radius.value
+
+
+@dataclass
+class Reader:
+    """Reads the angle of pictures while a test is guided: from the first photograph of their position and unit.
+
+    While the first step of a position comes to rest, its first picture counts as 0.
+
+    Attributes:
+        camera: what it does to lengths
+        frames: of each step that has been read, by its number, with the step
+    """
+
+    camera: Camera
+    frames: dict[int, tuple[Step, Frame]] = field(default_factory=dict)
+    first: dict[tuple[float, str], Frame] = field(default_factory=dict)
+
+    def __call__(self, picture: Path, step: Step) -> Look:
+        """What a picture of a step tells; the last one of a step is taken as its photograph."""
+        frame = look(picture, camera=self.camera)
+        place = (step.position, step.unit)
+        before = [
+            other for number, (made, other) in sorted(self.frames.items()) if number < step.number and _place(made) == place
+        ]
+        if not before and frame.markers is not None:
+            before = [self.first.setdefault(place, frame)]
+        self.frames[step.number] = (step, frame)
+        return angle_of([*before, frame], self.camera)[1]
+
+
+def angle_of(frames: Sequence[Frame], camera: Camera) -> tuple[Frame, Look]:
+    """The last of some photographs, with what it is doubted for, and its angle from the first one that told one."""
+    if frames[-1].markers is None:
+        return frames[-1], Look(np.nan, np.nan, frames[-1].fault or "no markers")
+    angles = follow(frames, camera=camera)
+    last = angles.frames[-1]
+    if last.markers is None:
+        return last, Look(np.nan, np.nan, last.fault)
+    return last, Look(float(angles.angle[-1]), float(angles.sigma[-1]))

@@ -1,0 +1,144 @@
+"""What a whole analysis says beside its numbers, and the catalogue beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.rig import Loop, analyse, table
+from strainwave.rig.analysis.catalogue_check import published
+from strainwave.rig.influence.cycle import cycle_to
+
+from tests.python.catalogue.torsion import Torsion
+from tests.python.rig.loops import loop_of_table
+
+ARCMIN = np.pi / 180.0 / 60.0
+
+
+def of_set(name: str, peak: float, side: str = "output") -> Loop:
+    """The loop of a set's own model."""
+    found = cycle_to(sw.load(name), peak, side=side)  # type: ignore[arg-type]
+    return Loop(found.angle, found.torque, side=side, name=name, angle_sigma=1e-9)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["csg-20-100", "csg-25-80", "shg-32-80"])
+def test_the_model_of_a_set_is_what_its_catalogue_says(name: str) -> None:
+    gear_set = sw.GearSet.read(name)
+    torsion, rated = Torsion.of(name), gear_set.ratings["rated_torque"].value
+    found = analyse(of_set(name, rated), gear_set=gear_set)
+    checks = {each.name: each for each in found.catalogue}
+    (k1, k2, k3), (t1, t2) = torsion.published_slopes(), torsion.published_knees()
+    figures = published(gear_set, "output")
+    assert figures is not None
+    assert [figures[key] for key in ("K1", "K2", "K3", "T1", "T2")] == pytest.approx([k1, k2, k3, t1, t2], rel=1e-3)
+    for key, known in {"K1": k1, "K2": k2, "K3": k3}.items():
+        measured = checks[key].measured
+        assert measured is not None
+        assert measured.value == pytest.approx(known, rel=2e-3)
+        assert checks[key].within
+    assert found.hysteresis_loss is not None
+    assert found.hysteresis_loss.value == pytest.approx(torsion.width(), rel=1e-3)
+    assert found.lost_motion is not None
+    assert 0.0 < found.lost_motion.value <= torsion.width() * 1.01
+    width = checks["width at zero torque"]
+    assert width.measured is not None
+    assert width.measured.value == pytest.approx(width.stated, rel=1e-3)
+
+
+def test_a_gear_far_from_its_catalogue_is_told() -> None:
+    gear_set = sw.GearSet.read("csg-20-100")
+    loop = of_set("csg-20-100", 52.0)
+    soft = Loop(2.0 * loop.angle, loop.torque, side="output", name="soft", angle_sigma=1e-9)
+    checks = {each.name: each for each in analyse(soft, gear_set=gear_set).catalogue}
+    assert checks["K2"].within is False
+    assert "50 % of the 2.5e+04 N.m/rad of the set, beyond the spread of units" in str(checks["K2"])
+
+
+def test_figures_beyond_the_loop_are_not_compared() -> None:
+    checks = {each.name: each for each in analyse(of_set("csg-20-100", 10.0), gear_set=sw.GearSet.read("csg-20-100")).catalogue}
+    assert checks["K1"].measured is not None
+    assert checks["K2"].measured is None
+    assert "the loop ends at 10 N.m, the figure is for 7 N.m and beyond" in str(checks["K2"])
+
+
+def test_at_the_input_the_figures_are_those_of_the_input() -> None:
+    gear_set = sw.GearSet.read("csg-20-100")
+    found = analyse(of_set("csg-20-100", 0.52, side="input"), gear_set=gear_set)
+    assert found.rated_torque == pytest.approx(0.52)
+    assert next(each for each in found.catalogue if each.name == "K2").stated == pytest.approx(25e3 / 100**2)
+    assert any("friction of the wave generator is in the loop and in no K" in remark for remark in found.remarks)
+
+
+def test_a_set_without_such_figures_says_so() -> None:
+    gear = sw.Gear(stiffness=sw.stiffness.Linear(k=7e3))
+    gear_set = sw.GearSet.of(gear, name="plain", source="assumed")
+    found = analyse(loop_of_table(), gear_set=gear_set)
+    assert any("has no K1, K2 and K3 to compare with" in remark for remark in found.remarks)
+    assert found.rated_torque is None
+
+
+def test_a_set_whose_friction_holds_all_of_the_torque_says_so() -> None:
+    held = sw.GearSet.read("hfuc-58-160")
+    loop = loop_of_table()
+    found = analyse(Loop(loop.angle, 0.1 * loop.torque, side="input", name="weak"), gear_set=held)
+    assert any("does not turn the input: its friction holds as much" in remark for remark in found.remarks)
+
+
+def test_a_cycle_that_is_not_complete_is_not_compared() -> None:
+    loop = loop_of_table()
+    found = analyse(Loop(loop.angle[:50], loop.torque[:50], side="input", name="part"), gear_set=sw.GearSet.read("csg-20-100"))
+    assert found.catalogue == ()
+    assert "the cycle is not complete: it is not compared with the catalogue" in found.remarks
+
+
+def test_the_remarks_of_the_loop_come_first() -> None:
+    loop = loop_of_table()
+    found = analyse(Loop(loop.angle, loop.torque, side="input", name="x", remarks=("the lamp flickered",)))
+    assert found.remarks[0] == "the lamp flickered"
+    assert any("no errors were stated" in remark for remark in found.remarks)
+    assert any("no rated torque is known" in remark for remark in found.remarks)
+
+
+def test_a_table_has_gaps_where_a_loop_has_none() -> None:
+    loop = loop_of_table()
+    (row,) = table([analyse(Loop(loop.angle[:50], loop.torque[:50], side="input", name="part", unit="A"))])
+    assert row.unit == "A"
+    assert row.positive_loading is None
+    assert row.hysteresis is None
+    assert row.negative_loading is not None
+
+
+def test_few_points_without_errors_have_no_intervals() -> None:
+    found = analyse(Loop([0.0, -0.08, -1.03, -0.95, 0.0], [0.36, 0.0, -0.36, 0.0, 0.36], side="input", name="five"))
+    secant = found.stiffnesses[0].secant
+    assert secant is not None
+    assert secant.value == pytest.approx(4.5)
+    assert "uncertainty unknown" in str(found.stiffnesses[0].regression)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"loop": "loop.csv"}, "loop must be a Loop"),
+        ({"gear_set": "csg-20-100"}, "gear_set must be a GearSet"),
+        ({"rated_torque": "much"}, "rated_torque must be a number"),
+    ],
+)
+def test_what_is_of_the_wrong_kind_is_refused(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(TypeError, match=message):
+        analyse(**{"loop": loop_of_table(), **arguments})  # type: ignore[arg-type]
+
+
+def test_a_rated_torque_is_positive() -> None:
+    with pytest.raises(ValueError, match=r"rated_torque = 0\.0 N\.m must lie in \(0, inf\)"):
+        analyse(loop_of_table(), rated_torque=0.0)
+
+
+def test_many_points_take_no_more_than_their_share() -> None:
+    """A loop logged at a high rate: 40 000 points, whose numbers are those of the corners."""
+    found = analyse(loop_of_table(step=0.36 / 10_000))
+    assert len(found.loop) > 39_000
+    assert found.area is not None
+    assert found.area.value == pytest.approx(0.3063483432, rel=1e-9)
+    assert found.stiffnesses[1].softest.value == pytest.approx(0.31, rel=1e-6)
+    assert len(found.stiffnesses[1].local.torque) <= 400

@@ -1,0 +1,197 @@
+"""Stiffness by every definition, document T's table among them, and how often the intervals hold the truth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from strainwave.rig import Loop, Result, analyse, closure_of_secants, soft_parts, table
+from strainwave.rig.analysis.analysis import DEFINITIONS, LoopAnalysis
+from strainwave.rig.analysis.regimes import NAMES
+from strainwave.rig.analysis.segments import fit_segments
+
+from tests.python.rig.loops import PEAK, TABLE, loop_of_table, quarters, refined, vertices
+
+HALF_A_DIGIT = 0.005  # N.m/rad: what document T's table leaves open
+
+
+@pytest.mark.parametrize("position", TABLE)
+@pytest.mark.parametrize("step", [0.02, 0.36 / 7])
+def test_the_softest_stretches_are_document_ts_row(position: float, step: float) -> None:
+    """Also from points as far apart as the rig's masses, seven steps to the peak."""
+    (row,) = table([analyse(loop_of_table(position, step, angle_sigma=1e-4))])
+    for name, stated in zip(NAMES, TABLE[position][:4], strict=True):
+        assert getattr(row, name).value == pytest.approx(stated, abs=HALF_A_DIGIT)
+    assert row.hysteresis is not None
+    assert np.degrees(row.hysteresis.value) == pytest.approx(TABLE[position][4], abs=0.1)
+    assert row.position == pytest.approx(np.radians(position))
+
+
+def test_the_other_definitions_do_not_give_document_ts_loading_rows() -> None:
+    """Over the quarter: the secant from the corners of the loop, and the line through all points between the two."""
+    found = analyse(loop_of_table())
+    loading = found.stiffness("negative_loading")
+    assert loading is not None
+    assert loading.secant is not None
+    assert loading.secant.value == pytest.approx(0.36 / np.radians(59.326382 - 4.573499), rel=1e-6)  # 0.3767
+    assert 0.31 < loading.regression.value < loading.secant.value
+    assert loading.share == pytest.approx((0.321719 - 0.03) / 0.36, rel=1e-5)  # .29 of .36 N.m
+    assert [end.value for end in loading.stretch] == pytest.approx([-0.321719, -0.03], abs=1e-6)
+    assert any("is not one straight line" in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize("name", ["positive_unloading", "negative_unloading"])
+def test_where_a_regime_is_one_line_all_definitions_agree(name: str) -> None:
+    found = analyse(loop_of_table(angle_sigma=1e-4)).stiffness(name)  # type: ignore[arg-type]
+    assert found is not None
+    assert found.secant is not None
+    assert found.whole
+    assert found.secant.value == pytest.approx(found.regression.value, rel=1e-9)
+    assert found.secant.value == pytest.approx(found.softest.value, rel=1e-9)
+
+
+def test_document_ts_rows_read_as_secants_do_not_close() -> None:
+    gaps = [float(np.degrees(closure_of_secants(row[:4], PEAK))) for row in TABLE.values()]
+    assert gaps == pytest.approx([1.90, -7.61, -2.82], abs=0.005)
+    parts = np.array([soft_parts(row[:4], float(np.radians(row[4])), PEAK) for row in TABLE.values()])
+    assert parts == pytest.approx(np.array([[0.292, 0.283], [0.286, 0.323], [0.294, 0.309]]), abs=5e-4)  # erratum E-T4
+
+
+def test_secants_of_a_closed_loop_close() -> None:
+    found = analyse(Loop(*vertices(TABLE[60.0]), side="input", name="corners"))
+    secants = [each.secant.value for each in found.stiffnesses if each.secant is not None]
+    assert closure_of_secants(secants, PEAK) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("wrong", [[4.51, 0.31, 4.85], [4.51, 0.31, 4.85, 0.0], [[4.51, 0.31], [4.85, 0.30]]])
+def test_four_positive_stiffnesses_make_a_cycle(wrong: list[float]) -> None:
+    with pytest.raises(ValueError, match="must be four positive numbers"):
+        closure_of_secants(wrong, PEAK)
+
+
+def test_knees_are_found_where_they_are() -> None:
+    torque = np.linspace(0.0, 1.0, 41)
+    angle = torque / 5.0 + np.maximum(torque - 0.33, 0.0) * 3.0 - np.maximum(torque - 0.81, 0.0) * 2.5
+    found = fit_segments(torque, angle, np.full(41, 1e-3), np.zeros(41))
+    assert found.knees == pytest.approx([0.33, 0.81], abs=1e-9)
+    assert found.compliances == pytest.approx([0.2, 3.2, 0.7], abs=1e-9)
+    assert found.stretch(found.softest) == pytest.approx((0.33, 0.81))
+
+
+def test_a_knee_beside_two_points_lies_anywhere_between_its_neighbours() -> None:
+    torque = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
+    angle = 3.0 * np.maximum(torque - 0.04, 0.0)
+    found = fit_segments(torque, angle, np.full(7, 1e-4), np.zeros(7))
+    if len(found.knees):
+        (knee,) = found.knee_results
+        assert knee.low <= 0.04 <= knee.high or knee.low <= 0.1 <= knee.high
+    assert found.compliances[found.softest] == pytest.approx(3.0, rel=1e-3)
+
+
+def test_a_knee_that_one_point_tells_is_found_beside_a_sharp_one_between_two_points() -> None:
+    """The first point, at 0.029 N.m, lies on the stiff stretch, which ends at 0.03: it must not bend the soft one."""
+    torque = np.arange(0.029, 0.36, 0.03)
+    angle = torque / 4.85 + np.maximum(torque - 0.03, 0.0) * 3.0 - np.maximum(torque - 0.3221, 0.0) * 3.0
+    found = fit_segments(torque, angle, np.full(12, 1e-4), np.zeros(12))
+    assert len(found.knees) == 2
+    assert found.compliances[found.softest] == pytest.approx(1.0 / 4.85 + 3.0, rel=1e-9)
+
+
+def test_noise_alone_makes_no_knees() -> None:
+    torque = np.linspace(0.0, 1.0, 15)
+    random = np.random.default_rng(3)
+    knees = [
+        len(fit_segments(torque, torque + 0.01 * random.normal(size=15), np.full(15, 0.01), np.zeros(15)).knees)
+        for _ in range(200)
+    ]
+    assert np.mean(np.array(knees) > 0) < 0.05
+
+
+STIFF = dict(zip(NAMES, (2.0, 0.5, 2.0, 0.5), strict=True))
+WIDTH = PEAK / 0.5 - PEAK / 2.0
+SPREAD = {"angle_sigma": 2e-3, "torque_sigma": 1e-3}
+SHARED = {"angle_scale": 0.01, "torque_scale": 0.02}
+
+
+def measured(random: np.random.Generator, angle: np.ndarray, torque: np.ndarray) -> LoopAnalysis:
+    """A loop as a rig with these errors reads it."""
+    read = angle + SPREAD["angle_sigma"] * random.normal(size=len(angle))
+    read *= 1.0 + SHARED["angle_scale"] * random.normal()
+    laid = torque + SPREAD["torque_sigma"] * random.normal(size=len(torque))
+    laid *= 1.0 + SHARED["torque_scale"] * random.normal()
+    return analyse(Loop(read, laid, side="input", name="noisy", **SPREAD, **SHARED))  # type: ignore[arg-type]
+
+
+def coverage(found: list[Result], truth: float) -> float:
+    return float(np.mean([each.low <= truth <= each.high for each in found]))
+
+
+def test_intervals_of_a_plain_loop_hold_the_truth_in_95_of_100() -> None:
+    """300 loops of straight regimes; shared errors of 2.2 % among theirs. Binomial limits of three standard deviations."""
+    random = np.random.default_rng(7)
+    angle, torque = quarters(2.0, 0.5, PEAK, 7)
+    found = [measured(random, angle, torque) for _ in range(300)]
+    for name in NAMES:
+        for definition in DEFINITIONS:
+            results = [result for each in found if (result := each.stiffness_by(name, definition)) is not None]
+            assert 0.912 < coverage(results, STIFF[name]) < 0.988, (name, definition)
+    widths = [each.width_at_zero for each in found if each.width_at_zero is not None]
+    areas = [each.area for each in found if each.area is not None]
+    assert 0.912 < coverage(widths, WIDTH) < 0.988
+    assert 0.912 < coverage(areas, WIDTH * PEAK) < 0.988
+    closures = [each.closure for each in found if each.closure is not None]
+    assert coverage(closures, 0.0) > 0.912
+
+
+def test_intervals_of_document_ts_loop_hold_the_truth_in_95_of_100() -> None:
+    """The softest stretch and its knees, of regimes that are not one line."""
+    random = np.random.default_rng(8)
+    angle, torque = refined(*vertices(TABLE[0.0]), 0.02)
+    found = [measured(random, angle, torque) for _ in range(120)]
+    soft = [each.stiffness("negative_loading") for each in found]
+    assert 0.90 < coverage([each.softest for each in soft if each is not None], 0.31) < 0.99
+    knees = [each.stretch[0] for each in soft if each is not None and len(each.segments.knees) == 2]
+    assert len(knees) > 114
+    assert coverage(knees, -0.321719) > 0.90
+
+
+def test_scatter_stands_in_for_errors_that_are_not_stated() -> None:
+    random = np.random.default_rng(9)
+    angle, torque = quarters(2.0, 0.5, PEAK, 7)
+    found = [
+        analyse(Loop(angle + 2e-3 * random.normal(size=len(angle)), torque, side="input", name="noisy")) for _ in range(120)
+    ]
+    assert not any(each.errors_stated for each in found)
+    results = [result for each in found if (result := each.stiffness_by("negative_loading", "regression")) is not None]
+    assert 0.90 < coverage(results, 0.5) < 0.99
+    widths = [each.width_at_zero for each in found if each.width_at_zero is not None]
+    assert 0.90 < coverage(widths, WIDTH) < 0.99
+
+
+def test_errors_of_the_rig_are_shared_by_all_stiffnesses() -> None:
+    angle, torque = quarters(2.0, 0.5, PEAK, 7)
+    shared = {"angle_scale": 0.003, "torque_scale": 0.004, "compliance_sigma": 0.02}
+    found = analyse(Loop(angle, torque, side="input", name="exact", angle_sigma=1e-9, **shared))  # type: ignore[arg-type]
+    for name in NAMES:
+        for definition in DEFINITIONS:
+            result = found.stiffness_by(name, definition)
+            assert result is not None
+            assert result.shared == pytest.approx(STIFF[name] * np.hypot(0.005, STIFF[name] * 0.02), rel=1e-6)
+
+
+def test_the_local_stiffness_follows_the_slopes() -> None:
+    found = analyse(loop_of_table(step=0.004, angle_sigma=1e-5)).stiffness("negative_loading")
+    assert found is not None
+    local = found.local
+    inside = (local.torque > -0.29) & (local.torque < -0.06)
+    assert local.stiffness[inside] == pytest.approx(0.31, rel=1e-9)
+    assert local.stiffness[-1] == pytest.approx(0.5 * (4.51 + 4.85), rel=1e-9)
+    assert np.all(local.low <= local.stiffness)
+    assert np.all(local.stiffness <= local.high)
+    assert np.all(np.diff(local.torque) > 0.0)
+
+
+def test_a_level_quarter_has_no_stiffness_to_divide_by() -> None:
+    loop = Loop([1.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0, 0.0, 1.0], [1, 0.5, 0, 0, -1, -0.5, 0, 0, 1], side="output", name="play")
+    found = analyse(loop)
+    unloading = found.stiffness("positive_unloading")
+    assert unloading is None or unloading.secant is None or unloading.secant.value > 0.0

@@ -1,0 +1,197 @@
+"""Plans of torsion tests: the torques that masses make, and the laws that every plan obeys."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from strainwave.rig.bench.rig_file import load
+from strainwave.rig.bench.setup import Masses, Rig, Value
+from strainwave.rig.bench.steps import Step
+from strainwave.rig.running.plan import Plan, plan, reachable, task
+
+RIG = Rig("bench", "input", Value(0.1), gravity=Value(9.81), masses=(Masses(0.025, 16), Masses(0.1, 9)))
+
+
+def test_the_torques_of_document_t_are_those_of_its_masses() -> None:
+    """Erratum E-T6: 14, 15 and 16 masses of 25 g give 0.343, 0.368 and 0.392 N.m; with equal pans 15 are impossible."""
+    assert [round(each, 3) for each in reachable(RIG, 0.36)] == [0.343, 0.392]
+    assert [round(each, 3) for each in reachable(RIG, 0.36, "unequal")] == [0.343, 0.368]
+    assert reachable(RIG, 14 * 0.025 * 9.81 * 0.1) == pytest.approx((0.34335, 0.34335), rel=1e-12)
+
+
+def test_the_plan_of_document_t_is_its_cycle_in_steps_of_two_masses() -> None:
+    made = plan(RIG)
+    assert round(made.peak, 3) == 0.343
+    assert {step.position for step in made.steps} == {0.0, math.radians(60.0), math.radians(120.0)}
+    cycle = [step.mass_positive - step.mass_negative for step in made.steps[:29]]
+    assert cycle == pytest.approx([0.05 * abs(n) - 0.35 for n in range(14, -15, -1)], abs=1e-12)
+    names = [stage.name for stage in made.stages[:29]]
+    ends = [names.index(name) for name in dict.fromkeys(names)]
+    assert list(zip(ends, dict.fromkeys(names), strict=True)) == [
+        (0, "peak"), (1, "positive unloading"), (8, "negative loading"), (15, "negative unloading"), (22, "positive loading"),
+    ]  # fmt: skip
+
+
+def test_a_plan_says_what_the_peak_comes_to_and_what_unequal_pans_cost() -> None:
+    nearest, couple, _ = plan(RIG).remarks
+    near = "nearest are 0.3434 N.m (350 g) and 0.3924 N.m (400 g)"
+    assert nearest == f"0.36 N.m is no step of these masses: {near}; planned is 0.3434 N.m."
+    assert couple == "Both pans of a pair carry the same: a pure couple, in steps of 0.0491 N.m or more."
+    assert plan(RIG, pans="unequal").remarks[1] == (
+        "The pans of a pair differ by up to 25 g: a side force of up to 0.245 N on the shaft, no pure couple."
+    )
+    assert plan(RIG, 0.0981 * 3, cycles=2).remarks == (couple,)
+
+
+def test_a_plan_says_what_to_do() -> None:
+    tasks = [stage.task for stage in plan(RIG, positions=[0.0, math.radians(60.0)], units=["A"]).stages]
+    assert tasks[0] == "specimen A, flexspline at 0 degrees; positive pans: lay 7 x 25 g on each"
+    assert tasks[1] == "positive pans: take 25 g off each"
+    assert tasks[8] == "negative pans: lay 25 g on each"
+    assert tasks[29] == "take all masses off; specimen A, flexspline at 60 degrees; positive pans: lay 7 x 25 g on each"
+
+
+def test_unequal_pans_are_changed_in_turn() -> None:
+    tasks = [stage.task for stage in plan(RIG, pans="unequal", positions=[0.0]).stages]
+    assert tasks[1:3] == ["positive pan 1: take 25 g off", "positive pan 2: take 25 g off"]
+
+
+def test_a_plan_prints_a_row_for_each_step() -> None:
+    text = str(plan(RIG, positions=[math.radians(60.0)]))
+    assert len(text.splitlines()) == 3 + 1 + 2 + 29
+    assert "   2        60    +0.2943       300         0  positive unloading  positive pans: take 25 g off each" in text
+
+
+def test_too_few_small_masses_are_told() -> None:
+    few = Rig("bench", "input", Value(0.1), masses=(Masses(0.025, 6), Masses(0.1, 8)))
+    assert any("some steps exchange masses" in remark for remark in plan(few).remarks)
+    assert not any("some steps exchange masses" in remark for remark in plan(RIG).remarks)
+
+
+@pytest.mark.parametrize(
+    ("peak", "arguments", "message"),
+    [
+        (2.0, {}, "peak = 2 N.m: the masses (16 x 25 g, 9 x 100 g) do not make 1250 g on a pair of pans that carry the same"),
+        (-0.36, {}, "peak = -0.36 N.m must lie in (0, inf)"),
+        (math.nan, {}, "peak = nan N.m must lie in (0, inf)"),
+        (0.36, {"step": 0.0}, "step = 0.0 N.m must lie in (0, inf)"),
+        (0.36, {"cycles": 0}, "cycles = 0 must be 1 or more"),
+        (0.36, {"pans": "one"}, 'pans = "one" must be one of equal, unequal'),
+    ],
+)
+def test_a_plan_that_cannot_be_is_refused(peak: float, arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        plan(RIG, peak, **arguments)  # type: ignore[arg-type]
+
+
+def test_a_rig_without_masses_has_no_plan() -> None:
+    with pytest.raises(ValueError, match=re.escape("bench has no masses; write [[masses]] with mass and count in its file")):
+        plan(Rig("bench", "input", Value(0.1)))
+
+
+def test_the_task_between_any_two_steps() -> None:
+    assert task(RIG, None, Step(1, mass_positive=0.45)) == "positive pans: lay 2 x 100 g and 25 g on each"
+    assert task(RIG, Step(1, mass_positive=0.05), Step(2, mass_negative=0.05)) == (
+        "positive pans: take 25 g off each; negative pans: lay 25 g on each"
+    )
+    assert task(RIG, Step(1, 0.2), Step(2, 0.2)) == "leave all as it is"
+    with pytest.raises(ValueError, match=re.escape("do not make 367 g on a pair of pans that carry the same")):
+        task(RIG, None, Step(1, mass_positive=0.367))
+
+
+# Laws
+
+
+sets = st.tuples(st.sampled_from([0.02, 0.025, 0.05]), st.integers(2, 30), st.sampled_from([2, 4, 5]), st.integers(0, 12)).map(
+    lambda given: tuple(Masses(mass, count) for mass, count in ((given[0], given[1]), (given[0] * given[2], given[3])) if count)
+)
+
+
+@contextmanager
+def reject_where_masses_are_missing() -> Iterator[None]:
+    try:
+        yield
+    except ValueError as refused:
+        assume("do not make" not in str(refused))
+        raise
+
+
+@st.composite
+def plans(draw: st.DrawFn) -> tuple[Rig, Plan]:
+    rig = Rig("bench", "input", Value(draw(st.floats(0.05, 0.3))), gravity=Value(9.81), masses=draw(sets))
+    peak = draw(st.floats(0.02, 0.8))
+    step = draw(st.none() | st.floats(0.01, 0.3))
+    pans = draw(st.sampled_from(["equal", "unequal"]))
+    cycles = draw(st.integers(1, 2))
+    with reject_where_masses_are_missing():
+        return rig, plan(rig, peak, step=step, pans=pans, positions=[0.0, 1.0], cycles=cycles)
+
+
+@given(made=plans())
+def test_every_plan_follows_from_its_tasks_with_the_masses_there_are(made: tuple[Rig, Plan]) -> None:
+    """Whoever does what is written, mass by mass, has the masses of each step on the pans, and never more than there are."""
+    rig, planned = made
+    none = {masses.mass: 0 for masses in rig.masses}
+    pans = {(side, pan): dict(none) for side in ("positive", "negative") for pan in (1, 2)}
+    for stage in planned.stages:
+        follow(stage.task, pans, rig)
+        for side in ("positive", "negative"):
+            total = sum(mass * number for pan in (1, 2) for mass, number in pans[side, pan].items())
+            assert total == pytest.approx(getattr(stage.step, f"mass_{side}"), abs=1e-9)
+        for masses in rig.masses:
+            assert sum(pan[masses.mass] for pan in pans.values()) <= masses.count
+
+
+def follow(words: str, pans: dict[tuple[str, int], dict[float, int]], rig: Rig) -> None:
+    """Does what a task says; no pan gives what it does not carry."""
+    if "take all masses off" in words:
+        for laid in pans.values():
+            laid.update(dict.fromkeys(laid, 0))
+    for side, number, what in re.findall(r"(positive|negative) pans?( \d)?: ([^;]+)", words):
+        for verb, pieces in re.findall(r"(take|lay) (.+?) (?:off|on)", what):
+            for count, grams in re.findall(r"(?:(\d+) x )?([\d.]+) g", pieces):
+                mass = min((each.mass for each in rig.masses), key=lambda mass: abs(1e3 * mass - float(grams)))
+                for pan in (int(number),) if number else (1, 2):
+                    pans[side, pan][mass] += int(count or 1) * (1 if verb == "lay" else -1)
+                    assert pans[side, pan][mass] >= 0
+
+
+@given(made=plans())
+def test_every_step_changes_one_pair_alone_and_every_stage_goes_one_way(made: tuple[Rig, Plan]) -> None:
+    for before, after in pairwise(made[1].stages):
+        if after.name != "peak":
+            changed = [getattr(before.step, name) != getattr(after.step, name) for name in ("mass_positive", "mass_negative")]
+            assert changed.count(True) == 1
+            rising = after.name in ("negative unloading", "positive loading")
+            assert (after.torque > before.torque) == rising
+
+
+@given(made=plans())
+def test_every_cycle_is_closed_and_as_deep_as_it_is_high(made: tuple[Rig, Plan]) -> None:
+    _, planned = made
+    for position in (0.0, 1.0):
+        of_position = [stage.torque for stage in planned.stages if stage.step.position == position]
+        assert of_position[0] == of_position[-1] == max(of_position) == pytest.approx(planned.peak)
+        assert min(of_position) == -max(of_position)
+        assert of_position == of_position[::-1]
+        assert 0.0 in of_position
+    assert [step.number for step in planned.steps] == list(range(1, len(planned.steps) + 1))
+
+
+@given(made=plans())
+def test_the_peak_is_the_nearest_that_the_masses_make(made: tuple[Rig, Plan]) -> None:
+    rig, planned = made
+    pans = "unequal" if "side force" in " ".join(planned.remarks) else "equal"
+    away = [abs(each - planned.wanted) for each in reachable(rig, planned.wanted, pans) if each > 0.0]
+    assert abs(planned.peak - planned.wanted) == pytest.approx(min(away), abs=1e-9)
+
+
+def test_the_rig_of_document_t_reaches_its_torque_without_exchanging_masses() -> None:
+    assert len(plan(load("couple-rig"), positions=[0.0]).steps) == 29
