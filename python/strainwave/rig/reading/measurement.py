@@ -97,6 +97,7 @@ def read_test(
     rig = load(folder / RIG) if rig is None else rig
     rig = rig if camera is None else replace(rig, camera=camera)
     steps = read_steps(folder)
+    _check_masses(folder, steps, rig)
     if reference is not None and reference not in [step.image for step in steps]:
         raise ValueError(one_line(f"{folder}: reference = {quoted(reference)} is no photograph of a step"))
     found: list[Angles] = []
@@ -120,6 +121,17 @@ def read_test(
     return TorsionTest(
         folder, rig, tuple(steps), tuple(found), tuple(made), hashes, tuple(dict.fromkeys(remarks)), _deviations(folder, steps)
     )
+
+
+def _check_masses(folder: Path, steps: Sequence[Step], rig: Rig) -> None:
+    """Refuses more mass than the rig has, as a number of grams in a column of kilograms is."""
+    most = sum(masses.mass * masses.count for masses in rig.masses)
+    for step in steps if rig.masses else ():
+        if (total := step.mass_positive + step.mass_negative) > most * (1.0 + 1e-6):
+            raise ValueError(
+                f"{folder / 'steps.csv'} step {step.number}: {total:.6g} kg lie on the pans, and all masses of the rig are "
+                f"{most:.6g} kg; state the unit in the header, as mass_positive [g], or give the rig its [[masses]]"
+            )
 
 
 def _deviations(folder: Path, steps: Sequence[Step]) -> tuple[str, ...] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -165,7 +166,8 @@ def _uncertain(step: float, apart: bool, before: str) -> tuple[str, ...]:
 
 
 def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:
-    """Images whose markers are not those of most images have a fault."""
+    """Images of another size than most, or whose markers are not those of most, have a fault."""
+    frames = _of_one_size(frames)
     sights = {i: _Sight.of(frame, camera) for i, frame in enumerate(frames) if frame.markers is not None}
     if len(sights) < 3:
         return frames
@@ -177,6 +179,21 @@ def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:
                 text = f"not the markers of the other images: {size:.1f} px {what}, {usual:.1f} px in most of them"
                 frames[i] = replace(frames[i], markers=None, fault=text)
     return frames
+
+
+def _of_one_size(frames: list[Frame]) -> list[Frame]:
+    """A camera that was turned on its side, or set to other pixels, makes pictures of another size: its angles are others."""
+    sizes = [frame.size for frame in frames if frame.markers is not None]
+    if len(sizes) < 3:
+        return frames
+    (usual, _), *_ = Counter(sizes).most_common(1)
+    right = "{} x {} px".format(*usual)
+    return [
+        frame
+        if frame.markers is None or frame.size == usual
+        else replace(frame, markers=None, fault="is {} x {} px".format(*frame.size) + f", and most of the images are {right}")
+        for frame in frames
+    ]
 
 
 def _mean_radius(sight: _Sight) -> float:

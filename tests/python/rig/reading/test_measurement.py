@@ -258,6 +258,14 @@ def test_a_folder_without_what_is_needed_is_refused(tmp_path: Path, break_it: ob
     assert "\n" not in str(refused.value)
 
 
+def test_more_mass_than_the_rig_has_is_refused(tmp_path: Path) -> None:
+    write_rig(load("couple-rig"), tmp_path / "rig.toml")
+    write_steps([Step(1, 0.3, angle=0.0), Step(2, 300.0, angle=0.1)], tmp_path)
+    words = "steps.csv step 2: 300 kg lie on the pans, and all masses of the rig are 1.3 kg; state the unit in the header"
+    with pytest.raises(ValueError, match=re.escape(words)):
+        read_test(tmp_path)
+
+
 def test_a_reference_that_is_no_photograph_is_refused(tested: Path) -> None:
     with pytest.raises(ValueError, match=re.escape('reference = "other.png" is no photograph of a step')):
         read_test(tested, reference="other.png")

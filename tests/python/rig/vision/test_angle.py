@@ -248,6 +248,15 @@ def test_markers_of_another_target_are_a_fault() -> None:
     assert told[2].startswith("not the markers of the other images: 26.0 px in radius, 20.0 px in most of them")
 
 
+def test_an_image_of_another_size_is_a_fault_and_not_a_quarter_turn() -> None:
+    images = sequence([0.0, 10.0, 20.0, 30.0])
+    lying = picture(target(np.radians(20.0), **PAIR), **SMALL)
+    images[2] = as_image("002.png", np.rot90(lying))
+    told = measure_angles(images)
+    assert told.frames[2].fault == "is 200 x 240 px, and most of the images are 240 x 200 px"
+    assert np.degrees(told.angle) == pytest.approx([0.0, 10.0, 30.0], abs=0.1)
+
+
 def test_images_out_of_order_or_twice_are_warned_of(tmp_path: Path) -> None:
     for i in range(3):
         entries = Pillow.Exif()
