@@ -118,6 +118,7 @@ def plan(
     quantum = _quantum(rig, pans)
     unit = quantum * _torque_of_mass(rig)
     top = max(1, round(peak / unit))
+    _check_reach(rig, pans, peak, top * quantum)
     stride = 1 if step is None else max(1, round(arguments.number("step", step, "N.m", low=0.0) / unit))
     with at(f"peak = {peak:g} N.m:"):
         stacks = _stacks(rig, pans, quantum, top, stride)
@@ -178,6 +179,18 @@ def _quantum(rig: Rig, pans: Pans) -> float:
     return min(masses.mass for masses in rig.masses) * (2 if pans == "equal" else 1)
 
 
+def _check_reach(rig: Rig, pans: Pans, wanted: float, total: float) -> None:
+    """Refuses a peak for which all masses of the rig do not suffice."""
+    pieces = 2 if pans == "equal" else 1  # both pans of a pair need a mass of each kind, or either may have it
+    most = sum(masses.mass * (masses.count // pieces) * pieces for masses in rig.masses)
+    if total > most + _NEXT * min(masses.mass for masses in rig.masses):
+        raise ValueError(
+            f"peak = {wanted:g} N.m: the masses ({_there(rig)}) do not make {_grams(total)} on a pair of pans that carry "
+            f"{_carry(pans)}; at most {_grams(most)}, which is {most * _torque_of_mass(rig):.4g} N.m: ask for less, or give "
+            "the rig more masses"
+        )
+
+
 def _stacks(rig: Rig, pans: Pans, quantum: float, top: int, stride: int) -> dict[int, Laid]:
     """What lies on a pair of pans at each level, counted in quanta: piled up step by step, so that nothing is exchanged.
 
@@ -225,9 +238,12 @@ def _composed(rig: Rig, pans: Pans, total: float) -> Laid:
     count = round(total / min(left))
     laid = _taken(left, pans, total, count, 0) if abs(count * min(left) - total) < _NEXT * min(left) + 1e-12 else None
     if laid is None:
-        there = ", ".join(f"{masses.count} x {_grams(masses.mass)}" for masses in rig.masses)
-        raise ValueError(f"the masses ({there}) do not make {_grams(total)} on a pair of pans that carry {_carry(pans)}")
+        raise ValueError(f"the masses ({_there(rig)}) do not make {_grams(total)} on a pair of pans that carry {_carry(pans)}")
     return laid
+
+
+def _there(rig: Rig) -> str:
+    return ", ".join(f"{masses.count} x {_grams(masses.mass)}" for masses in rig.masses)
 
 
 def _carry(pans: Pans) -> str:

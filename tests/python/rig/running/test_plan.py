@@ -78,7 +78,9 @@ def test_too_few_small_masses_are_told() -> None:
 @pytest.mark.parametrize(
     ("peak", "arguments", "message"),
     [
-        (2.0, {}, "peak = 2 N.m: the masses (16 x 25 g, 9 x 100 g) do not make 1250 g on a pair of pans that carry the same"),
+        (2.0, {}, "peak = 2 N.m: the masses (16 x 25 g, 9 x 100 g) do not make 2050 g on a pair of pans that carry the same"),
+        (1.25, {}, "at most 1200 g, which is 1.177 N.m: ask for less"),
+        (2.0, {"pans": "unequal"}, "at most 1300 g, which is 1.275 N.m: ask for less"),
         (-0.36, {}, "peak = -0.36 N.m must lie in (0, inf)"),
         (math.nan, {}, "peak = nan N.m must lie in (0, inf)"),
         (0.36, {"step": 0.0}, "step = 0.0 N.m must lie in (0, inf)"),
