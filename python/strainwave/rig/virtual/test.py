@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import groupby
 from pathlib import Path
@@ -89,7 +90,8 @@ def simulate_test(
 
     The folder holds `rig.toml`, a photograph `step-001.png` of each step, and `steps.csv`, to which each step is added once its
     photograph is there: who follows the folder sees a test being run. Beside them, `truth.json` has the true angles, torques
-    and masses, and `truth-1.toml` and so on the true gears. Every file is whole or not there.
+    and masses, and `truth-1.toml` and so on the true gears. Every file is whole or not there, and none is left
+    where the run is interrupted.
 
     Args:
         gear: which gear; or for each position and unit another one: a function of a step
@@ -136,22 +138,50 @@ def simulate_test(
     weighed = _weighed(recorded, rig, np.random.default_rng([seed, 0])) if mass_errors else recorded
     gears, loadings = _loaded(gear, rig, weighed, {"wait": wait, "settling": settling, "virgin": virgin})
     test = _truth(folder, recorded, weighed, loadings)
+    names = ["rig.toml", "steps.csv", "truth.json", *(f"truth-{number}.toml" for number in range(1, len(gears) + 1))]
     with making(folder):
         _check_empty(folder)
-        write_rig(stated or rig, folder / "rig.toml")
-        for number, each in enumerate(gears, 1):
-            save(each, folder / f"truth-{number}.toml", name=f"Gear {number} of a virtual test", source=SOURCE)
-        _write_truth(test, scene, seed, faults)
-        with progressing(progress, len(recorded)) as report:
-            for k, (step, shown) in enumerate(zip(recorded, _shown(recorded, faults), strict=True), 1):
-                fault = faults.get(step.number)
-                if fault != "skipped":
-                    noise = np.random.default_rng([seed, step.number])
-                    _write_picture(render(_faulty(scene, fault), float(test.angle[shown]), noise), folder / str(step.image))
-                    append_step(step, folder)
-                if report is not None:
-                    report(k)
+        with _whole(folder, [*names, *(str(step.image) for step in recorded)]):
+            _write(test, recorded, gears, scene, seed, faults, stated or rig, progress)
     return _without_skipped(test, faults)
+
+
+@contextmanager
+def _whole(folder: Path, names: Sequence[str]) -> Iterator[None]:
+    """Takes away again what was written under these names where the rest fails or is interrupted."""
+    new = [folder / name for name in names if not (folder / name).exists()]
+    try:
+        yield
+    except BaseException:
+        for path in new:
+            path.unlink(missing_ok=True)
+        raise
+
+
+def _write(
+    test: VirtualTest,
+    recorded: Sequence[Step],
+    gears: Sequence[Gear],
+    scene: Scene,
+    seed: int,
+    faults: Mapping[int, Fault],
+    stated: Rig,
+    progress: bool,
+) -> None:
+    folder = test.folder
+    write_rig(stated, folder / "rig.toml")
+    for number, each in enumerate(gears, 1):
+        save(each, folder / f"truth-{number}.toml", name=f"Gear {number} of a virtual test", source=SOURCE)
+    _write_truth(test, scene, seed, faults)
+    with progressing(progress, len(recorded)) as report:
+        for k, (step, shown) in enumerate(zip(recorded, _shown(recorded, faults), strict=True), 1):
+            fault = faults.get(step.number)
+            if fault != "skipped":
+                noise = np.random.default_rng([seed, step.number])
+                _write_picture(render(_faulty(scene, fault), float(test.angle[shown]), noise), folder / str(step.image))
+                append_step(step, folder)
+            if report is not None:
+                report(k)
 
 
 def _checked(faults: Mapping[int, Fault], steps: Sequence[Step]) -> dict[int, Fault]:

@@ -173,3 +173,15 @@ def test_what_cannot_be_simulated_is_refused_before_anything_is_written(
 def test_a_bar_shows_how_far_it_is(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     run(tmp_path, progress=True)
     assert capfd.readouterr().out == ""  # on the other stream, and only in a terminal
+
+
+def test_a_run_that_is_interrupted_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        assert (tmp_path / "test" / "step-003.png").exists()
+        raise KeyboardInterrupt
+
+    shown = iter([render] * 3 + [interrupted])
+    monkeypatch.setattr("strainwave.rig.virtual.test.render", lambda *given: next(shown)(*given))
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path / "test")
+    assert not list(tmp_path.iterdir())
