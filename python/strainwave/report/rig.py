@@ -188,7 +188,8 @@ def unknown(found: Evaluation) -> list[str]:
                 said.setdefault(remark, []).append(label)
     every = len(found.analyses)
     lines = [remark if len(labels) == every else f"{', '.join(labels)}: {remark}" for remark, labels in said.items()]
-    lines += [*found.remarks, *(found.deviations or ()), *(remark for each in found.comparisons for remark in each.remarks)]
+    on_photographs = [each for each in found.remarks if not any(line.endswith(f"is left out: {each}") for line in lines)]
+    lines += [*on_photographs, *(found.deviations or ()), *(remark for each in found.comparisons for remark in each.remarks)]
     lines += [remark for each in found.angles for remark in each.remarks]
     if found.gear_set is None:
         lines.append("no gear is named: neither its ratio, its rated torque nor its catalogue figures are known (--gear)")
@@ -203,7 +204,7 @@ def summary(found: Evaluation) -> str:
     shown = stiffness_table(found, "softest")
     head = ["", *(each.replace(" [", "\n[") for each in shown["heads"])]
     rows = [[label, *(str(cell) for cell in cells)] for label, cells in shown["rows"]]
-    lines = ["; ".join(f"{name}: {value}" for name, value in setting(found).items()), ""]
+    lines = [*(f"{name}: {value}" for name, value in setting(found).items()), ""]
     upper = [each.split("\n")[0] for each in head]
     lower = [each.partition("\n")[2] for each in head]
     widths = [max(map(len, column)) for column in zip(upper, lower, *rows, strict=True)]

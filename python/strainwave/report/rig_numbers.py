@@ -56,6 +56,9 @@ def sentence(words: str) -> str:
 
     >>> sentence("soft from -0.1 N.m on")
     'Soft from −0.1 N·m on.'
+    >>> sentence("step-005.png: is empty")
+    'step-005.png: is empty.'
     """
     signed = re.sub(r"(?<![\w.])-(?=\d)", "−", words.replace("N.m", "N·m"))
-    return f"{signed[0].upper()}{signed[1:]}."
+    first = signed[0] if re.match(r"\S+\.[A-Za-z]+:", signed) else signed[0].upper()  # a file's name stays as it is
+    return f"{first}{signed[1:]}."

@@ -141,6 +141,13 @@ def test_a_loop_alone_makes_a_report_that_says_what_is_missing() -> None:
     assert "Flexspline at 0°" in summary(alone)
 
 
+def test_a_photograph_that_is_left_out_is_told_once() -> None:
+    loop = Loop([3.0, 2.0, -3.0, -2.0, 3.0], [1.0, 0.0, -1.0, 0.0, 1.0], side="output", name="alone")
+    fault = "a.png: cannot be read: is empty"
+    found = evaluate([replace(loop, remarks=(f"step 2 is left out: {fault}",))], remarks=(fault, "b.png: blurred"))
+    assert [each for each in unknown(found) if ".png" in each] == [f"Step 2 is left out: {fault}.", "b.png: blurred."]
+
+
 def test_the_setting_says_what_was_tested(found: Evaluation) -> None:
     said = setting(found)
     assert said["Specimen"] == "Gear <T>"

@@ -247,8 +247,8 @@ def _of_closure(found: LoopAnalysis, gap: Result, wide: Width) -> Iterator[str]:
 def _of_bend(stiffness: Stiffness) -> str:
     low, high = stiffness.segments.stretch(stiffness.segments.softest)
     return (
-        f"{stiffness.name.replace('_', ' ')} is not one straight line (chi-square {stiffness.misfit:.2g} per degree of "
-        f"freedom): its softest stretch runs from {low:.3g} to {high:.3g} N.m, {100 * stiffness.share:.0f} % of its torque"
+        f"{stiffness.name.replace('_', ' ')} is not one straight line, by more than its errors explain: its softest stretch "
+        f"runs from {low:.3g} to {high:.3g} N.m, {100 * stiffness.share:.0f} % of its torque"
     )
 
 

@@ -50,7 +50,8 @@ class CatalogueCheck:
     def __str__(self) -> str:
         if self.measured is None:
             return f"{self.name}: {self.stated:.4g} {self.unit} in the set; {self.why}"
-        share = f"{100.0 * self.measured.value / self.stated:.0f} % of the {self.stated:.4g} {self.unit} of the set"
+        share = f"{100.0 * self.measured.value / self.stated:.0f} % of the " if self.stated else "the set has "
+        share += f"{self.stated:.4g} {self.unit}{' of the set' if self.stated else ''}"
         verdict = {True: ", within the spread of units", False: ", beyond the spread of units", None: ""}[self.within]
         return f"{self.name}: {self.measured}, {share}{verdict}"
 

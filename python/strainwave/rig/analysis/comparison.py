@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import isnan, nan
+from math import isnan, nan, pi
 from typing import Literal
 
 import numpy as np
@@ -57,12 +57,15 @@ class Compared:
         return None if isnan(self.probability) else self.probability < self.level
 
     def __str__(self) -> str:
-        scatter = f"{self.name}: {min(self.means):.4g} to {max(self.means):.4g} {self.unit}, spread {100 * self.relative:.2g} %"
+        unit, scale = ("degrees", 180.0 / pi) if self.unit == "rad" else (self.unit, 1.0)
+        low, high = (f"{scale * pick(self.means):#.4g}" for pick in (min, max))
+        scatter = f"{self.name}: {low} to {high} {unit}, spread {100 * self.relative:.2g} %"
         if self.significant is None:
             return f"{scatter}; no errors are stated and nothing was repeated, so whether they differ is not known"
         basis = "stated errors" if isnan(self.by_repeats) else "scatter of repeats"
         verdict = "they differ" if self.significant else "no difference is shown"
-        return f"{scatter}; {verdict} (probability by the {basis} {self.probability:.2g})"
+        chance = "< 0.0001" if self.probability < 1e-4 else f"{self.probability:.2g}"
+        return f"{scatter}; {verdict} (probability by the {basis} {chance})"
 
 
 @dataclass(frozen=True)

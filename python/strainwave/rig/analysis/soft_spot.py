@@ -114,7 +114,8 @@ def words_on_band(stiffness: Stiffness, low: float, high: float, multiple: float
     ratio, margin = _ratio(stiffness)
     low, high = sorted((sign * low, sign * high))
     here = [spot for spot in _spots(stiffness, multiple) if spot.low < high and spot.high > low]
-    as_soft = f"{ratio[inside].min():.2f} to {ratio[inside].max():.2f} times the compliance of the regime's regression"
+    ends = dict.fromkeys(f"{pick(ratio[inside]):.2f}" for pick in (np.min, np.max))
+    as_soft = f"{' to '.join(ends)} times the compliance of the regime's regression"
     if any(spot.bounded for spot in here):
         return f"{where}: soft spot, {as_soft}"
     if here:

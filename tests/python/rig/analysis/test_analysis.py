@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.rig import Loop, analyse, table
-from strainwave.rig.analysis.catalogue_check import published
+from strainwave.rig.analysis.catalogue_check import CatalogueCheck, published
+from strainwave.rig.analysis.result import Result
 from strainwave.rig.influence.cycle import cycle_to
 
 from tests.python.catalogue.torsion import Torsion
@@ -142,3 +143,8 @@ def test_many_points_take_no_more_than_their_share() -> None:
     assert found.area.value == pytest.approx(0.3063483432, rel=1e-9)
     assert found.stiffnesses[1].softest.value == pytest.approx(0.31, rel=1e-6)
     assert len(found.stiffnesses[1].local.torque) <= 400
+
+
+def test_a_figure_of_zero_in_a_set_has_no_share() -> None:
+    check = CatalogueCheck("lost motion", Result(0.5, "rad", 0.1, 0.0, 0.3, 0.7), 0.0, "rad", None, "example")
+    assert str(check).endswith(", the set has 0 rad")

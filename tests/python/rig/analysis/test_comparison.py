@@ -103,3 +103,10 @@ def test_what_cannot_be_compared_is_refused() -> None:
     other = analyse(Loop(loop.angle, loop.torque, side="output", name="output", position=1.0))
     with pytest.raises(ValueError, match="refer them to one side first"):
         compare([one, other])
+
+
+def test_a_comparison_in_words_has_degrees_and_no_probability_of_zero() -> None:
+    loops = [analyse(loop_of_table(position, angle_sigma=1e-5)) for position in TABLE]
+    words = {each.name: str(each) for each in compare(loops).quantities}
+    assert words["width at zero torque"].startswith("width at zero torque: 49.40 to 51.90 degrees, spread")
+    assert not any("errors 0)" in each for each in words.values())
