@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
-from strainwave.messages import listed, one_line, quoted, unquoted, with_options
+from strainwave.messages import listed, one_line, pairs, quoted, unquoted, with_options
 from strainwave.rig_command import rig
 from strainwave.study_command import study
 
@@ -99,7 +99,7 @@ def twin(
     if not files:
         raise ValueError(f"twin needs at least one measurement: {', '.join(f'--{kind} FILE' for kind in given)}")
     known = {name for kind in files for name in COLUMNS[kind]}
-    columns, units = _pairs("--column", column, known), _pairs("--unit", unit, known)
+    columns, units = pairs("--column", column, known), pairs("--unit", unit, known)
     with _stages() as stage:
         start = GearSet.read(gear)
         recordings = read_measurements(files, columns, units)
@@ -342,18 +342,9 @@ def _write_run(run: Recording, out: Path | None, plot: Path | None) -> None:
         written.append(plot)
 
 
-def _pairs(option: str, values: list[str] | None, known: set[str]) -> dict[str, str]:
-    pairs = {}
-    for value in values or []:
-        name, equals, given = value.partition("=")
-        if not (name and equals and given):
-            raise ValueError(f"{option} {value}: write it as {option} name=value")
-        if name not in known:
-            raise ValueError(
-                f"{option} {value}: {name} is no column of these measurements; they have {', '.join(sorted(known))}"
-            )
-        pairs[name] = given
-    return pairs
+def _names_columns(words: list[str]) -> bool:
+    """Whether a command has the options --column and --unit."""
+    return words[1:2] == ["twin"] or words[1:3] == ["rig", "analyse"]
 
 
 def _write(folder: Path, gear_set: GearSet | None, report: str) -> None:
@@ -418,7 +409,7 @@ def main() -> None:
         _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
         code = REFUSED
     except (ValueError, TypeError, OSError, FloatingPointError, MemoryError) as error:
-        _print(f"strainwave: {one_line(with_options(str(error), names_columns=sys.argv[1:2] == ['twin']))}\n", sys.stderr)
+        _print(f"strainwave: {one_line(with_options(str(error), names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
         code = REFUSED
     finally:
         _print(said.getvalue(), sys.stdout)

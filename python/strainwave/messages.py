@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import reprlib
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 _LONGEST_TEXT = 60  # characters of a text in quotes
 _LONGEST_LINE = 480  # characters of a whole message
@@ -96,6 +96,28 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     told = re.sub(r"^rtol = ", "--tolerance ", told)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
     return told.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
+
+
+def pairs(option: str, values: Sequence[str] | None, known: set[str]) -> dict[str, str]:
+    """What options as --column name=value say of columns.
+
+    Raises:
+        ValueError: one is not written so, or its name is none of the columns that are known
+
+    >>> pairs("--column", ["torque=Moment"], {"speed", "torque"})
+    {'torque': 'Moment'}
+    """
+    found = {}
+    for value in values or []:
+        name, equals, given = value.partition("=")
+        if not (name and equals and given):
+            raise ValueError(f"{option} {value}: write it as {option} name=value")
+        if name not in known:
+            raise ValueError(
+                f"{option} {value}: {name} is no column of these measurements; they have {', '.join(sorted(known))}"
+            )
+        found[name] = given
+    return found
 
 
 def _escaped(character: str) -> str:

@@ -83,15 +83,21 @@ def simulate(
     import sys
 
     from strainwave.rig.bench.steps_file import write_steps
-    from strainwave.rig.reading.reading import PLAN
-    from strainwave.rig.virtual.rehearsal import gear_named
+    from strainwave.rig.reading.measurement import PLAN
+    from strainwave.rig.virtual.rehearsal import gear_named, narrower
     from strainwave.rig.virtual.test import simulate_test
 
     bench = _rig(name)
-    steps = _plan(bench, torque, step, positions, units, cycles, unequal).steps
+    made = _plan(bench, torque, step, positions, units, cycles, unequal)
+    steps = made.steps
     test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed, progress=sys.stderr.isatty())
     write_steps(steps, out / PLAN)
     print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
+    if abs(made.peak - torque) > 1e-9 * torque:
+        print(f"the peak is {made.peak:.4f} N.m: {torque:g} N.m is no step of the masses")
+    if gear == DOCUMENT_T and (short := narrower(sorted({each.position for each in steps}), made.peak)):
+        print(*short, sep="\n")
+        print("more torque, or --unequal, which halves the steps, may reach it")
     print(f"to analyse it: strainwave rig analyse {out}")
 
 
@@ -159,6 +165,12 @@ def analyse(
         Path | None, typer.Option(help="Table of speed and torque of the input, whose friction is taken out; needs --gear.")
     ] = None,
     positions: Annotated[str | None, typer.Option(help="Position of each FILE in degrees, as 0,60,120.")] = None,
+    column: Annotated[
+        list[str] | None, typer.Option(help="A column's name in FILE, as twist='Angle out'; repeat as needed.")
+    ] = None,
+    unit: Annotated[
+        list[str] | None, typer.Option(help="Unit of a column of FILE whose header has none, as torque=N.m; repeat as needed.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the results; FOLDER/analysis, or out/rig for several, if not given.")
     ] = None,
@@ -171,6 +183,8 @@ def analyse(
     from rich.console import Console
 
     from strainwave.files.gear_set import GearSet
+    from strainwave.identify.measurement import COLUMNS
+    from strainwave.messages import pairs
     from strainwave.report.rig import rig_report, summary
     from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
     from strainwave.rig.reading.reading import Given, evaluate_paths
@@ -184,6 +198,8 @@ def analyse(
             reference=reference,
             friction=friction,
             positions=None if positions is None else _numbers("--positions", positions),
+            columns=pairs("--column", column, set(COLUMNS["torsion"])),
+            units=pairs("--unit", unit, set(COLUMNS["torsion"])),
         )
         found, read = evaluate_paths(paths, given, status.update)
         status.update("report")
@@ -193,6 +209,9 @@ def analyse(
         files["report.html"] = rig_report(found, provenance, list(files))
         _write(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
+    if left := [each for each in there if each not in files]:
+        print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")
     for each in loop_names(found.loops):
         print(f"for a twin: strainwave twin --gear {gear or 'GEAR'} --torsion {target / each}.csv")
 
@@ -215,7 +234,7 @@ def watch(
 
     from strainwave.report.rig_live import Point, live
     from strainwave.rig.bench.steps_file import read_steps
-    from strainwave.rig.reading.reading import PLAN
+    from strainwave.rig.reading.measurement import PLAN
     from strainwave.rig.running.watching import Watch
 
     if not folder.is_dir():
@@ -381,7 +400,7 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Sour
 def _keep_plan(made: Plan, out: Path) -> None:
     """Writes the plan beside the test, or refuses another one than a test that was broken off has."""
     from strainwave.rig.bench.steps_file import read_steps, write_steps
-    from strainwave.rig.reading.reading import PLAN
+    from strainwave.rig.reading.measurement import PLAN
 
     if not (out / PLAN).exists():
         write_steps(made.steps, out / PLAN)

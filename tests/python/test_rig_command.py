@@ -97,7 +97,7 @@ def test_options_change_the_plan(tmp_path: Path) -> None:
         (("--rig", "nope"), 'no rig "nope" comes with the package'),
         (("--rig", "nope.toml"), "nope.toml"),
         (("--torque", "-1"), "peak = -1.0 N.m must lie in (0, inf)"),
-        (("--torque", "9"), "do not make"),
+        (("--torque", "9"), "at most 1200 g, which is 1.177 N.m: ask for less"),
         (("--positions", "0,left"), "--positions 0,left: write numbers with commas between"),
         (("--positions", "0,0"), "must each name a thing once"),
         (("--cycles", "0"), "cycles = 0 must be 1 or more"),
@@ -153,6 +153,35 @@ def test_a_loop_that_others_measured_is_analysed(tmp_path: Path) -> None:
     assert loop["area"]["value"] == pytest.approx(0.3063483432, rel=1e-4)
     again = Recording.read(tmp_path / "out" / "rig" / "loop-0deg.csv")
     assert np.allclose(again.values("input_angle", "deg"), Recording.read(LOOP)["input_angle"])
+
+
+def test_columns_of_a_loop_may_have_other_names_and_no_units(tmp_path: Path) -> None:
+    loop = Recording.read(LOOP)
+    rows = zip(loop.values("input_angle", "deg").tolist(), loop.values("input_torque", "N.m").tolist(), strict=True)
+    (tmp_path / "mine.csv").write_text("turn,load\n" + "".join(f"{turn},{load}\n" for turn, load in rows))
+    refused(tmp_path, ("rig", "analyse", "mine.csv"), "Name yours like --column")
+    named = ("--column", "input_angle=turn", "--column", "input_torque=load")
+    refused(tmp_path, ("rig", "analyse", "mine.csv", *named), "--unit")
+    refused(tmp_path, ("rig", "analyse", "mine.csv", "--column", "colour=turn"), "colour is no column of these measurements")
+    units = ("--unit", "input_angle=deg", "--unit", "input_torque=N.m")
+    result = strainwave("rig", "analyse", "mine.csv", *named, *units, folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    again = Recording.read(tmp_path / "out" / "rig" / "loop-0deg.csv")
+    assert np.allclose(again.values("input_angle", "deg"), loop.values("input_angle", "deg"))
+
+
+def test_loops_of_an_earlier_analysis_are_told(tmp_path: Path) -> None:
+    for position in (30, 0):
+        result = strainwave("rig", "analyse", LOOP, "--positions", position, folder=tmp_path)
+    assert "of an earlier analysis, and no part of this one: loop-30deg.csv, loop-30deg.parquet" in result.stdout
+
+
+def test_a_virtual_test_says_what_its_steps_of_torque_cost(tmp_path: Path) -> None:
+    result = strainwave("rig", "simulate", "--positions", 60, "--step", 0.3, "--out", "test", folder=tmp_path)
+    assert "the peak is 0.3432 N.m: 0.36 N.m is no step of the masses" in result.stdout
+    assert (
+        "at 60 degrees document T's loop has its 51.9 degrees from 0.353 N.m on; at 0.343 N.m it is narrower" in result.stdout
+    )
 
 
 def test_loops_of_several_files_are_compared(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
@@ -14,8 +14,7 @@ from strainwave.rig.analysis.sides import friction_at_rest, without_friction
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.loop import Loop
 from strainwave.rig.reading.evaluation import Evaluation, evaluate
-from strainwave.rig.reading.measurement import PLAN as PLAN
-from strainwave.rig.reading.measurement import TorsionTest, read_test
+from strainwave.rig.reading.measurement import PLAN, TorsionTest, read_test
 from strainwave.rig.reading.recorded import read_loop
 
 
@@ -30,6 +29,7 @@ class Given:
         reference: name of the photograph whose angle is 0
         friction: table of speed and torque of the input, whose friction is taken out of the loops
         positions: of the flexspline for each file of a loop [deg]
+        columns, units: of files of loops, as `read_loop` takes them
     """
 
     rig: Rig | None = None
@@ -38,6 +38,8 @@ class Given:
     reference: str | None = None
     friction: Path | None = None
     positions: Sequence[float] | None = None
+    columns: Mapping[str, str] | None = None
+    units: Mapping[str, str] | None = None
 
 
 def evaluate_paths(
@@ -98,7 +100,8 @@ def _read(
             read += [path / each for each in ("rig.toml", "steps.csv", PLAN) if (path / each).exists()]
         else:
             unit = path.stem if len(files) > 1 and given.positions is None else ""
-            loops.append(read_loop(path, position=radians(next(places)), unit=unit))
+            place = radians(next(places))
+            loops.append(read_loop(path, columns=given.columns, units=given.units, position=place, unit=unit))
             read.append(path)
     return tests, loops, read
 

@@ -36,6 +36,21 @@ def printed_gear(position: int) -> Gear:
     return gear_of_regimes(*slopes, width=math.radians(width), peak=PEAK)
 
 
+def peak_needed(position: int) -> float:
+    """The torque at the input from which on the loop of a row of Table 2 has its printed width [N.m].
+
+    >>> [round(peak_needed(position), 3) for position in TABLE_2]
+    [0.322, 0.353, 0.339]
+    """
+    down, soft_down, up, soft_up, width = TABLE_2[position]
+    return max(_needed(*pair, math.radians(width), ONSET) for pair in ((soft_up, down), (soft_down, up)))
+
+
+def _needed(loading: float, unloading: float, width: float, onset: float) -> float:
+    """Where a soft regime from the onset on has opened the loop to its width [N.m]."""
+    return onset + width / (1.0 / loading - 1.0 / unloading)
+
+
 def gear_of_regimes(
     positive_unloading: float,
     negative_loading: float,
@@ -76,7 +91,7 @@ def gear_of_regimes(
         lost_motion=width / ratio,
     )
     for loading, unloading in ((positive_loading, positive_unloading), (negative_loading, negative_unloading)):
-        if (needed := onset + width / (1.0 / loading - 1.0 / unloading)) > peak:
+        if (needed := _needed(loading, unloading, width, onset)) > peak:
             raise ValueError(
                 f"width = {width:g} rad asks for {needed:.3g} N.m at a loading stiffness of {loading:g} N.m/rad; "
                 f"the peak of {peak:g} N.m does not reach that"

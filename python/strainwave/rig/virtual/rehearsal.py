@@ -14,7 +14,7 @@ from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.running.sources import Virtual
 from strainwave.rig.virtual.loading import load_by_steps
-from strainwave.rig.virtual.printed import printed_gear
+from strainwave.rig.virtual.printed import TABLE_2, peak_needed, printed_gear
 from strainwave.rig.virtual.render import usual_scene
 
 DOCUMENT_T = "document-t"  # the gears whose loops are the rows of document T's Table 2
@@ -29,6 +29,22 @@ def gear_named(name: str) -> Gear | Callable[[Step], Gear]:
     if name == DOCUMENT_T:
         return lambda step: printed_gear(round(degrees(step.position)))
     return GearSet.read(name).gear
+
+
+def narrower(positions: Sequence[float], peak: float) -> list[str]:
+    """Which rows of document T's Table 2 do not reach their printed width under a peak torque [N.m], in words.
+
+    >>> narrower([0.0], 0.343)
+    []
+    >>> print(*narrower([np.radians(60.0)], 0.343))
+    at 60 degrees document T's loop has its 51.9 degrees from 0.353 N.m on; at 0.343 N.m it is narrower
+    """
+    return [
+        f"at {place} degrees document T's loop has its {TABLE_2[place][-1]:g} degrees from {peak_needed(place):.3f} N.m on; "
+        f"at {peak:.3f} N.m it is narrower"
+        for place in (round(degrees(position)) for position in positions)
+        if peak_needed(place) > peak
+    ]
 
 
 def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gear], seed: int | None = None) -> Virtual:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from strainwave.rig import Rig, Step, Value
 from strainwave.rig.virtual.loading import Loading, load_by_steps
-from strainwave.rig.virtual.printed import PEAK, TABLE_2, gear_of_regimes, printed_gear
+from strainwave.rig.virtual.printed import PEAK, TABLE_2, gear_of_regimes, peak_needed, printed_gear
 
 BENCH = Rig("bench", "input", disk_radius=Value(0.1), gravity=Value(10.0))  # 1 kg is 1 N.m
 
@@ -48,3 +48,15 @@ def test_a_loop_wider_than_its_torque_can_make_is_refused() -> None:
         gear_of_regimes(4.51, 0.31, 4.85, 0.30, width=1.0, peak=0.33)
     with pytest.raises(ValueError, match=r"position = 30 degrees must be 0, 60 or 120"):
         printed_gear(30)
+
+
+@pytest.mark.parametrize("position", TABLE_2)
+def test_a_loop_has_its_printed_width_from_the_peak_it_needs(position: int) -> None:
+    """A peak at which the loop is just as wide as printed, and one below at which it is narrower."""
+    needed, width = peak_needed(position), TABLE_2[position][-1]
+    widths = []
+    for peak in (1.001 * needed, 0.98 * needed):
+        found = loop(position, np.array([peak, 0.0, -peak]))
+        widths.append(math.degrees(found.angle[1] - found.angle[3]))
+    assert widths[0] == pytest.approx(width, rel=1e-6)
+    assert widths[1] < 0.99 * width
