@@ -293,7 +293,7 @@ def _heat_treatment(_: Influence) -> tuple[str, str]:
 
 def _yielding(_: Influence) -> tuple[str, str]:
     return UNDECIDABLE, (
-        "0 models of this package yield or tire, and document T measured 1 flexspline; loops of flexsplines of one design in "
+        "No model here has yield or fatigue, and document T measured 1 flexspline; loops of flexsplines of one design in "
         "two heat treatments, in the same wave generator, would decide."
     )
 
