@@ -68,7 +68,8 @@ class Regime(ComparedByFields):
         torque: [N.m], shape (n,); begins or ends with 0, which is interpolated where the branch passes it between two points
         angle: [rad], shape (n,)
         angle_sigma: [rad], shape (n,)
-        torque_sigma: [N.m], shape (n,)
+        torque_sigma: [N.m], shape (n,); of a peak from which it unloads, with twice the error of the pulleys' friction, which
+            has the other sign there than on the rest of the way
         rows: of the loop, shape (n,); -1 where it was interpolated
     """
 
@@ -338,11 +339,19 @@ def _regime(name: RegimeName, falling: Branch | None, rising: Branch | None, loo
         return None
     torque = loop.torque[branch.rows]
     inside = sign * torque >= 0.0
-    found = Regime(
-        name, torque[inside], branch.angle[inside], branch.angle_sigma[inside], branch.torque_sigma[inside], branch.rows[inside]
-    )
+    sigma = _from_peak(sign * torque, branch, loop) if name.endswith("unloading") else branch.torque_sigma
+    found = Regime(name, torque[inside], branch.angle[inside], branch.angle_sigma[inside], sigma[inside], branch.rows[inside])
     crosses = ends[0] < 0.0 and not np.any(torque == 0.0)
     return _with_crossing(found, branch, 0 if sign > 0.0 else len(found.rows)) if crosses else found
+
+
+def _from_peak(size: Array, branch: Branch, loop: Loop) -> Array:
+    """Errors of the torque along a branch that leaves a peak, which was reached the other way."""
+    sigma = branch.torque_sigma.copy()
+    if np.any(sigma > 0.0) or np.any(branch.angle_sigma > 0.0):
+        held = size == size.max()
+        sigma[held] = np.hypot(sigma[held], 2.0 * loop.friction_sigma)
+    return sigma
 
 
 def _with_crossing(regime: Regime, branch: Branch, at: int) -> Regime:

@@ -16,6 +16,8 @@ KNEES = 2  # at most: stiff, soft, stiff again
 SHORTEST = 0.04  # of the torque of a regime: a shorter stretch is none
 CANDIDATES = 24  # places tried for a knee
 SEARCHED = 500  # points, at most, by which the first place of a knee is found; it is then moved by all
+STARTS = 4  # places of knees, the best on the grid, from which these are moved: the very best may lead astray
+CLEARLY = 0.9  # of a misfit: starts that lead to nearly the same are the same
 PRICE = 2.0  # per parameter, in logarithms of the number of points: a knee that noise brings forth is to be rare
 BLUNT = 3e-5  # of the span of the angle: residuals so small call for no knee; the digits of a file leave as much
 ROUNDING = 1e-7  # of the span: a point so near to a knee lies on it
@@ -122,7 +124,9 @@ class _Chain(ComparedByFields):
     def segments(self, torque: Array, stated: bool) -> Segments:
         freedom = len(torque) - self.parameters
         scatter = float(np.sqrt(np.sum(self.residual**2) / freedom)) if freedom > 0 else float("nan")
-        size = 1.0 if stated else (self.misfit / freedom if freedom > 0 else float("nan"))
+        size = self.misfit / freedom if freedom > 0 else float("nan")
+        if stated:
+            size = max(1.0, size) if freedom > 0 else 1.0  # a chain that misses points by more may err by more
         lengths = _lengths(self.columns)
         unit = self.columns / lengths
         covariance = size * np.linalg.pinv(unit.T @ unit, rcond=1e-12) / np.outer(lengths, lengths)
@@ -169,8 +173,12 @@ def _best(torque: Array, angle: Array, variance: Array, count: int, known: Array
     if not len(chosen):
         return _refined(torque, angle, variance, np.empty(0))
     every = -(-len(torque) // SEARCHED)
-    misfit = _misfits(torque[::every], angle[::every], variance[::every], chosen)
-    return _refined(torque, angle, variance, chosen[int(np.argmin(misfit))])
+    some = torque[::every], angle[::every], variance[::every]
+    starts = chosen[np.argsort(_misfits(*some, chosen))[:STARTS]]
+    best, *others = (_refined(*some, start) for start in starts)
+    for other in others:
+        best = other if other.misfit < CLEARLY * best.misfit else best
+    return best if every == 1 else _refined(torque, angle, variance, best.knees)
 
 
 def _misfits(torque: Array, angle: Array, variance: Array, chosen: Array) -> Array:

@@ -155,26 +155,31 @@ def _told(stiffness: float, random: float, loop: Loop, freedom: float, *, by_ang
 
 
 def _secant(regime: Regime, loop: Loop, freedom: float) -> Result:
-    """Between the point of zero torque and the peak."""
+    """Between the point of zero torque and the peak.
+
+    An error of the pulleys' friction shifts the torque of all points that were reached the same way by d. While loading, that
+    is all of them, and the compliance errs by (C - c) d / T, with C of the secant, c at zero torque, T of the peak. A peak
+    from which the regime unloads was reached the other way, and it is (C + c) d / T.
+    """
     zero, peak = (0, -1) if regime.name.startswith("positive") else (-1, 0)
     rise, turned = float(regime.torque[peak] - regime.torque[zero]), float(regime.angle[peak] - regime.angle[zero])
     if turned == 0.0:
         return result(np.inf, UNIT)
-    slope = rise / turned
+    compliance = turned / rise
     near = 1 if zero == 0 else -2
     step = float(regime.torque[near] - regime.torque[zero])
-    at_zero = float(regime.angle[near] - regime.angle[zero]) / step if step else 1.0 / slope
+    at_zero = float(regime.angle[near] - regime.angle[zero]) / step if step else compliance
     of_angle = hypot(float(regime.angle_sigma[peak]), float(regime.angle_sigma[zero]))
-    of_torque = hypot(float(regime.torque_sigma[peak]) / slope, float(regime.torque_sigma[zero]) * at_zero)
-    friction = abs(1.0 / slope - at_zero) * loop.friction_sigma  # it moves the whole branch along the torque
-    random = hypot(of_angle, of_torque) / abs(turned) * abs(slope)
-    friction *= abs(slope) / abs(turned)
-    found = _told(slope, random, loop, freedom, by_angle=True)
-    if not friction:
+    of_peak = float(loop.torque_sigma[regime.rows[peak]])
+    of_torque = hypot(of_peak * compliance, float(regime.torque_sigma[zero]) * at_zero)
+    found = _told(1.0 / compliance, hypot(of_angle, of_torque) / abs(rise) / compliance**2, loop, freedom, by_angle=True)
+    moved = compliance + at_zero if regime.name.endswith("unloading") else compliance - at_zero
+    friction = abs(moved / rise) * loop.friction_sigma
+    if not friction or compliance <= 0.0:
         return found
-    compliance = inverse(found, COMPLIANCE) if slope > 0.0 else found
-    grown = hypot(compliance.shared, friction / slope**2)
-    return inverse(result(compliance.value, COMPLIANCE, random=compliance.random, shared=grown, freedom=freedom), UNIT)
+    shared_part = hypot(found.shared * compliance**2, friction)
+    random = found.random * compliance**2
+    return inverse(result(compliance, COMPLIANCE, random=random, shared=shared_part, freedom=freedom), UNIT)
 
 
 def _softest(segments: Segments, loop: Loop, freedom: float) -> Result:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from strainwave.rig import Loop, Result, analyse, closure_of_secants, soft_parts, table
@@ -176,6 +178,65 @@ def test_errors_of_the_rig_are_shared_by_all_stiffnesses() -> None:
             result = found.stiffness_by(name, definition)
             assert result is not None
             assert result.shared == pytest.approx(STIFF[name] * np.hypot(0.005, STIFF[name] * 0.02), rel=1e-6)
+
+
+def with_friction(angle: np.ndarray, torque: np.ndarray, error: float) -> Loop:
+    """A loop from +peak over -peak back as read where the pulleys' friction is wrong: each point by how it was reached."""
+    turn = int(np.argmin(torque))
+    forward = np.arange(len(torque)) > turn
+    forward[0] = True
+    read = torque + np.where(forward, error, -error)
+    return Loop(angle, read, side="input", name="pulleys", angle_sigma=1e-5, friction_sigma=abs(error))
+
+
+@pytest.mark.parametrize(
+    "polygon", [quarters(2.0, 0.5, PEAK, 7), refined(*vertices(TABLE[60.0]), 0.02)], ids=["straight", "document T"]
+)
+def test_a_secant_errs_by_the_friction_of_the_pulleys_as_stated(polygon: tuple[np.ndarray, np.ndarray]) -> None:
+    """To first order: the peak of unloading was reached the other way than the rest, so the errors of both ends add up."""
+    small = 1e-6
+    right, wrong = (analyse(with_friction(*polygon, error)) for error in (0.0, small))
+    for one, other in zip(right.stiffnesses, wrong.stiffnesses, strict=True):
+        assert one.secant is not None
+        assert other.secant is not None
+        error = abs(1.0 / other.secant.value - 1.0 / one.secant.value)
+        assert other.secant.shared / other.secant.value**2 == pytest.approx(error, rel=1e-3, abs=1e-10)
+
+
+def test_lines_of_unloading_do_not_lean_on_the_peak_that_was_reached_the_other_way() -> None:
+    random = np.random.default_rng(10)
+    angle, torque = quarters(2.0, 0.5, PEAK, 7)
+    found = []
+    for _ in range(150):
+        read = with_friction(angle + 1e-5 * random.normal(size=len(angle)), torque, 1e-3 * random.normal())
+        found.append(analyse(replace(read, friction_sigma=1e-3)))
+    for definition in DEFINITIONS:
+        results = [result for each in found if (result := each.stiffness_by("positive_unloading", definition)) is not None]
+        assert len(results) == 150
+        assert coverage(results, 2.0) > 0.90, definition
+
+
+def test_the_soft_stretch_is_found_wherever_the_points_lie_between_its_knees() -> None:
+    """Knees at 0.03 and between 0.30 and 0.34 N.m, points every 0.03: some lie nearer to a knee than a stretch may be short."""
+    random, stiff, soft = np.random.default_rng(0), 1.0 / 4.68, 1.0 / 0.31
+    deviations = []
+    for _ in range(100):
+        torque = np.arange(random.uniform(0.002, 0.0299), 0.361, 0.03)
+        angle = torque * stiff + (np.maximum(torque - 0.03, 0.0) - np.maximum(torque - random.uniform(0.30, 0.34), 0.0)) * (
+            soft - stiff
+        )
+        found = fit_segments(torque, angle + 3e-5 * random.normal(size=len(torque)), np.full(len(torque), 3e-5), 0.0 * torque)
+        error = found.compliances[found.softest] - soft
+        assert abs(error) < 1e-3 * soft
+        deviations.append(error / found.compliance_sigmas[found.softest])
+    assert 0.85 < np.mean(np.abs(deviations) < 2.0) < 1.0
+
+
+def test_a_stretch_that_misses_points_by_more_than_their_errors_errs_by_more() -> None:
+    """Three points cannot tell a knee: the sigma of the slope is the scatter over the root of the sum of squares, 1/2."""
+    torque, off = np.array([0.0, 0.5, 1.0]), 1e-2
+    found = fit_segments(torque, torque + off * np.array([1.0, -2.0, 1.0]), np.full(3, 1e-4), np.zeros(3))
+    assert found.compliance_sigmas[0] == pytest.approx(off * np.sqrt(6.0) / np.sqrt(0.5), rel=1e-9)
 
 
 def test_the_local_stiffness_follows_the_slopes() -> None:
