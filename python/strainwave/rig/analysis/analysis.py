@@ -12,6 +12,7 @@ import numpy as np
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
+from strainwave.identify.branches import thinned
 from strainwave.messages import shortened
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, check_catalogue, rated_torque_of
 from strainwave.rig.analysis.lost_motion import LOST_MOTION, Width, area, closure, drift, separation, widest, widest_in_torque
@@ -31,6 +32,7 @@ BENT = 4.0  # chi-square per degree of freedom: from here on a regime is not one
 NEAR = 0.1  # of the rated torque: a cycle with such peaks is one at rated torque
 OPEN = 3.0  # standard deviations, and a share of the width, from which on a closure error is told
 TOLD = 0.02  # of the hysteresis
+MOST = 100_000  # points of a loop that are evaluated; of a longer one, the means of so many stretches
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +40,7 @@ class LoopAnalysis(ComparedByFields):
     """What a loop says; what it does not tell is None, and `remarks` say why.
 
     Attributes:
-        loop: as it was measured
+        loop: as it was measured; of a very long one, the means of short stretches
         cut: its branches and regimes
         stiffnesses: of each regime that was measured from zero torque to the peak, in the order of the cycle
         hysteresis: widest separation at equal torque, as document T has it
@@ -115,6 +117,8 @@ class Row:
 def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float | None = None) -> LoopAnalysis:
     """What a loop says. Of several cycles the last complete one is analysed; `cycles` gives each as a loop of its own.
 
+    Of a loop of more than 100 000 points, the means of as many stretches are analysed, and a remark says so.
+
     Args:
         loop: a loop, or a part of one, in the order measured
         gear_set: the gear, to compare with its catalogue figures
@@ -138,6 +142,7 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
         arguments.number("rated_torque", rated_torque, "N.m", low=0.0)
     elif gear_set is not None:
         rated_torque = rated_torque_of(gear_set, loop.side)
+    loop = _shortened(loop)
     stated = bool(np.any(loop.angle_sigma > 0.0) or np.any(loop.torque_sigma > 0.0))
     cut, freedom = (segment(loop), inf) if stated else _with_scatter(loop)
     found = _analysis(loop, cut, freedom, rated_torque, stated)
@@ -145,6 +150,23 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
         checks, words = check_catalogue(cut, gear_set, found.width_at_zero, rated_torque)
         found = replace(found, catalogue=checks, remarks=(*found.remarks, *words))
     return found
+
+
+def _shortened(loop: Loop) -> Loop:
+    """A loop of no more points than can be evaluated in some seconds; the mean of n points errs by the root of n less."""
+    n = len(loop)
+    if n <= MOST:
+        return loop
+    root = np.sqrt(n / MOST)
+    angle, torque, angle_sigma, torque_sigma = thinned(
+        loop.angle, loop.torque, loop.angle_sigma / root, loop.torque_sigma / root, samples=MOST
+    )
+    time, temperature = (None if each is None else thinned(each, samples=MOST)[0] for each in (loop.time, loop.temperature))
+    words = f"{n} points are evaluated as the means of {MOST} stretches"
+    return replace(
+        loop, angle=angle, torque=torque, angle_sigma=angle_sigma, torque_sigma=torque_sigma, time=time,
+        temperature=temperature, remarks=(*loop.remarks, words),
+    )  # fmt: skip
 
 
 def _with_scatter(loop: Loop) -> tuple[Segmented, float]:

@@ -134,7 +134,9 @@ def _loading(falling: Branch, rising: Branch, low: float, high: float, loop: Loo
     compliance = 0.5 * sum(turned) / (high - low)
     if compliance <= 0.0:
         return None
-    error = float(np.median(loop.angle_sigma)) / (high - low)  # four readings, halved
+    of_angle = float(np.median(loop.angle_sigma)) / (high - low)  # four readings, halved
+    of_torque = compliance * float(np.median(loop.torque_sigma)) / (high - low)  # each turned into angle by the slope
+    error = hypot(of_angle, of_torque)
     of_rig = shared(1.0 / compliance, loop) * compliance**2
     return inverse(result(compliance, COMPLIANCE, random=error, shared=of_rig), UNIT)
 

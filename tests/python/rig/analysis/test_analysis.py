@@ -55,6 +55,22 @@ def test_a_gear_far_from_its_catalogue_is_told() -> None:
     assert "50 % of the 2.5e+04 N.m/rad of the set, beyond the spread of units" in str(checks["K2"])
 
 
+def test_errors_of_the_torque_spread_a_figure_as_its_interval_says() -> None:
+    """Torques of 0.1 N.m each: at most what is stated, and not much less, since a point between two readings errs less."""
+    random, gear_set, plain = np.random.default_rng(4), sw.GearSet.read("csg-20-100"), of_set("csg-20-100", 52.0)
+    rows = np.unique(np.r_[np.arange(0, len(plain), max(1, len(plain) // 80)), int(np.argmin(plain.torque)), len(plain) - 1])
+    found: dict[str, list[Result]] = {"K2": [], "K3": []}
+    for _ in range(60):
+        torque = plain.torque[rows] + 0.1 * random.standard_normal(len(rows))
+        loop = Loop(plain.angle[rows], torque, side="output", name="noisy", angle_sigma=1e-9, torque_sigma=0.1)
+        for each in analyse(loop, gear_set=gear_set).catalogue:
+            if each.name in found and each.measured is not None:
+                found[each.name].append(each.measured)
+    for name, results in found.items():
+        scatter = float(np.std([each.value for each in results]))
+        assert 0.4 < scatter / float(np.median([each.random for each in results])) < 1.2, name
+
+
 def test_figures_beyond_the_loop_are_not_compared() -> None:
     checks = {each.name: each for each in analyse(of_set("csg-20-100", 10.0), gear_set=sw.GearSet.read("csg-20-100")).catalogue}
     assert checks["K1"].measured is not None
@@ -148,3 +164,17 @@ def test_many_points_take_no_more_than_their_share() -> None:
 def test_a_figure_of_zero_in_a_set_has_no_share() -> None:
     check = CatalogueCheck("lost motion", Result(0.5, "rad", 0.1, 0.0, 0.3, 0.7), 0.0, "rad", None, "example")
     assert str(check).endswith(", the set has 0 rad")
+
+
+def test_of_a_log_of_millions_of_points_the_means_of_stretches_are_evaluated() -> None:
+    """Noise of 1e-3 rad on every point: a stretch of ten and more has less by the root of their number."""
+    plain = loop_of_table(step=0.36 / 300_000)
+    angle = plain.angle + 1e-3 * np.random.default_rng(1).standard_normal(len(plain))
+    found = analyse(Loop(angle, plain.torque, side="input", name="log", angle_sigma=1e-3))
+    assert len(found.loop) == 100_000
+    assert f"{len(plain)} points are evaluated as the means of 100000 stretches" in found.remarks
+    assert found.area is not None
+    assert found.area.value == pytest.approx(0.3063483432, rel=1e-4)
+    soft = found.stiffnesses[1].softest
+    assert soft.low < 0.31 < soft.high
+    assert soft.random < 1e-4
