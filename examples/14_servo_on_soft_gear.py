@@ -68,9 +68,7 @@ for size, answer in answers.items():
     bode.semilogx(frequency, gain, ".-", label=f"{size:g} deg")
     least = gain[frequency < 7.0].min()
     print(f"command of {size:3g} deg: gain {least:.2f} or more below 7 Hz, at most {gain.max():.2f}; {gain[-1]:.2f} at 8 Hz")
-time.set(
-    xlim=(0.0, 2.0), xlabel="time [s]", ylabel="angle of the arm [deg]", title="Steps of the position loop on document T's gear"
-)
+time.set(xlim=(0.0, 2.0), xlabel="time [s]", ylabel="angle of the arm [deg]", title="Steps of the loop on document T's gear")
 over.set(xlabel="step [deg]", ylabel="half swing left [deg]", title="What is left of a step after four seconds")
 bode.set(xlabel="frequency [Hz]", ylabel="arm over command [1]", title="A slower loop, by amplitude of the command")
 bode.set_xticks([0.5, 1.0, 2.0, 4.0, 8.0], ["0.5", "1", "2", "4", "8"])
