@@ -27,9 +27,10 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.identify.experiment import FrictionTable, TorsionLoop
-from strainwave.identify.inverse_dynamics import regression
-from strainwave.identify.torsion import fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks
+from strainwave.identification.dynamics.inverse_dynamics import regression
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 Array = NDArray[np.float64]
 

@@ -24,8 +24,8 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
-from strainwave.identify.measurement import read_measurement
-from strainwave.identify.twin import Twin
+from strainwave.identification.reading.measurement import read_measurement
+from strainwave.identification.twin import Twin
 
 Array = NDArray[np.float64]
 RIG = Path(os.environ.get("STRAINWAVE_RIG", Path(__file__).parents[2] / "shared" / "independent-rig"))

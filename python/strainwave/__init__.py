@@ -48,8 +48,8 @@ if TYPE_CHECKING:
     from strainwave.files.gear_set import GearSet, catalogue, load, save
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
     from strainwave.files.recording import Recording
-    from strainwave.identify.fit import Fit, fit
-    from strainwave.identify.twin import Twin, twin
+    from strainwave.identification.fitting.fit import Fit, fit
+    from strainwave.identification.twin import Twin, twin
     from strainwave.simulation import scenario
     from strainwave.simulation.controller import Seen, simulate_controlled
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
@@ -65,7 +65,7 @@ _LAZY = {
     "Ensemble": "simulation.ensemble",
     "Entry": "files.entries",
     "EnsembleWarning": "simulation.ensemble",
-    "Fit": "identify.fit",
+    "Fit": "identification.fitting.fit",
     "FrequencyResponse": "analysis.response",
     "GearSet": "files.gear_set",
     "Linearisation": "analysis.linear",
@@ -77,14 +77,14 @@ _LAZY = {
     "Run": "simulation.run",
     "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
-    "Twin": "identify.twin",
+    "Twin": "identification.twin",
     "bearing_orders": "analysis.orders",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
     "compare": "analysis.compare",
     "derivatives": "analysis.sensitivity",
     "equilibrium": "analysis.steady",
-    "fit": "identify.fit",
+    "fit": "identification.fitting.fit",
     "frequency_response": "analysis.response",
     "linearise": "analysis.linear",
     "load": "files.gear_set",
@@ -100,7 +100,7 @@ _LAZY = {
     "simulate_controlled": "simulation.controller",
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
-    "twin": "identify.twin",
+    "twin": "identification.twin",
 }
 
 __all__ = [

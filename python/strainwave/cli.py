@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from strainwave import Drive
     from strainwave.files.gear_set import GearSet
     from strainwave.files.recording import Recording
-    from strainwave.identify.measurement import Kind
-    from strainwave.identify.twin import Twin
+    from strainwave.identification.reading.measurement import Kind
+    from strainwave.identification.twin import Twin
     from strainwave.simulation.run import Run
     from strainwave.simulation.scenario_file import ScenarioFile
 
@@ -89,8 +89,8 @@ def twin(
     is taken for, or the model does not explain it, that is said first, no gear is written, and the exit code is 3.
     """
     from strainwave.files.gear_set import GearSet
-    from strainwave.identify.measurement import COLUMNS, columns_in, read_measurements, unused_columns
-    from strainwave.identify.twin import twin as identify
+    from strainwave.identification.reading.measurement import COLUMNS, columns_in, read_measurements, unused_columns
+    from strainwave.identification.twin import twin as identify
     from strainwave.report.provenance import Provenance
     from strainwave.report.twin import twin_report
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
-from strainwave.identify.twin import Twin, twin
+from strainwave.identification.twin import Twin, twin
 from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.simulation import scenario
 from strainwave.simulation.run import simulate

@@ -183,7 +183,7 @@ def analyse(
     from rich.console import Console
 
     from strainwave.files.gear_set import GearSet
-    from strainwave.identify.measurement import COLUMNS
+    from strainwave.identification.reading.measurement import COLUMNS
     from strainwave.messages import pairs
     from strainwave.report.rig import rig_report, summary
     from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json

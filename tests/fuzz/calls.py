@@ -19,7 +19,9 @@ import numpy as np
 import strainwave as sw
 from numpy.random import Generator
 from strainwave.files.entries import Quantity
-from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
+from strainwave.identification.experiments.drive_log import DriveLog
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import picked
@@ -27,7 +29,8 @@ from tests.strategies import made as usual_of
 
 MODULES = (
     *("files.units", "files.gear_set", "files.entries", "files.recording", "parameters", "simulation.scenario"),
-    *("identify.experiment", "identify.inverse_dynamics"),
+    *(f"identification.experiments.{name}" for name in ("experiment", "friction_table", "torsion_loop", "drive_log")),
+    "identification.dynamics.inverse_dynamics",
 )
 LAWS = ("friction", "hysteresis", "kinematic_error", "stiffness")
 METHODS = ("__getitem__", "__contains__", "__eq__", "__add__", "__sub__", "__mul__", "__rmul__")
@@ -51,14 +54,14 @@ NOT_CALLED = {
     *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning", "twin")),
     "files.entries.check_line",
     *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter", "replaced")),
-    *(
-        f"identify.experiment.{name}"
-        for name in ("Experiment", "Nuisance", "DriveLog", "FrictionTable", "TorsionLoop", "at_input")
-    ),
-    *(f"experiment.DriveLog.{name}" for name in ("beginning", "stands_still")),
-    *(f"identify.inverse_dynamics.{name}" for name in ("Regression", "RigidDrive")),
-    *(f"experiment.{name}.predict" for name in ("DriveLog", "FrictionTable", "TorsionLoop")),
-    "experiment.TorsionLoop.path",
+    *(f"identification.experiments.experiment.{name}" for name in ("Experiment", "Nuisance", "sensible")),
+    "identification.experiments.friction_table.FrictionTable",
+    *(f"identification.experiments.torsion_loop.{name}" for name in ("TorsionLoop", "at_input")),
+    "identification.experiments.drive_log.DriveLog",
+    *(f"drive_log.DriveLog.{name}" for name in ("beginning", "stands_still")),
+    *(f"identification.dynamics.inverse_dynamics.{name}" for name in ("Regression", "RigidDrive")),
+    *(f"{name}.predict" for name in ("drive_log.DriveLog", "friction_table.FrictionTable", "torsion_loop.TorsionLoop")),
+    "torsion_loop.TorsionLoop.path",
     "fit.Fit.rms",
     "simulation.scenario.Wave",
     *("state.State.of", "state.State.get", "state.State.__getitem__"),  # which say of other names what any mapping says

@@ -14,7 +14,7 @@ import pyarrow
 import pyarrow.parquet
 import strainwave as sw
 from numpy.random import Generator
-from strainwave.identify.measurement import Kind, read_measurement
+from strainwave.identification.reading.measurement import Kind, read_measurement
 
 from tests.fuzz.laws import Case, described, finite
 from tests.fuzz.mutation import NUMBERS, encoded, mutated, mutated_bytes, picked

@@ -11,13 +11,13 @@ from pathlib import Path
 import strainwave as sw
 
 PACKAGE = Path(sw.__file__).parent
-ANALYSES = {"analysis", "identify", "rig", "studies"}
+ANALYSES = {"analysis", "identification", "rig", "studies"}
 LAYERS = {
     "files": {"files"},
     "simulation": {"files", "simulation"},
     "analysis": {"files", "simulation", "analysis"},
-    "identify": {"files", "simulation", "identify"},
-    "rig": {"files", "simulation", "analysis", "identify", "rig"},
+    "identification": {"files", "simulation", "identification"},
+    "rig": {"files", "simulation", "analysis", "identification", "rig"},
     "studies": {"files", "simulation", "analysis", "studies"},
     "report": {"files", "simulation", *ANALYSES, "report"},
 }

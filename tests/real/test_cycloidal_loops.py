@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identify.experiment import TorsionLoop
-from strainwave.identify.torsion import fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cycloidal-loops"
 LOOPS = [

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from strainwave.identify.inverse_dynamics import PARAMETERS, RigidDrive, regression, rigid_drive
+from strainwave.identification.dynamics.inverse_dynamics import PARAMETERS, RigidDrive, regression, rigid_drive
 
 Array = NDArray[np.float64]
 Report = Callable[[str, object], None]

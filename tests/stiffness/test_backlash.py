@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
-from strainwave.identify.experiment import TorsionLoop
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.stiffness import Backlash, Cubic, Linear, MultiCompliance, ThreeSegment
 
 from tests.strategies import built, log_uniform, made, signed

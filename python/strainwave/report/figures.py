@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.files.recording import envelope
-from strainwave.identify.branches import turning_points
-from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
+from strainwave.identification.experiments.branches import turning_points
+from strainwave.identification.experiments.drive_log import DriveLog
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.report import typeset
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.simulation.signals import outputs
@@ -29,8 +31,8 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-    from strainwave.identify.evidence import Evidence
-    from strainwave.identify.twin import Twin
+    from strainwave.identification.evidence.evidence import Evidence
+    from strainwave.identification.twin import Twin
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -11,12 +11,14 @@ import numpy as np
 
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
-from strainwave.identify.branches import SAMPLES
-from strainwave.identify.evidence import Evidence
-from strainwave.identify.experiment import DriveLog, FrictionTable, TorsionLoop
-from strainwave.identify.fit import Fit
-from strainwave.identify.twin import Contradiction, Twin
-from strainwave.identify.verdict import State, Verdict, estimated, numbers
+from strainwave.identification.evidence.evidence import Evidence
+from strainwave.identification.evidence.verdict import State, Verdict, estimated, numbers
+from strainwave.identification.experiments.branches import SAMPLES
+from strainwave.identification.experiments.drive_log import DriveLog
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.twin import Contradiction, Twin
 from strainwave.report import figures
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import render

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.demo import position_drive, torsion_rig
-from strainwave.identify.experiment import TorsionLoop
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.report import figures
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.twin import twin_report

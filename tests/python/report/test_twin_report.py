@@ -11,8 +11,8 @@ import strainwave as sw
 from strainwave.demo import position_drive
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
-from strainwave.identify.evidence import Doubt
-from strainwave.identify.experiment import TorsionLoop
+from strainwave.identification.evidence.evidence import Doubt
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.report import figures
 from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.report.twin import twin_report

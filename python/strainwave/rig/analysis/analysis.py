@@ -12,7 +12,7 @@ import numpy as np
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
-from strainwave.identify.branches import thinned
+from strainwave.identification.experiments.branches import thinned
 from strainwave.messages import shortened
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, check_catalogue, rated_torque_of
 from strainwave.rig.analysis.lost_motion import LOST_MOTION, Width, area, closure, drift, separation, widest, widest_in_torque

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
-from strainwave.identify.branches import turning_points
+from strainwave.identification.experiments.branches import turning_points
 from strainwave.rig.analysis.step_remarks import remarks_on_steps
 from strainwave.rig.loop import Loop
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave._core import Gear
 from strainwave.files.recording import Recording
-from strainwave.identify.experiment import FrictionTable
-from strainwave.identify.friction import fit_friction
+from strainwave.identification.candidates.friction import fit_friction
+from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.rig.analysis.regimes import segment
 from strainwave.rig.bench.setup import Value
 from strainwave.rig.loop import COLUMNS, Loop, Side

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
-from strainwave.identify.measurement import read_measurement
+from strainwave.identification.reading.measurement import read_measurement
 from strainwave.rig.analysis.sides import friction_at_rest, without_friction
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.loop import Loop

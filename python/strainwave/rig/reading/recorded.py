@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
-from strainwave.identify.measurement import read_measurement
+from strainwave.identification.reading.measurement import read_measurement
 from strainwave.messages import listed, one_line
 from strainwave.rig.loop import COLUMNS, Loop, Side
 

@@ -1,0 +1,1 @@
+"""Logs of moving drives: linear regression, then simulation."""

@@ -1,0 +1,167 @@
+"""Drive logs: what a run of the whole drive says of its gear."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from operator import methodcaller
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from strainwave import Drive, _core, friction, kinematic_error
+from strainwave._core import Gear
+from strainwave.equality import ComparedByFields
+from strainwave.identification.experiments.drive_log import DriveLog
+from strainwave.identification.fitting.fit import Fit, fit
+
+Array = NDArray[np.float64]
+
+TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
+QUICK = 40_000  # steps; of a longer log the beginning is fitted first, which leaves little to do for the whole
+ROUNDS = 4  # of fits after which breakaway has followed Coulomb's torque
+FOLLOWED = 1e-3  # of it, as near as it need come
+HALVINGS = 12  # of a friction that no command overcomes
+STEEPEST = 0.1  # slope of each harmonic over that of the rigid motion: no gear's is as large (assumed)
+ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
+
+
+@dataclass(frozen=True, eq=False)
+class LogFit(ComparedByFields):
+    """A drive fitted to a log.
+
+    Attributes:
+        fit: the fit to the first part of the record
+        error: rms of each channel over the rest, in the channel's unit, shape (channels,)
+    """
+
+    fit: Fit
+    error: Array
+
+
+def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
+    """Fits what a drive log can tell of a gear, by simulating the drive through the log's command.
+
+    Args:
+        log: command and measured outputs, starting at rest
+        drive: motor, control and load as known, the gear to start from
+        free: parameters of the gear to fit, as paths of the drive
+
+    Returns:
+        the fit to the first 70 % of the record, with its error on the rest
+
+    Raises:
+        ValueError: the log is too short for the parameters
+    """
+    training = log.time <= TRAINING_SHARE * log.time[-1]
+    is_long = log.time[-1] > QUICK * log.dt
+    near = fit(drive, log.beginning(QUICK / 2 * log.dt), free).model if is_long else drive
+    found = fit(near, log, free, training=training)
+    for _ in range(ROUNDS):
+        law, wanted = found.gear.friction_input, _breakaway(found.gear, drive.gear)
+        if wanted is None or abs(innermost(law).breakaway - wanted) <= FOLLOWED * wanted:
+            break
+        follows = _changed(law, methodcaller("replace", breakaway=wanted))
+        model = found.model.replace(gear=found.gear.replace(friction_input=follows))
+        if not _moves(log, model):
+            break
+        found = fit(model, log, free, training=training)
+    found = _within_a_turn(found)
+    return LogFit(found, found.rms(held_out=True))
+
+
+def _within_a_turn(found: Fit) -> Fit:
+    """The fit with phases of the kinematic error from -pi to pi."""
+    error = found.gear.kinematic_error
+    if not isinstance(error, kinematic_error.Fourier):
+        return found
+    phases = [float(np.remainder(phase + np.pi, 2.0 * np.pi) - np.pi) for phase in error.phase]
+    model = found.model.replace(gear=found.gear.replace(kinematic_error=error.replace(phase=phases)))
+    turned = {f"gear.kinematic_error.phase[{i}]": phase for i, phase in enumerate(phases)}
+    estimates = tuple(replace(each, value=turned.get(each.path, each.value)) for each in found.estimates)
+    return replace(found, model=model, estimates=estimates)
+
+
+def innermost(law: Any) -> Any:
+    """The law of friction that others modulate, or the law itself."""
+    return innermost(law.law) if hasattr(law, "law") else law
+
+
+def _changed(law: Any, change: Callable[[Any], Any]) -> Any:
+    """The law with its innermost one changed."""
+    return law.replace(law=_changed(law.law, change)) if hasattr(law, "law") else change(law)
+
+
+def _breakaway(gear: Gear, start: Gear) -> float | None:
+    """What breakaway follows from Coulomb's torque: its ratio of before in Coulomb's law, no less in others; None without."""
+    law, before = innermost(gear.friction_input), innermost(start.friction_input)
+    if not hasattr(law, "breakaway"):
+        return None
+    if isinstance(law, friction.Coulomb) and before.coulomb > 0.0:
+        return float(law.coulomb * max(before.breakaway / before.coulomb, 1.0))
+    return float(max(law.breakaway, law.coulomb))
+
+
+def free_parameters(log: DriveLog, drive: Drive, *, friction_known: bool, torsion_known: bool) -> list[str]:
+    """What a log can tell that no better measurement was given for.
+
+    Friction at the input from any log, that of a law within `Cyclic` or `Thermal` too; the first stiffness and the kinematic
+    error only where both shafts have encoders.
+    """
+    paths = [path for path, *_ in _core.parameters(drive) if path.startswith("gear.friction_input.")]
+    free = [] if friction_known else [path for path in paths if path.rpartition(".")[2] in ("coulomb", "viscous")]
+    if {"input_angle", "output_angle"} <= set(log.channels):
+        if not torsion_known:
+            free.append(f"gear.stiffness.{drive.gear.stiffness.fields[0]['name']}")
+        free += ["gear.kinematic_error.amplitude", "gear.kinematic_error.phase"]
+    return free
+
+
+def prepared(log: DriveLog, drive: Drive, *, friction_known: bool) -> Drive:
+    """The drive with a gear whose laws have the parameters that the log can tell, started near the measurement."""
+    gear = drive.gear.replace(friction_input=_changed(drive.gear.friction_input, _with_coulomb))
+    if {"input_angle", "output_angle"} <= set(log.channels):
+        gear = gear.replace(kinematic_error=_harmonics(log, gear.kinematics.ratio))
+    drive = drive.replace(gear=gear)
+    return drive if friction_known else _set_in_motion(log, drive)
+
+
+def _set_in_motion(log: DriveLog, drive: Drive) -> Drive:
+    """The drive with so little dry friction that it moves under the command of the log; as it is, if it never does."""
+    tried = drive
+    for _ in range(HALVINGS):
+        if _moves(log, tried):
+            return tried
+        tried = tried.replace(gear=tried.gear.replace(friction_input=_changed(tried.gear.friction_input, _halved)))
+    return drive
+
+
+def _moves(log: DriveLog, drive: Drive) -> bool:
+    """Whether a drive moves under the command of the log."""
+    zeros = np.array([nuisance.start for nuisance in log.nuisances])
+    return not log.stands_still(log.predict(drive, [], zeros)[0])
+
+
+def _halved(law: Any) -> Any:
+    """A law of friction with half its dry torque."""
+    return law.replace(**{name: 0.5 * getattr(law, name) for name in ("coulomb", "breakaway") if hasattr(law, name)})
+
+
+def _with_coulomb(law: Any) -> Any:
+    """Coulomb's law in place of a purely viscous one."""
+    return friction.Coulomb(coulomb=1e-3, viscous=law.viscous) if isinstance(law, friction.Viscous) else law
+
+
+def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
+    """Harmonics of the measured transmission error over the input angle, by linear least squares."""
+    input_angle = log.measured[log.channels.index("input_angle")]
+    output_angle = log.measured[log.channels.index("output_angle")]
+    angle = input_angle - input_angle[0]
+    error = angle / ratio - (output_angle - output_angle[0])
+    waves = [wave(order * angle) for order in ORDERS for wave in (np.sin, np.cos)]
+    columns = np.column_stack((np.ones_like(angle), angle, *waves))
+    weights = np.linalg.lstsq(columns, error, rcond=None)[0][2:].reshape(-1, 2)
+    amplitude, phase = np.hypot(*weights.T), np.arctan2(weights[:, 1], weights[:, 0])
+    largest = STEEPEST / (abs(ratio) * np.array(ORDERS))
+    amplitude = np.where(amplitude < largest, amplitude, 1e-3 * largest)  # no error of a gear: something else is wrong
+    return kinematic_error.Fourier(order=ORDERS, amplitude=amplitude.tolist(), phase=phase.tolist())

@@ -1,0 +1,168 @@
+"""Whether a fit explains its measurement; and if not, which likely mistake in the recording would."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from strainwave import Drive
+from strainwave.files.recording import Recording
+from strainwave.files.units import convert
+from strainwave.identification.experiments.branches import noise
+from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.fitting.fit import Fit
+from strainwave.kinematics import StrainWave
+
+Array = NDArray[np.float64]
+
+# Of what was measured, the share that a fit may leave unexplained beside noise. Less of an angle, which is the sum of all that
+# happened before, than of a torque or a current, in which every effect shows that a model leaves out.
+LEFT_IN_MOTION = 0.1
+LEFT_IN_LOOP = 0.1
+LEFT_IN_TORQUE = 0.3
+BETTER = 0.5  # of what was unexplained before: a cause that leaves more explains nothing
+RATIO = 0.03  # by which the ratio of two encoders must differ from the gear's to be another one
+# What the header of a column may name wrongly, and what it may be.
+MISTAKEN = {
+    "rad": ("deg", "rev", "arcmin"), "deg": ("rad", "rev", "arcmin"), "rad/s": ("rpm", "deg/s"), "rpm": ("rad/s",),
+    "deg/s": ("rad/s",), "N.m": ("mN.m", "N.cm"), "mN.m": ("N.m",), "A": ("mA",), "V": ("mV",),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A likely mistake in a recording, or in what is known of its drive.
+
+    Attributes:
+        what: what may be wrong
+        remedy: what to do about it
+        recording: as it would be without the mistake
+        drive: as it would be
+    """
+
+    what: str
+    remedy: str
+    recording: Recording
+    drive: Drive
+
+
+def unexplained(found: Fit) -> Array:
+    """Share of each channel's variation that a fit leaves unexplained, but for white noise, shape (channels,).
+
+    >>> import numpy as np, strainwave as sw
+    >>> speed = np.linspace(1.0, 50.0, 20)
+    >>> table = sw.Recording({"speed": speed, "torque": 0.02 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
+    >>> law = sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=1e-4)
+    >>> found = sw.fit(sw.Gear(friction_input=law), table, ["friction_input.coulomb", "friction_input.viscous"])
+    >>> bool(unexplained(found)[0] < 1e-6)
+    True
+    """
+    if isinstance(found.experiment, FrictionTable):  # a constant torque varies by nothing but its noise
+        share: Array = found.rms() / np.sqrt(np.mean(found.experiment.measured**2, axis=1))
+        return share
+    return left(found.experiment.measured, found.predicted)
+
+
+def left(measured: Array, predicted: Array) -> Array:
+    """The same of any prediction, shape (channels, n) like the measurement."""
+    residual = measured - predicted
+    misfit = np.sqrt(np.maximum(np.mean(residual**2, axis=1) - [noise(row) ** 2 for row in measured], 0.0))
+    variation = np.std(measured, axis=1)
+    return np.where(variation > 0.0, misfit / np.where(variation > 0.0, variation, 1.0), 0.0)
+
+
+def allowed(found: Fit) -> Array:
+    """The largest share of each channel that a fit may leave unexplained, shape (channels,)."""
+    if isinstance(found.experiment, FrictionTable):
+        return np.array([LEFT_IN_TORQUE])
+    if isinstance(found.experiment, DriveLog):
+        moving = [name.endswith(("_angle", "_speed")) for name in found.experiment.channels]
+        return np.where(moving, LEFT_IN_MOTION, LEFT_IN_TORQUE)
+    return np.array([LEFT_IN_LOOP])
+
+
+def causes(recording: Recording, drive: Drive) -> list[Cause]:
+    """Likely mistakes in a drive log, those first that let the drive as it stands come nearest to the measurement.
+
+    Signs, units, sides, and the ratio of the gear. The drive is run once for each, not fitted.
+    """
+    scored = []
+    for cause in _likely(recording, drive):
+        try:
+            log = DriveLog.of(cause.recording, cause.drive)
+            zeros = np.array([nuisance.start for nuisance in log.nuisances])
+            predicted, _ = log.predict(cause.drive, [], zeros)
+        except (ValueError, FloatingPointError):  # such a log could not be, or not be run
+            continue
+        middle = np.mean(log.measured - predicted, axis=1, keepdims=True)
+        scored.append((float(np.max(left(log.measured, predicted + middle))), cause))
+    return [cause for _, cause in sorted(scored, key=lambda pair: pair[0])]
+
+
+def _likely(recording: Recording, drive: Drive) -> Iterator[Cause]:
+    for name in recording.names:
+        if name != "time":
+            yield Cause(
+                f'the sign of "{name}" is reversed', f'multiply the column "{name}" by -1',
+                _scaled(recording, name, -1.0), drive,
+            )  # fmt: skip
+    yield from _units(recording, drive)
+    yield from _sides(recording, drive)
+    yield from _ratio(recording, drive)
+
+
+def _units(recording: Recording, drive: Drive) -> Iterator[Cause]:
+    for name in recording.names:
+        unit = recording.unit(name)
+        for other in MISTAKEN.get(unit, ()):
+            yield Cause(
+                f'"{name}" is in {other}, not in {unit}', f"state its unit, as in {name} [{other}]",
+                _scaled(recording, name, convert(1.0, other, unit)), drive,
+            )  # fmt: skip
+
+
+def _sides(recording: Recording, drive: Drive) -> Iterator[Cause]:
+    for quantity in ("angle", "speed"):
+        sides = (f"input_{quantity}", f"output_{quantity}")
+        present = [side for side in sides if side in recording]
+        if not present:
+            continue
+        names = {sides[0]: sides[1], sides[1]: sides[0]}
+        what = (
+            f'"{present[0]}" was measured at the other side' if len(present) == 1 else f"the columns of {quantity} are swapped"
+        )
+        remedy = ", ".join(f"--column {names[name]}={name}" for name in present)
+        yield Cause(what, f"name the columns the other way, as {remedy}", _renamed(recording, names), drive)
+
+
+def _ratio(recording: Recording, drive: Drive) -> Iterator[Cause]:
+    """Another ratio, where both encoders show one."""
+    if not set(ENCODERS) <= set(recording.names):
+        return
+    angles = [recording.values(name, "rad") for name in ENCODERS]
+    slope = np.polyfit(angles[1], angles[0], 1)[0] if np.ptp(angles[1]) > 0.0 else 0.0
+    known = abs(drive.gear.kinematics.ratio)
+    if abs(slope) < 1.0 or abs(abs(slope) / known - 1.0) < RATIO:
+        return
+    teeth = 2 * round(abs(slope)) - (2 if drive.gear.kinematics.ratio > 0.0 else 0)
+    fixed = "circular_spline" if drive.gear.kinematics.ratio < 0.0 else "flexspline"
+    kinematics = StrainWave(flexspline_teeth=teeth, circular_spline_teeth=teeth + 2, fixed=fixed)
+    yield Cause(
+        f"the ratio of the gear is about {abs(slope):.3g}, not {known:g}", f"start from a gear of ratio {round(abs(slope))}",
+        recording, drive.replace(gear=drive.gear.replace(kinematics=kinematics)),
+    )  # fmt: skip
+
+
+def _scaled(recording: Recording, name: str, factor: float) -> Recording:
+    return recording.with_column(name, factor * recording[name], recording.unit(name))
+
+
+def _renamed(recording: Recording, names: dict[str, str]) -> Recording:
+    return Recording(
+        {names.get(name, name): recording[name] for name in recording.names},
+        {names.get(name, name): recording.unit(name) for name in recording.names},
+        recording.title,
+    )

@@ -1,0 +1,127 @@
+"""What a fit owes to the parameters that it kept: how far its estimates move when one of these is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from strainwave.equality import ComparedByFields
+from strainwave.files.entries import Entry
+from strainwave.identification.fitting.covariance import correlation_length
+from strainwave.identification.fitting.fit import Fit
+from strainwave.parameters import Parameter, every
+
+Array = NDArray[np.float64]
+
+SUSPECT = 0.3  # of the residuals' power: a kept parameter that accounts for more of it is wrong
+NEARLY = 0.8  # of the largest share: which parameter accounts for a little more is chance
+EXACT = ("control.", "gear.kinematics.", "kinematics.")  # nobody measures what was designed
+DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
+GUESSED = 0.5  # of a kept value that is assumed
+
+
+@dataclass(frozen=True, eq=False)
+class Influence(ComparedByFields):
+    """How the estimates of a fit change with the parameters that it kept.
+
+    Attributes:
+        kept: the parameters kept whose value is not zero
+        slopes: change of each estimate over the change of each of these, shape (estimates, kept)
+        bounds: how far each of them could be off before the measurement itself showed it, shape (kept,)
+        pulls: by how much the measurement would change each of them, were it free, shape (kept,)
+        gains: share of the residuals' power that this would remove, shape (kept,)
+    """
+
+    kept: tuple[Parameter, ...]
+    slopes: Array
+    bounds: Array
+    pulls: Array
+    gains: Array
+
+    @classmethod
+    def none(cls, estimates: int) -> Influence:
+        """Of a fit that explains nothing, of which it is idle to ask."""
+        return cls((), np.zeros((estimates, 0)), *np.zeros((3, 0)))
+
+    def suspects(self, known: Mapping[str, Entry], prefix: str = "") -> list[int]:
+        """The kept parameters that the measurement speaks against, by their places, the least certain first.
+
+        It does so where a change would remove much of the residuals, is larger than what is known of the parameter allows, and
+        leads to a value that the parameter may have. Of several that would do about as well, it cannot tell which is wrong.
+        """
+        doubts = np.array([uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept])
+        better = self.pulls + [each.value for each in self.kept]
+        possible = (better >= [each.low for each in self.kept]) & (better <= [each.high for each in self.kept])
+        wrong = possible & (np.abs(self.pulls) > doubts) & (self.gains > SUSPECT)
+        least = NEARLY * float(np.max(self.gains, initial=0.0, where=wrong))
+        strain = np.abs(self.pulls) / np.maximum(doubts, 1e-300)
+        return sorted(np.flatnonzero(wrong & (self.gains >= least)).tolist(), key=lambda place: strain[place])
+
+    def doubt(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
+        """What the uncertainty of each kept parameter adds to that of an estimate, in its unit; largest first.
+
+        Args:
+            estimate: its place in the fit
+            known: what is known of the kept parameters, by `prefix` and path; of what is not there, a tenth is taken
+        """
+        moved = {}
+        for each, slope, bound in zip(self.kept, self.slopes[estimate].tolist(), self.bounds.tolist(), strict=True):
+            before = uncertainty(each.value, known.get(prefix + each.path))
+            # two sources of knowledge, what is known and the measurement, weigh by their variances
+            moved[each.path] = abs(slope) * before / float(np.hypot(1.0, before / bound)) if before > 0.0 else 0.0
+        return dict(sorted(moved.items(), key=lambda item: -item[1]))
+
+
+def uncertainty(value: float, entry: Entry | None) -> float:
+    """How well a kept value is known, as far as its source says; else a tenth of it, and half of it if it is assumed.
+
+    >>> uncertainty(20.0, Entry("catalogue", spread=0.3)), uncertainty(20.0, None), uncertainty(20.0, Entry("assumed"))
+    (6.0, 2.0, 10.0)
+    """
+    if entry is None or (entry.spread is None and entry.uncertainty is None):
+        return (GUESSED if entry is not None and entry.assumed else DOUBT) * abs(value)
+    return float(np.hypot((entry.spread or 0.0) * value, entry.uncertainty or 0.0))
+
+
+def influence(found: Fit) -> Influence:
+    """How the estimates of a fit change with what it kept, to first order.
+
+    At the minimum the gradient J'r of the least squares is zero, and stays so when a kept parameter changes: the estimates move
+    by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters. What of K
+    no change of the estimates makes up for shows in the residuals, and so bounds the kept parameter.
+    """
+    known = every(found.model)
+    nuisances = len(found.experiment.nuisances)
+    of_model = found.estimates[: len(found.estimates) - nuisances]
+    free = [known[estimate.path] for estimate in of_model]
+    taken = {each.number for each in free}
+    kept = tuple(each for each in known.values() if each.number not in taken and each.value != 0.0 and not _is_exact(each.path))
+    unknowns = np.array([estimate.value for estimate in found.estimates[len(of_model) :]])
+    numbers = [each.number for each in (*free, *kept)]
+    _, slopes = found.experiment.predict(found.model, numbers, unknowns)
+    residual = np.sqrt(np.mean(found.residuals[:, found.training] ** 2, axis=1))
+    size = np.abs(found.experiment.measured).max(axis=1)
+    weights = 1.0 / np.maximum(residual, 1e-12 * np.where(size > 0.0, size, 1.0))
+    residuals = (found.residuals[:, found.training] * weights[:, np.newaxis]).ravel()
+    columns = (slopes * weights[:, np.newaxis])[:, :, found.training].reshape(len(slopes), -1).T
+    by_free = np.column_stack((columns[:, : len(free)], columns[:, len(numbers) :]))
+    by_kept = columns[:, len(free) : len(numbers)]
+    told = np.any(by_kept, axis=0)  # else its influence is nil
+    scale = np.linalg.norm(by_free, axis=0)
+    scale[scale == 0.0] = 1.0
+    moved = np.zeros((by_free.shape[1], len(kept)))
+    moved[:, told] = -np.linalg.lstsq(by_free / scale, by_kept[:, told], rcond=1e-10)[0] / scale[:, np.newaxis]
+    shown = by_kept + by_free @ moved
+    power = np.sum(shown**2, axis=0)
+    seen = power > 0.0
+    together = max(correlation_length(row) for row in found.residuals[:, found.training])
+    bounds = np.where(seen, np.sqrt(together / np.where(seen, power, 1.0)), np.inf)
+    pulls = np.where(seen, residuals @ shown / np.where(seen, power, 1.0), 0.0)
+    gains = pulls**2 * power / max(float(residuals @ residuals), 1e-300)
+    return Influence(kept, moved, bounds, pulls, gains)
+
+
+def _is_exact(path: str) -> bool:
+    return path.startswith(EXACT) or ".order[" in path

@@ -1,0 +1,1 @@
+"""Measurements as experiments: each says what a model predicts for it."""

@@ -1,0 +1,157 @@
+"""Torque over twist along a slow path, as an experiment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from strainwave import _core, arguments
+from strainwave._core import Gear
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording, check_recording
+from strainwave.identification.experiments.branches import monotone, slid, thinned, turning_points
+from strainwave.identification.experiments.experiment import Nuisance, sensible
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class TorsionLoop(ComparedByFields):
+    """Torque over twist along a path, slow enough that only spring, hysteresis and friction at rest speak.
+
+    Where the zeros of both axes lie is not known from a loop, so both are unknowns of the measurement. A linear spring cannot
+    tell them apart; for it the zero of the twist is taken as known. A path that never turns back, a single branch, tells
+    neither: it is taken to begin with an unloaded gear at the zeros of both axes.
+
+    At the input, with the output locked, the friction of the wave generator is inside the loop: the model's `friction_input` at
+    rest, times the ratio.
+
+    Args:
+        twist: twist at the output [rad], shape (n,), monotone between its points
+        torque: torque referred to the output [N.m], shape (n,)
+        history: cyclic, if the same path had been run before; virgin, if the gear had not been loaded before
+        torque_zero: where a fit starts to look for the zero of the torque [N.m]
+        twist_zero: zero of the twist, if it is known [rad]
+        input_ratio: ratio of the gear if it was measured at the input, None if at the output
+        samples: how many were measured; more than are left in `twist` where each is the mean of several
+    """
+
+    twist: Array
+    torque: Array
+    history: Literal["cyclic", "virgin"] = "cyclic"
+    torque_zero: float = 0.0
+    twist_zero: float | None = None
+    input_ratio: float | None = None
+    samples: int = 0
+    channels = ("torque",)
+    units = ("N.m",)
+
+    @classmethod
+    def of(cls, recording: Recording, gear: Gear) -> TorsionLoop:
+        """From columns twist and torque at the output, or input_angle and input_torque with the output locked.
+
+        What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque. A long
+        recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a reversal
+        is left out: there friction turns over while its bristles bend, over a distance that no loop tells.
+        """
+        check_recording("recording", recording)
+        ratio = arguments.gear(gear).kinematics.ratio if at_input(recording) else None
+        if ratio is not None:
+            angle, input_torque = sensible(recording, "input_angle", "rad"), sensible(recording, "input_torque", "N.m")
+            twist, torque = angle / ratio, ratio * input_torque
+        else:
+            twist, torque = sensible(recording, "twist", "rad"), sensible(recording, "torque", "N.m")
+        twist, torque = thinned(twist, torque)
+        if ratio is not None:
+            twist, torque = twist[settled := slid(twist)], torque[settled]
+        loop = cls(twist, torque, input_ratio=ratio, samples=len(recording))
+        return replace(loop, history="virgin", twist_zero=0.0) if loop.single_branch else loop
+
+    def __post_init__(self) -> None:
+        if np.ptp(self.twist) == 0.0:
+            raise ValueError("the twist never changes: a torsion loop must load and unload the gear")
+        span = float(np.ptp(self.twist) * np.ptp(self.torque))
+        if np.cov(self.twist, self.torque)[0, 1] < 0.0:
+            raise ValueError(
+                "the torque falls as the twist grows; give both the same sense, as an elastic gear has them: "
+                "reverse the sign of one of the two columns"
+            )
+        closed = abs(self.twist[-1] - self.twist[0]) < 0.05 * np.ptp(self.twist)
+        if closed and np.trapezoid(self.torque, self.twist) < -0.01 * span:
+            raise ValueError("the loop gives energy instead of losing it; its samples must follow each other as measured")
+
+    @property
+    def measured(self) -> Array:
+        return self.torque[np.newaxis]
+
+    @property
+    def nuisances(self) -> tuple[Nuisance, ...]:
+        if self.single_branch:
+            return ()
+        torque = Nuisance("torque_zero", "N.m", self.torque_zero)
+        return (torque,) if self.twist_zero is not None else (torque, Nuisance("twist_zero", "rad", self.middle))
+
+    @cached_property
+    def single_branch(self) -> bool:
+        """Whether the twist never turns back, so that stiffness and hysteresis cannot be told apart."""
+        return not turning_points(self.twist)
+
+    @cached_property
+    def middle(self) -> float:
+        """Twist half way between the ends of the loop [rad]."""
+        return 0.5 * float(self.twist.min() + self.twist.max())
+
+    def path(self, twist_zero: float) -> Array:
+        """The twist from its zero, where the gear is virgin, with the run before that a cyclic history needs."""
+        path = self.twist - twist_zero
+        return np.concatenate(([0.0], path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
+
+    def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        torque_zero, twist_zero = (0.0, 0.0) if self.single_branch else (*nuisances, self.twist_zero)[:2]
+        n = len(self.twist)
+        torque, slopes = _core.differentiate_loop(model, self.path(twist_zero), list(numbers))
+        *by_numbers, by_shift = slopes[:, -n:]
+        by_zeros = (np.ones(n), -by_shift)[: len(nuisances)]
+        predicted = torque[-n:] + torque_zero + self.friction(model)
+        by_numbers = [slope + self._friction_slope(model, number) for slope, number in zip(by_numbers, numbers, strict=True)]
+        return predicted[np.newaxis], np.stack((*by_numbers, *by_zeros))[:, np.newaxis]
+
+    def friction(self, model: Gear) -> Array:
+        """What friction at rest adds to the torque [N.m], shape (n,): the input's if measured there, none at a held output."""
+        if self.input_ratio is None:
+            return np.zeros_like(self.twist)
+        torque = self.input_ratio * model.friction_input.quasistatic(self.input_ratio * self._displacement)
+        return np.asarray(torque[-len(self.twist) :])
+
+    def _friction_slope(self, model: Gear, number: int) -> Array:
+        """Derivative of `friction` by a number of the gear, by differences: torque at rest is all but linear in most of them.
+
+        Towards where a breakaway counts beside an equal Coulomb torque: upwards, and downwards for the others.
+        """
+        path, value, *_, low, high = _core.parameters(model)[number]
+        if self.input_ratio is None or not path.startswith("friction_input."):
+            return np.zeros_like(self.twist)
+        step = 1e-6 * max(abs(value), 1e-6)
+        end = min(value + step, high) if path.endswith("breakaway") or value - step < low else value - step
+        numbers = [each[1] for each in _core.parameters(model)]
+        other = _core.with_numbers(model, [*numbers[:number], end, *numbers[number + 1 :]])
+        return (self.friction(other) - self.friction(model)) / (end - value)
+
+    @cached_property
+    def _displacement(self) -> Array:
+        """The path that friction sees [rad]: it must not turn at each wiggle of the noise, as a spring may."""
+        twist = monotone(self.twist)
+        return np.concatenate(([self.middle], twist, twist) if self.history == "cyclic" else ([0.0], twist))
+
+    def virgin(self) -> TorsionLoop:
+        """The same measurement, taken to be the first loading."""
+        return replace(self, history="virgin")
+
+
+def at_input(recording: Recording) -> bool:
+    """Whether a torsion loop was measured at the input, with the output locked."""
+    return not {"twist", "torque"} <= set(recording.names)

@@ -1,0 +1,57 @@
+"""A parameter as the data see it, with the interval that holds its true value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+
+ONE_SIGMA = 0.6826894921370859  # share of a normal distribution within one standard deviation
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate(ComparedByFields):
+    """One parameter as the data see it.
+
+    Attributes:
+        path: where it stands in the model
+        unit: its unit
+        start: value before the fit
+        value: value after it
+        sigma: half the width of the interval that holds the true value with 68 %, by Student's distribution: the standard
+            deviation where samples are many; infinite where the data do not tell
+        at_limit: whether the fit ended at a limit of the parameter
+        freedom: independent samples beyond the number of unknowns [1]
+    """
+
+    path: str
+    unit: str
+    start: float
+    value: float
+    sigma: float
+    at_limit: bool
+    freedom: float = np.inf
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
+        """The interval that holds the true value with this probability, if the model is right.
+
+        >>> low, high = Estimate("friction_input.coulomb", "N.m", 0.1, 0.02, 0.001, False, freedom=4.0).interval()
+        >>> round(low, 4), round(high, 4)
+        (0.0176, 0.0224)
+        """
+        confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
+        reach = self.sigma * student(confidence, self.freedom) / student(ONE_SIGMA, self.freedom)
+        return self.value - reach, self.value + reach
+
+
+def student(confidence: float, freedom: float) -> float:
+    """Half the width of the interval that holds Student's variable with this probability.
+
+    >>> round(student(0.95, 4.0), 3)
+    2.776
+    """
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, 0.5 + 0.5 * confidence))

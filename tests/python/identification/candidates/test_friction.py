@@ -1,0 +1,115 @@
+"""Friction tables: what steady torques tell, and what they do not."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.identification.candidates.friction import fit_friction
+from strainwave.identification.experiments.friction_table import FrictionTable
+
+from tests.strategies import made
+
+# Document P, Table 2, measured column; its least-squares line as physics computes it independently.
+TABLE_2 = FrictionTable(np.array([0.1, 0.5, 1.0, 2.0, 5.0]), np.array([0.012, 0.028, 0.045, 0.078, 0.165]))
+LINE = (0.012554434963, 0.030840444789)
+
+
+LUGRE = made(sw.friction.LuGre, viscous=5e-5)
+
+
+@pytest.mark.parametrize("law", [sw.friction.Viscous(), sw.friction.Coulomb(), made(sw.friction.Stribeck), LUGRE])
+def test_the_published_table_gives_its_line_whatever_the_law(law: object) -> None:
+    found = fit_friction(TABLE_2, sw.Gear(friction_input=law))[0].fit.gear.friction_input
+    assert (found.coulomb, found.viscous) == pytest.approx(LINE, rel=1e-9)
+    assert found.steady(TABLE_2.speed) == pytest.approx(LINE[0] + LINE[1] * TABLE_2.speed)
+
+
+def test_the_ratio_of_breakaway_is_kept_where_the_table_is_silent() -> None:
+    law = sw.friction.Coulomb(coulomb=0.072, breakaway=1.0388 * 0.072, viscous=4e-4)
+    found = fit_friction(TABLE_2, sw.Gear(friction_input=law))[0].fit.gear.friction_input
+    assert found.breakaway / found.coulomb == pytest.approx(1.0388, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [sw.friction.Viscous, sw.friction.Coulomb, sw.friction.Stribeck, sw.friction.LuGre])
+def test_a_fall_at_low_speed_is_found_where_there_is_one(law: type[sw.friction.LuGre]) -> None:
+    truth = sw.friction.Stribeck(coulomb=0.03, breakaway=0.05, stribeck_speed=3.0, viscous=2e-4)
+    speed = np.geomspace(0.1, 300.0, 60)
+    noise = 3e-4 * np.random.default_rng(1).normal(size=len(speed))
+    best, other = fit_friction(
+        FrictionTable(speed, truth.steady(speed) + noise), sw.Gear(friction_input=made(law, viscous=5e-5))
+    )
+    assert best.name == "with a fall at low speed"
+    assert best.error < 0.2 * other.error
+    for estimate, value in zip(best.fit.estimates, (0.03, 0.05, 3.0, 2e-4), strict=True):
+        assert abs(estimate.value - value) < 4.0 * estimate.sigma
+
+
+def test_no_fall_is_made_up_from_noise() -> None:
+    truth = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=2e-4)
+    speed = np.geomspace(0.1, 300.0, 40)
+    names = []
+    for seed in range(10):
+        noise = 1e-3 * np.random.default_rng(seed).normal(size=len(speed))
+        table = FrictionTable(speed, truth.steady(speed) + noise)
+        names.append(fit_friction(table, sw.Gear(friction_input=LUGRE))[0].name)
+    assert names.count("Coulomb and viscous") >= 8
+
+
+def test_nothing_is_said_of_the_passivity_of_laws_tried_on_the_way() -> None:
+    """The law of the gear and the one found are passive; a fast fall of the same bristle would not be."""
+    law = LUGRE.replace(coulomb=0.09, breakaway=0.095, bristle_damping=8e-3, viscous=7e-4)
+    with pytest.warns(sw.PassivityWarning):
+        law.replace(coulomb=0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = fit_friction(TABLE_2, sw.Gear(friction_input=law))[0].fit.gear.friction_input
+        found.check()
+
+
+@pytest.mark.parametrize(
+    "law",
+    [made(sw.friction.MaxwellSlipFriction), sw.friction.LoadDependent(), sw.friction.Thermal(), sw.friction.Cyclic()],
+    ids=lambda law: law.name,
+)
+def test_a_law_that_a_table_cannot_tell_is_refused(law: sw.friction.Thermal) -> None:
+    message = f"^a friction table cannot be fitted to {law.name} friction; it can to viscous, coulomb, stribeck or lugre, "
+    with pytest.raises(ValueError, match=message):
+        fit_friction(TABLE_2, sw.Gear(friction_input=law))
+
+
+def test_error_is_that_of_speeds_left_out() -> None:
+    # the line through the other four, by hand, at 5 rad/s
+    slope, intercept = np.polyfit(TABLE_2.speed[:4], TABLE_2.torque[:4], 1)
+    best = fit_friction(TABLE_2, sw.Gear())[0]
+    assert best.held_out[4] == pytest.approx(intercept + 5.0 * slope, rel=1e-8)
+    assert best.error == pytest.approx(np.sqrt(np.mean((TABLE_2.torque - best.held_out) ** 2)))
+
+
+def test_magnitudes_over_speeds_of_both_signs_are_understood() -> None:
+    recording = sw.Recording(
+        {"speed": [-2.0, -1.0, 1.0, 2.0], "torque": [0.2, 0.1, 0.1, 0.2]}, {"speed": "rad/s", "torque": "N.m"}
+    )
+    assert FrictionTable.of(recording).torque == pytest.approx([-0.2, -0.1, 0.1, 0.2])
+
+
+def test_three_speeds_are_too_few_and_four_are_enough() -> None:
+    speed = np.array([1.0, 2.0, 5.0, 10.0])
+    with pytest.raises(ValueError, match="at least 4 speeds, one of them to validate; this one has 3"):
+        fit_friction(FrictionTable(speed[:3], 0.1 + 0.01 * speed[:3]), sw.Gear())
+    assert fit_friction(FrictionTable(speed, 0.1 + 0.01 * speed), sw.Gear())[0].coulomb == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("speed", "torque", "message"),
+    [
+        ([0.0, 1.0, 2.0, 3.0], [0.1, 0.2, 0.3, 0.4], "sample 0 has speed 0"),
+        ([1.0, 2.0, 3.0], [-0.1, -0.2, -0.3], "drives the motion instead of opposing it"),
+    ],
+)
+def test_what_is_no_table_of_steady_friction_is_refused(speed: list[float], torque: list[float], message: str) -> None:
+    recording = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    with pytest.raises(ValueError, match=message):
+        FrictionTable.of(recording)

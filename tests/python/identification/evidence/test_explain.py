@@ -1,0 +1,114 @@
+"""What a fit leaves unexplained, and the mistakes that would explain it."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.evidence.explain import causes, left
+
+TEETH = {"flexspline_teeth": 100, "circular_spline_teeth": 102}
+GEAR = sw.Gear(
+    kinematics=sw.kinematics.StrainWave(**TEETH),
+    stiffness=sw.stiffness.Linear(k=1.2e4),
+    damping=5.0,
+    friction_input=sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4),
+)
+MOTOR = sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4)
+
+
+def drive(gear: sw.Gear = GEAR, inertia: float = 0.3) -> sw.Drive:
+    return sw.Drive(gear=gear, motor=MOTOR, load=sw.loads.Inertia(inertia=inertia))
+
+
+@cache
+def log() -> sw.Recording:
+    time = np.linspace(0.0, 0.8, 401)
+    voltage = 8.0 * np.sin(4.0 * np.pi * time) * np.minimum(1.0, 10.0 * time)
+    run = sw.simulate(drive(), sw.scenario.table(time, voltage), sample=2e-3)
+    return run.select(["time", "command", "input_angle", "output_angle"])
+
+
+def start(**changes: object) -> GearSet:
+    begun = drive(GEAR.replace(stiffness=sw.stiffness.Linear(k=1e4), **changes))
+    return GearSet.of(begun, name="start", source="assumed")
+
+
+def scaled(name: str, factor: float) -> sw.Recording:
+    return log().with_column(name, factor * log()[name], log().unit(name))
+
+
+MISTAKES = {
+    "none": (log, {}, ""),
+    "sign": (lambda: scaled("output_angle", -1.0), {}, 'the sign of "output_angle" is reversed'),
+    "unit": (lambda: scaled("input_angle", 180.0 / np.pi), {}, '"input_angle" is in deg, not in rad'),
+    "command": (lambda: scaled("command", -1.0), {}, 'the sign of "command" is reversed'),
+    "ratio": (
+        log,
+        {"kinematics": sw.kinematics.StrainWave(flexspline_teeth=80, circular_spline_teeth=82)},
+        "the ratio of the gear is about 49.8, not 40",
+    ),
+    "side": (
+        lambda: sw.Recording(
+            {
+                "time": log().time,
+                "command": log()["command"],
+                "input_angle": log()["output_angle"],
+                "output_angle": log()["input_angle"],
+            },
+            log().units,
+        ),
+        {},
+        "the columns of angle are swapped",
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_named_and_nothing_identified(mistake: str) -> None:
+    recording, changes, cause = MISTAKES[mistake]
+    found = sw.twin(start(**changes), log=recording())
+    if not cause:
+        assert found.doubts == ()
+        assert found.evidence[0].unexplained == {}
+        return
+    (doubt,) = found.doubts
+    assert cause[1:] in doubt.what
+    assert doubt.what.startswith("the model does not explain it")
+    assert doubt.remedy
+    assert not [verdict for verdict in found.verdicts if verdict.state.startswith("identified")]
+    assert found.contradictions == ()
+
+
+def test_the_cause_that_comes_nearest_comes_first() -> None:
+    first, *_ = causes(scaled("output_angle", -1.0), drive())
+    assert first.what == 'the sign of "output_angle" is reversed'
+    assert first.recording == log()
+
+
+def test_noise_explains_itself() -> None:
+    time = np.linspace(0.0, 10.0, 5000)
+    signal = np.sin(time)
+    noisy = signal + 0.5 * np.random.default_rng(0).normal(size=len(time))
+    assert left(noisy[np.newaxis], signal[np.newaxis])[0] < 0.15
+    half = np.sqrt(np.mean(signal**2)) / np.std(signal)  # the sine is not quite of mean zero over the record
+    assert left(signal[np.newaxis], 0.8 * signal[np.newaxis])[0] == pytest.approx(0.2 * half, rel=1e-3)
+    assert left(np.ones((1, 9)), np.ones((1, 9)))[0] == 0.0
+
+
+def test_a_kept_parameter_that_the_log_speaks_against_is_named() -> None:
+    """A load a third too heavy; everything else is well known."""
+    wrong = drive(GEAR.replace(stiffness=sw.stiffness.Linear(k=1e4)), inertia=0.4)
+    gear_set = GearSet.of(wrong, name="start", source="assumed")
+    known = {path: Entry("measured", spread=1e-3) for path in gear_set.sources if path.startswith(("motor.", "load."))}
+    known["load.inertia"] = Entry("weighed", spread=0.05)
+    gear_set = gear_set.replace(sources={**gear_set.sources, **known})
+    found = sw.twin(gear_set, log=log())
+    (remark,) = (remark for remark in found.evidence[0].remarks if "speaks against" in remark)
+    assert "load.inertia = 0.4 kg.m2" in remark
+    stiffness = next(verdict for verdict in found.verdicts if verdict.path == "gear.stiffness.k")
+    assert abs(stiffness.value / 1.2e4 - 1.0) < 0.1 or stiffness.state == "not identified"
