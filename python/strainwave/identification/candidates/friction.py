@@ -9,6 +9,7 @@ from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import friction
 from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields

@@ -15,6 +15,7 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import friction, hysteresis, stiffness
 from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields

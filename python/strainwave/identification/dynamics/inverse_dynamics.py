@@ -27,6 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording

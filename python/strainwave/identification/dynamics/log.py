@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import Drive, _core, friction, kinematic_error
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields

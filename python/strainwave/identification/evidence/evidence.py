@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.evidence.influence import Influence

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert

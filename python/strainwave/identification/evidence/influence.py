@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
 from strainwave.identification.fitting.covariance import correlation_length

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave._core import Gear
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+
 from strainwave import _core
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields

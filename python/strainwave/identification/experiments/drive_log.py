@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import Drive, arguments, loads
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave.files.recording import Recording
 
 Array = NDArray[np.float64]

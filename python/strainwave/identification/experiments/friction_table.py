@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields

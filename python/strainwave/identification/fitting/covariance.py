@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave.identification.fitting.estimate import ONE_SIGMA, student
 
 Array = NDArray[np.float64]

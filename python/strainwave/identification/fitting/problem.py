@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
 from strainwave import Drive, _core
 from strainwave._core import Gear
 from strainwave.identification.experiments.experiment import Experiment
