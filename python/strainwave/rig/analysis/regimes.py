@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.identification.experiments.branches import turning_points
-from strainwave.rig.analysis.step_remarks import remarks_on_steps
+from strainwave.rig.analysis.step_remarks import remarks_on_steps, runs_one_way
 from strainwave.rig.loop import Loop
 
 Array = NDArray[np.float64]
@@ -26,6 +26,7 @@ REACHED = 0.1  # of the span of torque: a branch that begins or ends so near an 
 MISSING = 0.05  # of the span of torque, or one and a half steps: what a cycle may lack where it closes
 DETOURS = 0.1  # turns per point that lead to no peak: more, and the points do not follow each other as measured
 LEAST = 4  # such turns, below which they may be smaller loops
+BACK = 0.1  # of the span: what goes back by more while the other of torque and angle goes one way is no elastic gear
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,11 +194,22 @@ def _check(loop: Loop) -> None:
             f"{loop.name}: torque and angle turn back {detours} times in {n} points without reaching a peak; "
             "put the points in the order measured, not sorted by torque or angle"
         )
+    for name, other in (("angle", loop.torque), ("torque", loop.angle)):
+        if runs_one_way(getattr(loop, name)) and _goes_back(other) > BACK * np.ptp(other):
+            raise ValueError(
+                f"{loop.name}: its points are sorted by {name}, which mixes the branches; put the points in the order measured"
+            )
     if np.cov(loop.angle, loop.torque)[0, 1] < 0.0:
         raise ValueError(
             f"{loop.name}: the torque falls as the angle grows; give both the same sense, as an elastic gear has them: "
             "reverse the sign of one of the two"
         )
+
+
+def _goes_back(values: Array) -> float:
+    """How far a series comes back at most on its way from its beginning to its end."""
+    forward = values if values[-1] >= values[0] else -values
+    return float(np.max(np.maximum.accumulate(forward) - forward))
 
 
 def _path(loop: Loop) -> Array:

@@ -12,6 +12,7 @@ from strainwave.rig.loop import Loop
 
 USUAL = 0.6  # of the steps of torque that must be alike for another to be called a gap
 LONG = 1.5  # of the usual step: longer is a gap
+MIXED = 0.1  # share of the steps that go back, beyond which points that are sorted may be those of two branches
 
 
 class Quarter(Protocol):
@@ -26,7 +27,7 @@ class Quarter(Protocol):
 
 
 def remarks_on_steps(loop: Loop, turns: Iterable[int], regimes: Sequence[Quarter], names: Sequence[str]) -> Iterator[str]:
-    """Smaller loops on the way, steps left out, and regimes that are missing or begin late.
+    """Points that may be sorted, smaller loops on the way, steps left out, and regimes that are missing or begin late.
 
     Args:
         loop: the loop
@@ -34,12 +35,30 @@ def remarks_on_steps(loop: Loop, turns: Iterable[int], regimes: Sequence[Quarter
         regimes: those measured
         names: of all regimes of a cycle
     """
+    yield from _of_sorted(loop)
     yield from (_of_turn(loop, turn) for turn in turns)
     yield from _of_gaps(loop)
     found = [regime.name for regime in regimes]
     if missing := [name.replace("_", " ") for name in names if name not in found]:
         yield f"not measured from zero torque to the peak: {', '.join(missing)}"
     yield from (_of_late(regime) for regime in regimes if not regime.from_zero)
+
+
+def runs_one_way(values: NDArray[np.float64]) -> bool:
+    """Whether a series never falls, or never rises."""
+    steps = np.diff(values)
+    return bool(np.all(steps >= 0.0) or np.all(steps <= 0.0))
+
+
+def _of_sorted(loop: Loop) -> Iterator[str]:
+    """Points in the order of their angle or torque: one way by itself, or a whole loop that somebody has sorted."""
+    for name, other, values in (("angle", "torque", loop.torque), ("torque", "angle", loop.angle)):
+        sense = np.sign(values[-1] - values[0])
+        if runs_one_way(getattr(loop, name)) and np.mean(sense * np.diff(values) < 0.0) > MIXED:
+            yield (
+                f"the {name} goes one way through all points while the {other} goes to and fro: if the file holds a whole "
+                f"loop, it was sorted by {name}, and its branches are mixed; put the points in the order measured"
+            )
 
 
 def _of_turn(loop: Loop, turn: int) -> str:

@@ -188,6 +188,32 @@ def test_sorted_points_are_refused(by: str) -> None:
         segment(loop(WHOLE.angle[order], WHOLE.torque[order]))
 
 
+@pytest.mark.parametrize("step", [0.06, 0.12])
+@pytest.mark.parametrize("by", ["torque", "angle"])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_sorted_points_of_a_short_loop_are_refused(by: str, sense: int, step: float) -> None:
+    short = loop_of_table(step=step)
+    order = np.argsort(sense * getattr(short, by), kind="stable")
+    with pytest.raises(ValueError, match=f"sorted by {by}|order measured, not sorted"):
+        segment(loop(short.angle[order], short.torque[order]))
+
+
+@pytest.mark.parametrize("by", ["torque", "angle"])
+def test_a_narrow_loop_that_is_sorted_is_told(by: str) -> None:
+    angle, torque = parallelogram(k=1.0, spring=50.0, slip=1.0, amplitude=2.0, points=30)
+    order = np.argsort(angle if by == "angle" else torque, kind="stable")
+    first, *_ = segment(loop(angle[order], torque[order])).remarks
+    assert f"if the file holds a whole loop, it was sorted by {by}" in first
+
+
+@settings(max_examples=50, deadline=None)
+@given(seed=st.integers(0, 1000), noise=st.floats(0.0, 0.01))
+def test_one_way_with_noise_is_not_taken_for_a_sorted_loop(seed: int, noise: float) -> None:
+    torque = np.linspace(-1.0, 1.0, 20)
+    cut = segment(loop(torque + noise * np.random.default_rng(seed).normal(size=20), torque))
+    assert not any("was sorted" in remark for remark in cut.remarks)
+
+
 @settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 1000))
 def test_shuffled_points_are_refused(seed: int) -> None:
