@@ -1,0 +1,8 @@
+"""Torsion loops: spring and hysteresis from torque over twist; kinds of both, tried and ranked."""
+
+from strainwave.identification.candidates.torsion.beside import Friction, Nothing
+from strainwave.identification.candidates.torsion.candidate import TorsionCandidate
+from strainwave.identification.candidates.torsion.folds import held_out_blocks
+from strainwave.identification.candidates.torsion.selection import fit_loop
+
+__all__ = ["Friction", "Nothing", "TorsionCandidate", "fit_loop", "held_out_blocks"]

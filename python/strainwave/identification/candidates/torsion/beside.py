@@ -1,0 +1,166 @@
+"""What a loop is asked for beside the spring: Maxwell elements, friction at the input, or nothing."""
+
+from __future__ import annotations
+
+import warnings
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import friction, hysteresis
+from strainwave._core import Gear, PassivityWarning
+from strainwave.identification.candidates.friction import dissipating
+from strainwave.identification.candidates.torsion.library import Choice, Library
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.fitting.fit import Fit
+
+Array = NDArray[np.float64]
+SLIPS = np.geomspace(5e-3, 0.85, 14)  # of half the span: twists tried for an element's slip; no loop tried tells more apart
+MOST_ELEMENTS = 6  # kept after the convex step
+Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose breakaway a loop can tell
+
+
+class Beside(ABC):
+    """A part of the gear that is fitted beside the spring, or none."""
+
+    whole_spring = False  # whether it is a spring, too, and stands alone
+    dear = False  # whether what it can contribute takes long to find
+
+    @abstractmethod
+    def words(self, gear: Gear) -> str:
+        """For the name of the candidate."""
+
+    def known(self, loop: TorsionLoop, gear: Gear) -> Array:
+        """Torque of the loop that is neither the spring's nor asked for [N.m], shape (n,)."""
+        return loop.friction(gear)
+
+    @abstractmethod
+    def library(self, loop: TorsionLoop, gear: Gear) -> Library:
+        """What it can contribute to the torque of the loop."""
+
+    @abstractmethod
+    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
+        """Paths of the parameters asked for; of `stiff` Maxwell elements the breakaway alone."""
+
+    def elements(self, gear: Gear) -> list[tuple[float, float]]:
+        """Stiffness and breakaway of each Maxwell element asked for."""
+        return []
+
+    def finished(self, found: Fit, start: Gear) -> Fit:
+        """The fit with what follows from the parameters asked for."""
+        return found
+
+
+class Elements(Beside):
+    """Maxwell elements in place of the gear's hysteresis."""
+
+    def words(self, gear: Gear) -> str:
+        count = len(pairs(gear))
+        return f" with {count} Maxwell element{'s' if count != 1 else ''}"
+
+    def library(self, loop: TorsionLoop, gear: Gear) -> Library:
+        """Torques of elements of unit stiffness."""
+        path, slips = loop.path(loop.middle), half_span(loop) * SLIPS
+        traces = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip]).trace(path) for slip in slips.tolist()]
+        places = tuple(range(len(slips)))
+        put = Choice(places, lambda g, weights: g.replace(hysteresis=_neighbours(weights, slips)))
+        return Library.of([trace[-len(loop.twist) :] for trace in traces], [put])
+
+    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
+        count = range(len(pairs(gear)))
+        stiffnesses = [f"hysteresis.stiffness[{i}]" for i in count if i not in stiff]
+        return stiffnesses + [f"hysteresis.breakaway[{i}]" for i in count]
+
+    def elements(self, gear: Gear) -> list[tuple[float, float]]:
+        return pairs(gear)
+
+
+class Nothing(Beside):
+    """The spring alone; hysteresis and friction are as in the gear."""
+
+    def words(self, gear: Gear) -> str:
+        return ", hysteresis kept"
+
+    def known(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return loop.friction(gear) + _kept_hysteresis(loop, gear)
+
+    def library(self, loop: TorsionLoop, gear: Gear) -> Library:
+        return Library(np.empty((len(loop.twist), 0)), (Choice((), lambda g, weights: g),))
+
+    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
+        return []
+
+
+class Friction(Beside):
+    """Breakaway of the friction at the input, with the hysteresis of the gear; Coulomb's torque keeps its ratio to it."""
+
+    def words(self, gear: Gear) -> str:
+        return " with friction at the input, hysteresis kept"
+
+    def known(self, loop: TorsionLoop, gear: Gear) -> Array:
+        return _kept_hysteresis(loop, gear)
+
+    def library(self, loop: TorsionLoop, gear: Gear) -> Library:
+        return Library.of([loop.friction(gear) / _dry(gear).breakaway], [Choice((0,), self._put)])
+
+    @staticmethod
+    def _put(gear: Gear, weights: Array) -> Gear:
+        # while it is fitted, breakaway must not meet Coulomb's torque, below which it does not count
+        law = _dry(gear)
+        breakaway = max(float(weights[0]), 1e-3 * law.breakaway)
+        with warnings.catch_warnings(action="ignore", category=PassivityWarning):
+            return gear.replace(friction_input=law.replace(coulomb=0.0, breakaway=breakaway))
+
+    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
+        return ["friction_input.breakaway"]
+
+    def finished(self, found: Fit, start: Gear) -> Fit:
+        known, breakaway = _dry(start), _dry(found.gear).breakaway
+        law = dissipating(known.replace(coulomb=known.coulomb / known.breakaway * breakaway, breakaway=breakaway))
+        return replace(found, model=found.gear.replace(friction_input=law))
+
+
+def half_span(loop: TorsionLoop) -> float:
+    """Half of the twist that a loop goes through [rad]."""
+    return 0.5 * float(np.ptp(loop.twist))
+
+
+def pairs(gear: Gear) -> list[tuple[float, float]]:
+    """Stiffness and breakaway of each Maxwell element of a gear."""
+    elements = gear.hysteresis
+    assert isinstance(elements, hysteresis.MaxwellSlip)
+    return list(zip(elements.stiffness, elements.breakaway, strict=True))
+
+
+def maxwell(elements: Sequence[tuple[float, float]]) -> hysteresis.MaxwellSlip:
+    """Maxwell elements of these stiffnesses and breakaways."""
+    return hysteresis.MaxwellSlip(stiffness=[k for k, _ in elements], breakaway=[f for _, f in elements])
+
+
+def _neighbours(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
+    """The elements that carry torque; neighbours on the grid are one element that slips between them."""
+    elements: list[tuple[float, float]] = []
+    last = -2
+    for i in np.flatnonzero(weights * slips > 1e-3 * np.sum(weights * slips)).tolist():
+        k, torque = float(weights[i]), float(weights[i] * slips[i])
+        if i == last + 1:
+            elements[-1] = elements[-1][0] + k, elements[-1][1] + torque
+        else:
+            elements.append((k, torque))
+        last = i
+    strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MOST_ELEMENTS], key=lambda e: e[1] / e[0])
+    return maxwell(strongest)
+
+
+def _dry(gear: Gear) -> friction.Coulomb | friction.Stribeck | friction.LuGre:
+    """The friction at the input, whose breakaway a loop can tell."""
+    law = gear.friction_input
+    assert isinstance(law, Dry)
+    return law
+
+
+def _kept_hysteresis(loop: TorsionLoop, gear: Gear) -> Array:
+    return np.asarray(gear.hysteresis.trace(loop.path(0.0 if loop.single_branch else loop.middle))[-len(loop.twist) :])

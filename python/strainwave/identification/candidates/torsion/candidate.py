@@ -1,0 +1,186 @@
+"""One kind of spring with what stands beside it, fitted to a loop: the convex problem's answer, refined.
+
+With knees and slip twists chosen beforehand a loop is linear in stiffnesses, all of which are positive: a convex problem with
+one answer (non-negative least squares), which needs no starting values. It finds how many Maxwell elements the loop can tell
+apart; exact derivatives then refine all numbers of spring and hysteresis together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave._core import Gear
+from strainwave.equality import ComparedByFields
+from strainwave.identification.candidates.torsion.beside import SLIPS, Beside, half_span, maxwell, pairs
+from strainwave.identification.candidates.torsion.library import solve
+from strainwave.identification.candidates.torsion.springs import Kind
+from strainwave.identification.experiments.branches import PRESLIDING
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.fitting.fit import Fit, fit
+
+Array = NDArray[np.float64]
+SLIPPING = 0.9  # of half the span: an element that slips later is a spring for all that the loop tells
+ALIKE = 1.1  # ratio of two slip twists; elements that are closer are one
+STARTS = 500  # samples from which the start of a law is sought whose torques take long
+NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
+
+
+@dataclass(frozen=True, eq=False)
+class TorsionCandidate(ComparedByFields):
+    """One kind of gear fitted to a loop.
+
+    Attributes:
+        spring: its kind of spring
+        beside: what was fitted beside the spring
+        name: both, in words
+        fit: the fit, of a gear with that spring and hysteresis
+        error: rms of the residuals on the samples held out [N.m]; on all, where none were
+    """
+
+    spring: Kind
+    beside: Beside
+    name: str
+    fit: Fit
+    error: float
+
+    @property
+    def loop(self) -> TorsionLoop:
+        """What it was fitted to, with the history found."""
+        experiment = self.fit.experiment
+        assert isinstance(experiment, TorsionLoop)
+        return experiment
+
+
+@dataclass(frozen=True, eq=False)
+class Start(ComparedByFields):
+    """The convex problem's answer.
+
+    Attributes:
+        gear: with spring and hysteresis
+        loop: the measurement, with its history and where the zero of the torque is
+        error: root of the sum of the squared residuals of the samples that train [N.m]
+    """
+
+    gear: Gear
+    loop: TorsionLoop
+    error: float
+
+
+def start(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> Start:
+    """The best spring of a kind with what stands beside it, without starting values.
+
+    Args:
+        loop: measured torque over twist
+        gear: what is not sought is taken from it
+        training: samples that take part, shape (n,)
+        spring: kind of spring sought
+        beside: what is sought beside it
+
+    Raises:
+        ValueError: nothing of these kinds fits the loop
+    """
+    loop, training = _sparse(loop, training) if beside.dear else (loop, training)
+    middle = 0.0 if loop.single_branch else loop.middle
+    half = float(np.abs(loop.twist - middle).max())
+    sought = loop.torque - beside.known(loop, gear)
+    zeros = _zero_columns(loop)
+    libraries = [spring.library(loop.twist - middle, half, gear), beside.library(loop, gear)]
+    rows = [replace(library, torques=library.torques[training]) for library in libraries]
+    found = solve(sought[training], rows, zeros[training])
+    level = float(np.abs(loop.torque).max())
+    torque_zero = level * float(found.weights[-1][0] - found.weights[-1][1]) if zeros.size else 0.0
+    return Start(found.put(gear), replace(loop, torque_zero=torque_zero), found.error)
+
+
+def candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> TorsionCandidate:
+    """A kind of spring and what stands beside it, fitted from the convex problem's answer."""
+    histories = [loop] if loop.single_branch else [loop, loop.virgin()]
+    best = min((start(each, gear, training, spring, beside) for each in histories), key=lambda answer: answer.error)
+    measured = replace(loop, history=best.loop.history, torque_zero=best.loop.torque_zero)
+    twist_zero = loop.twist_zero if spring.knows_zero or beside.whole_spring else loop.middle
+    return finished(best.gear, replace(measured, twist_zero=twist_zero), training, spring, beside, gear)
+
+
+def finished(
+    begin: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: Kind, beside: Beside, known: Gear
+) -> TorsionCandidate:
+    """The candidate whose refinement begins there."""
+    found = beside.finished(_refined(begin, loop, training, spring, beside), known)
+    held_out = found.rms(held_out=True)[0]
+    words = beside.words(found.gear)
+    name = words if beside.whole_spring else f"{spring.words}{words}"
+    return TorsionCandidate(spring, beside, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+
+
+def with_fewer(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
+    """The candidate with those two Maxwell elements as one that slip at the most similar twists."""
+    return finished(merged(found.fit.gear), found.loop, found.fit.training, found.spring, found.beside, known)
+
+
+def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> Fit:
+    """The fit, without elements that the loop cannot tell from the spring or from nothing.
+
+    An element that never slips within the loop is a linear spring, one that holds no torque is none, and two that slip at the
+    same twist are one. One that slips before the loop can tell is given the least twist to slip at that it can.
+    """
+    half, span = half_span(loop), float(np.ptp(loop.torque))
+    least = half * (SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING)
+    stiff: set[int] = set()
+    while True:
+        free = spring.free(gear) + beside.free(gear, stiff)
+        found = _in_order(fit(gear, loop, free, training=training), spring)
+        fitted = beside.elements(found.gear)
+        slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < SLIPPING * half * k]
+        if len(slipping) < len(fitted):
+            stuck = sum(k for k, f in fitted if f >= SLIPPING * half * k)
+            stiffened = spring.stiffened(found.gear.stiffness, stuck)
+            gear, stiff = gear.replace(stiffness=stiffened, hysteresis=maxwell(slipping)), set()
+        elif _alike(slipping):
+            gear, stiff = merged(found.gear), set()
+        elif stiffer := {i for i, (k, f) in enumerate(fitted) if f < 0.999 * least * k}:
+            stiff |= stiffer
+            slower = [(f / least if i in stiff else k, f) for i, (k, f) in enumerate(fitted)]
+            gear = found.gear.replace(hysteresis=maxwell(slower))
+        else:
+            return found
+
+
+def merged(gear: Gear) -> Gear:
+    """The gear with those two Maxwell elements as one that slip at the most similar twists."""
+    elements = sorted(pairs(gear), key=lambda e: e[1] / e[0])
+    slips = np.log([f / k for k, f in elements])
+    first = int(np.argmin(np.diff(slips)))
+    (k, f), (other_k, other_f) = elements[first : first + 2]
+    elements[first : first + 2] = [(k + other_k, f + other_f)]
+    return gear.replace(hysteresis=maxwell(elements))
+
+
+def _alike(elements: Sequence[tuple[float, float]]) -> bool:
+    """Whether two Maxwell elements slip at all but the same twist."""
+    slips = np.sort([f / k for k, f in elements])
+    return bool(np.any(slips[1:] < ALIKE * slips[:-1]))
+
+
+def _in_order(found: Fit, spring: Kind) -> Fit:
+    """The same fit, the knees of its spring in order."""
+    ordered = spring.in_order(found.gear.stiffness)
+    return found if ordered is found.gear.stiffness else replace(found, model=found.gear.replace(stiffness=ordered))
+
+
+def _sparse(loop: TorsionLoop, training: NDArray[np.bool_]) -> tuple[TorsionLoop, NDArray[np.bool_]]:
+    """A loop of few samples, of which a start needs no more."""
+    step = -(-len(loop.twist) // STARTS)
+    few = slice(None, None, step)
+    return replace(loop, twist=loop.twist[few], torque=loop.torque[few]), training[few]
+
+
+def _zero_columns(loop: TorsionLoop) -> Array:
+    """What a zero of the torque contributes, either way; nothing where it is known."""
+    if loop.single_branch:
+        return np.empty((len(loop.twist), 0))
+    level = np.full(len(loop.twist), np.abs(loop.torque).max())
+    return np.column_stack((level, -level))

@@ -1,0 +1,65 @@
+"""Spring and Maxwell-slip hysteresis of a loop, as a twin takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave._core import Gear
+from strainwave.identification.candidates.torsion.beside import Beside, Dry, Elements, Friction, Nothing
+from strainwave.identification.candidates.torsion.candidate import NEGLIGIBLE, TorsionCandidate, candidate, with_fewer
+from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+
+SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
+
+
+def fit_loop(
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None, *, friction_measured: bool = False
+) -> list[TorsionCandidate]:
+    """Fits each kind of spring to a loop, and beside it what the loop can tell.
+
+    That is Maxwell-slip hysteresis, in parallel with the spring. Of a single branch it is nothing: the hysteresis of the gear
+    is kept. A loop from the input holds the friction of the wave generator too. Where this was measured, it is taken out.
+    Where it was not, the loop tells the sum of friction and hysteresis only; one of them is fitted, friction rather than
+    hysteresis, and the other is kept.
+
+    Args:
+        loop: measured torque over twist
+        gear: the gear to start from; what is fitted is replaced, the rest is kept
+        training: samples that take part, shape (n,); the rest validates
+        friction_measured: whether `gear.friction_input` was measured on this gear
+
+    Returns:
+        candidates, best first by the error on data held out; of those within 5 % of it, and a thousandth of the span of the
+        torque, the one with the fewest parameters
+
+    Raises:
+        ValueError: too few samples for any candidate
+    """
+    chosen = np.ones(len(loop.twist), bool) if training is None else training
+    candidates = [
+        candidate(loop, gear, chosen, spring, beside) for beside in asked(loop, gear, friction_measured) for spring in SPRINGS
+    ]
+    best = min(candidates, key=lambda c: c.error)
+    good = float(np.hypot(1.05 * best.error, NEGLIGIBLE * np.ptp(loop.torque)))
+    candidates += simpler(best, good, gear)
+    return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
+
+
+def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[TorsionCandidate]:
+    """The best candidate with fewer and fewer Maxwell elements, as long as it stays good."""
+    found = best
+    while len(found.beside.elements(found.fit.gear)) > 1 and found.error <= good:
+        found = with_fewer(found, known)
+        yield found
+
+
+def asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Beside]:
+    """What the loop is asked for beside the spring: Maxwell elements, or what it tells in place of them."""
+    if loop.single_branch:
+        return [Nothing()]
+    friction_inside = bool(np.any(loop.friction(gear))) and isinstance(gear.friction_input, Dry)
+    return [Elements()] if friction_measured or not friction_inside else [Friction(), Elements()]
