@@ -237,6 +237,18 @@ SHOWN: dict[str, dict[str, Any]] = {
             driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.3
         )
     },
+    "asymmetric": {
+        "": sw.friction.Asymmetric(
+            law=sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=2e-3), dry_asymmetry=0.2
+        )
+    },
+    "curved_viscous": {
+        f"p = {p:g}:": sw.friction.CurvedViscous(coulomb=0.02, viscous_torque=0.03, exponent=p, reference_speed=10.0)
+        for p in (0.5, 1.0, 2.0)
+    },
+    "angle_speed_map": {
+        "": sw.friction.AngleSpeedMap(speed=[1.0, 4.0, 10.0], level=[0.04, 0.03, 0.05, 0.03, 0.02, 0.04, 0.05, 0.045, 0.06])
+    },
     "cyclic": {
         "": sw.friction.Cyclic(
             law=sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5),

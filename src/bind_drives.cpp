@@ -144,10 +144,17 @@ nb::tuple loop_derivatives(const AnyGear<double>& gear, const Numbers& twist, co
     return nb::make_tuple(out, slopes);
 }
 
-nb::tuple steady_derivatives(const AnyGear<double>& gear, const Numbers& speed, const std::vector<int>& parameters) {
-    Values out = array({speed.size()}), slopes = array({parameters.size(), speed.size()});
-    kernels().differentiate_steady(gear, speed.data(), speed.size(), parameters, out.data(), slopes.data(),
-                                   [](std::size_t) { let_interrupt(0); });
+nb::tuple steady_derivatives(const AnyGear<double>& gear, const Numbers& speed, const Numbers& angle, const Numbers& load,
+                             const Numbers& temperature, const std::vector<int>& parameters) {
+    const std::size_t n = speed.size();
+    if (angle.size() != n || load.size() != n || temperature.size() != n)
+        throw nb::value_error("speed, angle, load and temperature must have equally many elements");
+    for (std::size_t i = 0; i < n; ++i)
+        check_domain("gear.friction_input",
+                     domain<double>(gear.friction_input, friction::Contact<double>{.angle = turned(angle.data()[i])}));
+    Values out = array({n}), slopes = array({parameters.size(), n});
+    kernels().differentiate_steady(gear, {speed.data(), angle.data(), load.data(), temperature.data()}, n, parameters, out.data(),
+                                   slopes.data(), [](std::size_t) { let_interrupt(0); });
     return nb::make_tuple(out, slopes);
 }
 
@@ -373,10 +380,13 @@ void bind_drives(nb::module_& core) {
                      ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
              "Quasi-static torque [N.m] along a path of twist [rad], virgin at its first point, and derivatives, shape "
              "(parameters + 1, n), the last by a shift of all points but the first.");
-    core.def("differentiate_steady", &steady_derivatives, nb::arg("gear"), nb::arg("speed"), nb::arg("parameters"),
-             nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY
-                     ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
-             "Steady friction torque [N.m] at the input over speed [rad/s], and derivatives, shape (parameters, n).");
+    core.def(
+        "differentiate_steady", &steady_derivatives, nb::arg("gear"), nb::arg("speed"), nb::arg("angle"), nb::arg("load"),
+        nb::arg("temperature"), nb::arg("parameters"),
+        nb::sig("def differentiate_steady(gear: Gear, speed: " SW_ARRAY ", angle: " SW_ARRAY ", load: " SW_ARRAY
+                ", temperature: " SW_ARRAY ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+        "Steady friction torque [N.m] at the input over speed [rad/s], angle [rad] and load [N.m] of the input and temperature "
+        "[K], each of shape (n,), and derivatives, shape (parameters, n).");
     core.def("parameters", &parameters_in, nb::arg("model"),
              nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
              "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");

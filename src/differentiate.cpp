@@ -143,7 +143,7 @@ void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::s
     }
 }
 
-void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters,
+void differentiate_steady(const AnyGear<double>& gear, const Sliding& sliding, std::size_t n, const std::vector<int>& parameters,
                           double* out, double* slopes, const Pause& pause) {
     const Parts parts = parts_of(gear);
     Pauses pauses(pause);
@@ -151,7 +151,7 @@ void differentiate_steady(const AnyGear<double>& gear, const double* speed, std:
         const auto law = compiled(seeded<AnyGear, width>(parts, parameters, first).friction_input);
         for (std::size_t i = 0; i < n; ++i) {
             pauses(i, i);
-            const Slope torque = friction::steady(law, friction::Contact<Slope>{Slope(speed[i])});
+            const Slope torque = friction::steady(law, sliding.contact<Slope>(i));
             out[i] = torque.value;
             for (std::size_t p = first; p < first + width && p < parameters.size(); ++p)
                 slopes[p * n + i] = torque.slope[p - first];

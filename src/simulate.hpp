@@ -154,8 +154,19 @@ void differentiate_rates(const Drive& drive, const Drive::State& x, const Input<
 void differentiate_loop(const AnyGear<double>& gear, const double* twist, std::size_t n, const std::vector<int>& parameters,
                         double* out, double* slopes, const Pause& pause);
 
+/// Contacts that slide steadily, each member with as many numbers.
+struct Sliding {
+    const double *speed, *angle, *load, *temperature;
+
+    template <class S>
+    friction::Contact<S> contact(std::size_t i) const {
+        const double turns = std::rint(angle[i] / (2.0 * pi));
+        return {S(speed[i]), S(1.0), {S(angle[i] - 2.0 * pi * turns), S(turns)}, S(load[i]), S(temperature[i])};
+    }
+};
+
 /// Steady friction torque at the input; derivatives in slopes[p * n + i].
-void differentiate_steady(const AnyGear<double>& gear, const double* speed, std::size_t n, const std::vector<int>& parameters,
+void differentiate_steady(const AnyGear<double>& gear, const Sliding& sliding, std::size_t n, const std::vector<int>& parameters,
                           double* out, double* slopes, const Pause& pause);
 
 /// All of them, as one module holds them.

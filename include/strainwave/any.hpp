@@ -429,8 +429,12 @@ using AtRunTime = typename detail::AtRunTime<S, Law<S>>::type;
 namespace detail {
 
 template <class S, class Law>
+struct AtRunTime<S, friction::Asymmetric<S, Law>> {
+    using type = friction::Asymmetric<S, AnyOf<S, friction::Levelled>>;
+};
+template <class S, class Law>
 struct AtRunTime<S, friction::Cyclic<S, Law>> {
-    using type = friction::Cyclic<S, AnyOf<S, friction::Plain>>;
+    using type = friction::Cyclic<S, AnyOf<S, friction::Directed>>;
 };
 template <class S, class Law>
 struct AtRunTime<S, friction::Thermal<S, Law>> {

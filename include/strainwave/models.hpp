@@ -7,7 +7,10 @@
 #include <strainwave/control/position_speed.hpp>
 #include <strainwave/control/sampled.hpp>
 #include <strainwave/control/state_feedback.hpp>
+#include <strainwave/friction/angle_speed_map.hpp>
+#include <strainwave/friction/asymmetric.hpp>
 #include <strainwave/friction/coulomb.hpp>
+#include <strainwave/friction/curved_viscous.hpp>
 #include <strainwave/friction/cyclic.hpp>
 #include <strainwave/friction/load_dependent.hpp>
 #include <strainwave/friction/lugre.hpp>
@@ -93,9 +96,11 @@ using Models = Extended<Pure, Scaled>;
 using Noises = List<Stochastic>;
 }  // namespace kinematic_error
 namespace friction {
-using Plain = List<Viscous, Coulomb, Stribeck, PositionDependent, LuGre, MaxwellSlipFriction, LoadDependent, TorqueEfficiency,
-                   MixedLubrication>;
-using Varying = Extended<Plain, Cyclic>;
+using Levelled = List<Viscous, Coulomb, Stribeck, PositionDependent, LuGre, MaxwellSlipFriction, LoadDependent, MixedLubrication,
+                      CurvedViscous, AngleSpeedMap>;  // each way it slides at levels of its own
+using Plain = Extended<Levelled, TorqueEfficiency>;
+using Directed = Extended<Plain, Asymmetric>;
+using Varying = Extended<Directed, Cyclic>;
 using Models = Extended<Varying, Thermal>;
 }  // namespace friction
 namespace stiffness {

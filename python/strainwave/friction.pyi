@@ -977,6 +977,381 @@ class LoadDependent:
 
     odd: bool = False
 
+class MixedLubrication:
+    """
+    Friction of a lubricated bearing, as that of the wave generator: boundary, mixed and hydrodynamic by one number.
+
+    .. math:: F = p \\left[F_c + (F_s - F_c) e^{-h^2}\\right] \\operatorname{sgn} v + b\\, \\eta\\, v \\quad (v \\ne 0), \\qquad
+              |F| \\le p F_s \\quad (v = 0), \\\\
+              h = \\frac{\\eta |v|}{v_s\\, p}, \\qquad \\eta = e^{-\\beta (T - T_0)}, \\qquad p = 1 + s\\,|T_{load}|
+
+    with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous, beta =
+    viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque that its place
+    transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative to
+    T_0 and no load. The speed at which the lubricant carries grows as the load grows and as the lubricant thins: h is the
+    number of Hersey. Warm oil lowers the viscous part, and lets dry friction last to higher speeds; ``Thermal`` around
+    ``Stribeck`` leaves these speeds where they are.
+
+    >>> from strainwave.friction import MixedLubrication
+    >>> law = MixedLubrication(coulomb=0.02, breakaway=0.05, stribeck_speed=5.0, viscous=1e-3, viscosity_fall=0.03)
+    >>> cold, warm = (float(law.steady(speed, temperature=333.15)) > float(law.steady(speed)) for speed in (5.0, 100.0))
+    >>> cold, warm  # warm oil: more friction at 5 rad/s, less at 100
+    (True, False)
+
+    Parameters
+    ----------
+    coulomb: Friction torque F_c that is left once the lubricant carries, without the viscous part [N.m], in [0, inf); required
+    breakaway: Static friction torque F_s [N.m], in [0, inf); required
+    stribeck_speed: Speed v_s at which the excess has fallen to 1/e, at T_0 without load [rad/s], in (0, inf); required
+    viscous: Torque per speed at T_0 [N.m.s/rad], in [0, inf); default 0.0
+    viscosity_fall: Relative fall beta of the viscosity per kelvin [1/K], in [0, inf); default 0.0
+    load_sensitivity: Rise s of the load on the bearing with the torque transmitted [1/(N.m)], in [0, inf); default 0.0
+    reference_temperature: Temperature T_0 at which the numbers hold [K], in (0, inf); default 293.15
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    Stribeck1902: friction over viscosity times speed per load (Hersey1914); viscosity over temperature: Reynolds1886; this curve, and how the load enters, are assumed
+    """
+
+    def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, viscous: float = ..., viscosity_fall: float = ..., load_sensitivity: float = ..., reference_temperature: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous: float = ..., viscosity_fall: float = ..., load_sensitivity: float = ..., reference_temperature: float = ...) -> MixedLubrication:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def coulomb(self) -> float:
+        """
+        Friction torque F_c that is left once the lubricant carries, without the viscous part [N.m]
+        """
+
+    @property
+    def breakaway(self) -> float:
+        """Static friction torque F_s [N.m]"""
+
+    @property
+    def stribeck_speed(self) -> float:
+        """
+        Speed v_s at which the excess has fallen to 1/e, at T_0 without load [rad/s]
+        """
+
+    @property
+    def viscous(self) -> float:
+        """Torque per speed at T_0 [N.m.s/rad]"""
+
+    @property
+    def viscosity_fall(self) -> float:
+        """Relative fall beta of the viscosity per kelvin [1/K]"""
+
+    @property
+    def load_sensitivity(self) -> float:
+        """
+        Rise s of the load on the bearing with the torque transmitted [1/(N.m)]
+        """
+
+    @property
+    def reference_temperature(self) -> float:
+        """Temperature T_0 at which the numbers hold [K]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'mixed_lubrication'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
+class CurvedViscous:
+    """
+    Friction whose viscous part bends over the speed, with Stribeck's fall, set-valued at rest.
+
+    .. math:: F = \\left[F_c + (F_s - F_c) e^{-(v/v_s)^2} + F_v \\left(|v|/v_r\\right)^p\\right] \\operatorname{sgn} v
+              \\quad (v \\ne 0), \\qquad |F| \\le F_s \\quad (v = 0)
+
+    with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, F_v = viscous_torque at the
+    speed v_r = reference_speed, p = exponent. The torque of a wave generator's grease often rises fast at first and then
+    ever less: p < 1 (0.5 to 1 is an order of magnitude, assumed); p = 1 is Stribeck's law with viscous = F_v / v_r, and p = 2
+    a drag. A breakaway that is not given equals coulomb, and one below counts as coulomb; stribeck_speed then says nothing.
+    Below v_r / 10^6 the viscous part falls linearly, so that it has a slope at rest. Valid within the speeds it was measured
+    at; leaves out presliding (see LuGre).
+
+    >>> from strainwave.friction import CurvedViscous
+    >>> law = CurvedViscous(coulomb=0.02, viscous_torque=0.03, exponent=0.5, reference_speed=100.0)
+    >>> law.steady([25.0, 100.0]).round(12)
+    array([0.035, 0.05 ])
+
+    Parameters
+    ----------
+    coulomb: Kinetic friction torque F_c [N.m], in [0, inf); required
+    breakaway: Static friction torque F_s [N.m], in [0, inf); default as coulomb
+    stribeck_speed: Speed at which the excess F_s - F_c has fallen to 1/e [rad/s], in (0, inf); default 2.0
+    viscous_torque: Viscous torque F_v at reference_speed [N.m], in [0, inf); required
+    exponent: Exponent p of the speed, in [0.1, 4]; required
+    reference_speed: Speed v_r at which viscous_torque holds [rad/s], in (0, inf); required
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    Olsson1998, section 2: viscous friction with an exponent; the fall as in Stribeck
+    """
+
+    def __init__(self, *, coulomb: float, breakaway: float = ..., stribeck_speed: float = ..., viscous_torque: float, exponent: float, reference_speed: float) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous_torque: float = ..., exponent: float = ..., reference_speed: float = ...) -> CurvedViscous:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def coulomb(self) -> float:
+        """Kinetic friction torque F_c [N.m]"""
+
+    @property
+    def breakaway(self) -> float:
+        """Static friction torque F_s [N.m]"""
+
+    @property
+    def stribeck_speed(self) -> float:
+        """Speed at which the excess F_s - F_c has fallen to 1/e [rad/s]"""
+
+    @property
+    def viscous_torque(self) -> float:
+        """Viscous torque F_v at reference_speed [N.m]"""
+
+    @property
+    def exponent(self) -> float:
+        """Exponent p of the speed"""
+
+    @property
+    def reference_speed(self) -> float:
+        """Speed v_r at which viscous_torque holds [rad/s]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'curved_viscous'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
+class AngleSpeedMap:
+    """
+    Friction as a table over the speed and the angle within a turn, set-valued at rest.
+
+    .. math:: F = F(\\theta, |v|) \\operatorname{sgn} v \\quad (v \\ne 0), \\qquad |F| \\le c_s\\, F(\\theta, 0) \\quad (v = 0)
+
+    with v the speed of the place it acts on and theta its angle, c_s = static_ratio. F is bilinear between the entries of level.
+    For each speed in turn, level lists the torques at equally spaced angles of one turn, beginning at theta = 0:
+    n = len(level) / len(speed) of them, at 2 pi j / n. Periodic in the angle. Below the first and beyond the last speed the
+    torque stays what it is there. Up to 8 speeds and 128 torques; without any there is no friction.
+
+    All of it counts as dry friction where another law modulates it. Asymmetric around it tells the directions apart. For
+    what no formula describes; where one does, as Cyclic around Stribeck, it needs fewer numbers and less data.
+
+    >>> from strainwave.friction import AngleSpeedMap
+    >>> law = AngleSpeedMap(speed=[1.0, 11.0], level=[0.1, 0.2, 0.3, 0.4])  # at 0 and at pi
+    >>> law.steady([1.0, 6.0, 50.0]), round(float(law.steady(1.0, angle=3.141592653589793)), 12)
+    (array([0.1, 0.2, 0.3]), 0.2)
+
+    Parameters
+    ----------
+    speed: Speeds of the table, increasing [rad/s], in [0, inf); default ()
+    level: Torques: of each speed in turn, those at equally spaced angles of one turn [N.m], in [0, inf); default ()
+    static_ratio: Static friction over the friction at the lowest speed, in [1, inf); default 1.0
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition: bilinear interpolation in a table
+    """
+
+    def __init__(self, *, speed: float | Sequence[float] = ..., level: float | Sequence[float] = ..., static_ratio: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, speed: float | Sequence[float] = ..., level: float | Sequence[float] = ..., static_ratio: float = ...) -> AngleSpeedMap:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def speed(self) -> tuple[float, ...]:
+        """Speeds of the table, increasing [rad/s]"""
+
+    @property
+    def level(self) -> tuple[float, ...]:
+        """
+        Torques: of each speed in turn, those at equally spaced angles of one turn [N.m]
+        """
+
+    @property
+    def static_ratio(self) -> float:
+        """Static friction over the friction at the lowest speed"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'angle_speed_map'
+
+    source: str = 'definition: bilinear interpolation in a table'
+
+    fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
+
+        `angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A law that sticks shows no torque at rest: what it holds depends on what drives it.
+        """
+
+    def quasistatic(self, displacement: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit of infinite slowness.
+
+        No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
+        """
+
 class TorqueEfficiency:
     """
     Loss proportional to the torque transmitted, which turns round with the motion over a presliding angle.
@@ -1137,36 +1512,32 @@ class TorqueEfficiency:
 
     odd: bool = True
 
-class MixedLubrication:
+class Asymmetric:
     """
-    Friction of a lubricated bearing, as that of the wave generator: boundary, mixed and hydrodynamic by one number.
+    Friction that is larger one way than the other.
 
-    .. math:: F = p \\left[F_c + (F_s - F_c) e^{-h^2}\\right] \\operatorname{sgn} v + b\\, \\eta\\, v \\quad (v \\ne 0), \\qquad
-              |F| \\le p F_s \\quad (v = 0), \\\\
-              h = \\frac{\\eta |v|}{v_s\\, p}, \\qquad \\eta = e^{-\\beta (T - T_0)}, \\qquad p = 1 + s\\,|T_{load}|
+    .. math:: F_{dry} \\propto 1 + a_d \\operatorname{sgn} v, \\qquad F_{viscous} \\propto 1 + a_v \\operatorname{sgn} v
 
-    with v the speed of the side it acts on, F_c = coulomb, F_s = breakaway, v_s = stribeck_speed, b = viscous, beta =
-    viscosity_fall, s = load_sensitivity, T_0 = reference_temperature; T the temperature, T_load the torque that its place
-    transmits: at the input that of the gear over the ratio. eta is the viscosity, p the load on the bearing, both relative to
-    T_0 and no load. The speed at which the lubricant carries grows as the load grows and as the lubricant thins: h is the
-    number of Hersey. Warm oil lowers the viscous part, and lets dry friction last to higher speeds; ``Thermal`` around
-    ``Stribeck`` leaves these speeds where they are.
+    with v the speed of the place it acts on, a_d = dry_asymmetry, a_v = viscous_asymmetry, law the mean of both directions:
+    its dry levels (Coulomb, breakaway) and its viscous torque are multiplied. At rest the torque that drives it says which
+    way counts. A viscous_asymmetry that is not given equals dry_asymmetry: the whole curve is then larger one way.
 
-    >>> from strainwave.friction import MixedLubrication
-    >>> law = MixedLubrication(coulomb=0.02, breakaway=0.05, stribeck_speed=5.0, viscous=1e-3, viscosity_fall=0.03)
-    >>> cold, warm = (float(law.steady(speed, temperature=333.15)) > float(law.steady(speed)) for speed in (5.0, 100.0))
-    >>> cold, warm  # warm oil: more friction at 5 rad/s, less at 100
-    (True, False)
+    Each way it is the law itself with other levels, so it takes power from every motion where those would. A bristle keeps
+    its stiffness and damping, and must be damped so little that it dissipates with the smaller viscous torque, too. Not for
+    ``TorqueEfficiency``, whose torque would jump in a reversal and give energy.
+
+    A constant error of a torque sensor looks much the same: of Coulomb friction without viscous_asymmetry, exactly.
+
+    >>> from strainwave.friction import Asymmetric, Coulomb
+    >>> law = Asymmetric(law=Coulomb(coulomb=0.25, viscous=0.01), dry_asymmetry=0.5, viscous_asymmetry=0.0)
+    >>> law.steady([10.0, -10.0]), law.hold([1.0, -1.0])
+    (array([ 0.475, -0.225]), array([0.375, 0.125]))
 
     Parameters
     ----------
-    coulomb: Friction torque F_c that is left once the lubricant carries, without the viscous part [N.m], in [0, inf); required
-    breakaway: Static friction torque F_s [N.m], in [0, inf); required
-    stribeck_speed: Speed v_s at which the excess has fallen to 1/e, at T_0 without load [rad/s], in (0, inf); required
-    viscous: Torque per speed at T_0 [N.m.s/rad], in [0, inf); default 0.0
-    viscosity_fall: Relative fall beta of the viscosity per kelvin [1/K], in [0, inf); default 0.0
-    load_sensitivity: Rise s of the load on the bearing with the torque transmitted [1/(N.m)], in [0, inf); default 0.0
-    reference_temperature: Temperature T_0 at which the numbers hold [K], in (0, inf); default 293.15
+    law: The friction, mean of both directions; default Viscous(viscous=0.0)
+    dry_asymmetry: How much more dry friction a positive speed has, relative to the mean, in [-1, 1]; default 0.0
+    viscous_asymmetry: How much more viscous friction a positive speed has, relative to the mean, in [-1, 1]; default as dry_asymmetry
 
     Raises
     ------
@@ -1175,49 +1546,29 @@ class MixedLubrication:
 
     Source
     ------
-    Stribeck1902: friction over viscosity times speed per load (Hersey1914); viscosity over temperature: Reynolds1886; this curve, and how the load enters, are assumed
+    CanudasDeWit1995, section II: G(v) need not be symmetrical, so that friction depends on the direction; one factor for each direction is assumed
     """
 
-    def __init__(self, *, coulomb: float, breakaway: float, stribeck_speed: float, viscous: float = ..., viscosity_fall: float = ..., load_sensitivity: float = ..., reference_temperature: float = ...) -> None: ...
+    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap = ..., dry_asymmetry: float = ..., viscous_asymmetry: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, coulomb: float = ..., breakaway: float = ..., stribeck_speed: float = ..., viscous: float = ..., viscosity_fall: float = ..., load_sensitivity: float = ..., reference_temperature: float = ...) -> MixedLubrication:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap = ..., dry_asymmetry: float = ..., viscous_asymmetry: float = ...) -> Asymmetric:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def coulomb(self) -> float:
-        """
-        Friction torque F_c that is left once the lubricant carries, without the viscous part [N.m]
-        """
+    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap:
+        """The friction, mean of both directions"""
 
     @property
-    def breakaway(self) -> float:
-        """Static friction torque F_s [N.m]"""
+    def dry_asymmetry(self) -> float:
+        """How much more dry friction a positive speed has, relative to the mean"""
 
     @property
-    def stribeck_speed(self) -> float:
+    def viscous_asymmetry(self) -> float:
         """
-        Speed v_s at which the excess has fallen to 1/e, at T_0 without load [rad/s]
+        How much more viscous friction a positive speed has, relative to the mean
         """
-
-    @property
-    def viscous(self) -> float:
-        """Torque per speed at T_0 [N.m.s/rad]"""
-
-    @property
-    def viscosity_fall(self) -> float:
-        """Relative fall beta of the viscosity per kelvin [1/K]"""
-
-    @property
-    def load_sensitivity(self) -> float:
-        """
-        Rise s of the load on the bearing with the torque transmitted [1/(N.m)]
-        """
-
-    @property
-    def reference_temperature(self) -> float:
-        """Temperature T_0 at which the numbers hold [K]"""
 
     def __repr__(self) -> str: ...
 
@@ -1231,7 +1582,7 @@ class MixedLubrication:
 
     def __reduce__(self) -> tuple[Any, ...]: ...
 
-    name: str = 'mixed_lubrication'
+    name: str = 'asymmetric'
 
     source: str = ...
 
@@ -1261,7 +1612,46 @@ class MixedLubrication:
     def set_valued(self) -> bool:
         """Whether it can hold at rest."""
 
-    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> numpy.typing.NDArray[numpy.float64]:
+    class State:
+        """
+        Parameters
+        ----------
+        slot: State of the model chosen, in the order it lists it; default ()
+
+        Raises
+        ------
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
+
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
+
+        @property
+        def slot(self) -> tuple[float, ...]:
+            """State of the model chosen, in the order it lists it"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
+
+        name: str = 'asymmetric.state'
+
+        fields: tuple[dict[str, Any], ...]
+
+    def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """
         Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).
 
@@ -1274,6 +1664,8 @@ class MixedLubrication:
 
         No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.
         """
+
+    odd: bool = False
 
 class Cyclic:
     """
@@ -1310,15 +1702,15 @@ class Cyclic:
     document R, section 2, cyclic part of the friction torque; erratum E-R7
     """
 
-    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
+    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap | TorqueEfficiency | Asymmetric = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Cyclic:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap | TorqueEfficiency | Asymmetric = ..., order: float | Sequence[float] = ..., amplitude: float | Sequence[float] = ..., phase: float | Sequence[float] = ...) -> Cyclic:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication:
+    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap | TorqueEfficiency | Asymmetric:
         """The friction that varies"""
 
     @property
@@ -1389,7 +1781,7 @@ class Cyclic:
 
         def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
 
-        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Cyclic.State:
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
             """
             The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
             """
@@ -1410,7 +1802,7 @@ class Cyclic:
 
         def __reduce__(self) -> tuple[Any, ...]: ...
 
-        name: str = 'cyclic.state'
+        name: str = 'asymmetric.state'
 
         fields: tuple[dict[str, Any], ...]
 
@@ -1461,15 +1853,15 @@ class Thermal:
     exponential fall of lubricant viscosity with temperature (Reynolds1886); rates: the user's
     """
 
-    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> None: ...
+    def __init__(self, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap | TorqueEfficiency | Asymmetric | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> Thermal:
+    def replace(self, changes: dict[str, Any] = ..., /, *, law: Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap | TorqueEfficiency | Asymmetric | Cyclic = ..., dry_fall: float = ..., viscous_fall: float = ..., reference_temperature: float = ...) -> Thermal:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
 
     @property
-    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | TorqueEfficiency | MixedLubrication | Cyclic:
+    def law(self) -> Viscous | Coulomb | Stribeck | PositionDependent | LuGre | MaxwellSlipFriction | LoadDependent | MixedLubrication | CurvedViscous | AngleSpeedMap | TorqueEfficiency | Asymmetric | Cyclic:
         """The friction at the reference temperature"""
 
     @property
@@ -1540,7 +1932,7 @@ class Thermal:
 
         def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
 
-        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Cyclic.State:
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
             """
             The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
             """
@@ -1561,7 +1953,7 @@ class Thermal:
 
         def __reduce__(self) -> tuple[Any, ...]: ...
 
-        name: str = 'cyclic.state'
+        name: str = 'asymmetric.state'
 
         fields: tuple[dict[str, Any], ...]
 

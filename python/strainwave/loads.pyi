@@ -63,9 +63,10 @@ class Pendulum:
     """
     An unbalanced arm on a horizontal output shaft.
 
-    .. math:: T_{load} = m g l \\sin\\theta_{out}
+    .. math:: T_{load} = m g l \\sin(\\theta_{out} + \\varphi)
 
-    with m g l = gravity_torque, hanging down at theta_out = 0.
+    with m g l = gravity_torque, phi = gravity_phase: it hangs down at theta_out = -phi, where an encoder counts from
+    elsewhere than the lowest place.
 
     >>> from strainwave.loads import Pendulum
     >>> Pendulum(inertia=0.5, gravity_torque=15.0).gravity_torque
@@ -75,6 +76,7 @@ class Pendulum:
     ----------
     inertia: Inertia about the output axis [kg.m2], in (0, inf); default 0.01
     gravity_torque: Weight times distance of the centre of mass [N.m], in [0, inf); default 0.0
+    gravity_phase: Angle from hanging down to where theta_out = 0 [rad]; default 0.0
 
     Raises
     ------
@@ -83,12 +85,12 @@ class Pendulum:
 
     Source
     ------
-    definition; theta_out = 0 hangs down
+    definition
     """
 
-    def __init__(self, *, inertia: float = ..., gravity_torque: float = ...) -> None: ...
+    def __init__(self, *, inertia: float = ..., gravity_torque: float = ..., gravity_phase: float = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ..., gravity_torque: float = ...) -> Pendulum:
+    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ..., gravity_torque: float = ..., gravity_phase: float = ...) -> Pendulum:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -100,6 +102,10 @@ class Pendulum:
     @property
     def gravity_torque(self) -> float:
         """Weight times distance of the centre of mass [N.m]"""
+
+    @property
+    def gravity_phase(self) -> float:
+        """Angle from hanging down to where theta_out = 0 [rad]"""
 
     def __repr__(self) -> str: ...
 
@@ -115,7 +121,7 @@ class Pendulum:
 
     name: str = 'pendulum'
 
-    source: str = 'definition; theta_out = 0 hangs down'
+    source: str = 'definition'
 
     fields: tuple[dict[str, Any], ...]
 

@@ -207,6 +207,19 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             viscous=5e-5,
         )
     },
+    "curved_viscous": {
+        "friction_input": sw.friction.CurvedViscous(
+            coulomb=0.02, breakaway=0.03, stribeck_speed=2.0, viscous_torque=0.02, exponent=0.6, reference_speed=50.0
+        )
+    },
+    "angle_speed_map": {
+        "friction_input": sw.friction.AngleSpeedMap(
+            speed=[1.0, 10.0, 60.0], level=[0.02, 0.025, 0.018, 0.03, 0.033, 0.029, 0.04, 0.045, 0.042], static_ratio=1.1
+        )
+    },
+    "asymmetric": {
+        "friction_input": sw.friction.Asymmetric(law=BRISTLE.gear.friction_input, dry_asymmetry=0.2, viscous_asymmetry=-0.1)
+    },
     "cyclic": {
         "friction_input": sw.friction.Cyclic(law=BRISTLE.gear.friction_input, order=[2.0], amplitude=[0.2], phase=[0.3])
     },

@@ -8,15 +8,17 @@ template <class S>
 struct Pendulum {
     S inertia{0.01};
     S gravity_torque{0.0};
+    S gravity_phase{0.0};
 
     static constexpr auto name = "pendulum";
-    static constexpr auto source = "definition; theta_out = 0 hangs down";
+    static constexpr auto source = "definition";
     static constexpr auto doc = R"(
         An unbalanced arm on a horizontal output shaft.
 
-        .. math:: T_{load} = m g l \sin\theta_{out}
+        .. math:: T_{load} = m g l \sin(\theta_{out} + \varphi)
 
-        with m g l = gravity_torque, hanging down at theta_out = 0.
+        with m g l = gravity_torque, phi = gravity_phase: it hangs down at theta_out = -phi, where an encoder counts from
+        elsewhere than the lowest place.
 
         >>> from strainwave.loads import Pendulum
         >>> Pendulum(inertia=0.5, gravity_torque=15.0).gravity_torque
@@ -26,9 +28,10 @@ struct Pendulum {
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_FIELD(m, inertia, "kg.m2", "Inertia about the output axis", smallest));
         visit(SW_FIELD(m, gravity_torque, "N.m", "Weight times distance of the centre of mass", 0));
+        visit(SW_FIELD(m, gravity_phase, "rad", "Angle from hanging down to where theta_out = 0"));
     }
 
-    constexpr S torque(const S& angle, const S&) const { return gravity_torque * sin(angle); }
+    constexpr S torque(const S& angle, const S&) const { return gravity_torque * sin(angle + gravity_phase); }
     constexpr S steepest() const { return gravity_torque; }
 };
 

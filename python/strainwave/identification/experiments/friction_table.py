@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +18,8 @@ from strainwave.identification.experiments.experiment import Nuisance, sensible
 
 Array = NDArray[np.float64]
 TABLE = 1_000  # speeds of either sign in a table, at most
+ROOM_TEMPERATURE = 293.15  # K: where no temperature was measured
+BESIDE = {"angle": "rad", "load": "N.m", "temperature": "K"}  # what else may tell friction, and its unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,20 +30,28 @@ class FrictionTable(ComparedByFields):
         speed: input speed [rad/s], shape (n,)
         torque: friction torque [N.m], of the sign of the speed, shape (n,)
         samples: how many were measured; more than are left in `speed` where each is the mean of several neighbours
+        angle: input angle [rad], shape (n,), if it was measured
+        load: torque that the input transmits [N.m], shape (n,), if it was measured: the output's over the ratio; load times
+            speed is the power that flows to the output
+        temperature: temperature of the gear [K], shape (n,), if it was measured
     """
 
     speed: Array
     torque: Array
     samples: int = 0
+    angle: Array | None = None
+    load: Array | None = None
+    temperature: Array | None = None
     channels = ("torque",)
     units = ("N.m",)
     nuisances: ClassVar[tuple[Nuisance, ...]] = ()
 
     @classmethod
     def of(cls, recording: Recording) -> FrictionTable:
-        """From columns speed and torque of the input; a torque given as a magnitude takes the sign of its speed.
+        """From columns speed and torque of the input, and angle, load and temperature where there are such.
 
-        Of a long table, means over neighbouring speeds are taken.
+        A torque given as a magnitude takes the sign of its speed. Of a long table, means over neighbouring speeds are taken;
+        where an angle is beside it, every so many rows.
         """
         check_recording("recording", recording)
         speed, torque = sensible(recording, "speed", "rad/s"), sensible(recording, "torque", "N.m")
@@ -52,24 +62,38 @@ class FrictionTable(ComparedByFields):
             torque = np.sign(speed) * torque
         if np.sum(speed * torque) <= 0.0:
             raise ValueError("the torque drives the motion instead of opposing it; give it the sign of the speed")
-        sides = [np.flatnonzero(side)[np.argsort(speed[side], kind="stable")] for side in (speed < 0.0, speed > 0.0)]
-        neighbours = [thinned(speed[side], torque[side], samples=TABLE) for side in sides if len(side)]
-        if len(speed) > TABLE:
-            speed, torque = (np.concatenate(each) for each in zip(*neighbours, strict=True))
-        return cls(speed, torque, len(recording))
+        beside = {name: recording.values(name, unit) for name, unit in BESIDE.items() if name in recording.names}
+        whole = cls(speed, torque, len(recording), **beside)
+        return whole if len(speed) <= TABLE else whole._thinned()
+
+    def _thinned(self) -> FrictionTable:
+        columns = {name: values for name in ("speed", "torque", *BESIDE) if (values := getattr(self, name)) is not None}
+        if "angle" in columns:  # the mean of two angles is none
+            rows = np.arange(0, len(self.speed), -(-len(self.speed) // (2 * TABLE)))
+            return replace(self, **{name: values[rows] for name, values in columns.items()})
+        sides = [np.flatnonzero(side) for side in (self.speed < 0.0, self.speed > 0.0)]
+        ordered = [side[np.argsort(self.speed[side], kind="stable")] for side in sides if len(side)]
+        means = [thinned(*(values[side] for values in columns.values()), samples=TABLE) for side in ordered]
+        return replace(
+            self, **{name: np.concatenate(each) for name, each in zip(columns, zip(*means, strict=True), strict=True)}
+        )
 
     @classmethod
     def of_output(cls, recording: Recording, gear: Gear) -> FrictionTable:
-        """From columns speed and torque of the output, as a joint measures its friction, referred to the input by the ratio."""
+        """From columns of the output, as a joint measures its friction, referred to the input by the ratio."""
         check_recording("recording", recording)
         ratio = abs(arguments.gear(gear).kinematics.ratio)
-        speed, torque = ratio * recording.values("speed", "rad/s"), recording.values("torque", "N.m") / ratio
-        return cls.of(Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}))
+        units = {"speed": "rad/s", "torque": "N.m"} | {name: unit for name, unit in BESIDE.items() if name in recording.names}
+        factor = {"speed": ratio, "angle": ratio, "torque": 1.0 / ratio, "load": 1.0 / ratio, "temperature": 1.0}
+        return cls.of(Recording({name: factor[name] * recording.values(name, unit) for name, unit in units.items()}, units))
 
     @property
     def measured(self) -> Array:
         return self.torque[np.newaxis]
 
     def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        torque, slopes = _core.differentiate_steady(model, self.speed, list(numbers))
+        none = np.zeros_like(self.speed)
+        angle, load = (none if values is None else values for values in (self.angle, self.load))
+        temperature = none + ROOM_TEMPERATURE if self.temperature is None else self.temperature
+        torque, slopes = _core.differentiate_steady(model, self.speed, angle, load, temperature, list(numbers))
         return torque[np.newaxis], slopes[:, np.newaxis]
