@@ -75,6 +75,8 @@ def making(folder: Path) -> Iterator[None]:
             _check_name(folder)
             new += [each for each in (folder, *folder.parents) if not os.path.lexists(each)]
             folder.mkdir(parents=True, exist_ok=True)
+        except FileExistsError:
+            raise FileExistsError(one_line(f"{folder} is a file where a folder is to be made; give another name")) from None
         except OSError as error:
             raise _said(f"{folder} cannot be made", error) from None
         yield

@@ -321,7 +321,10 @@ def test_folders_made_for_what_fails_are_taken_away_again(tmp_path: Path) -> Non
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(FileExistsError, match=r"/file cannot be made: File exists$"), making(tmp_path / "file"):
+    with (
+        pytest.raises(FileExistsError, match=r"/file is a file where a folder is to be made; give another name"),
+        making(tmp_path / "file"),
+    ):
         pass
     with pytest.raises(OSError, match=r"/\\ud800 cannot be made: no file can have this name$"), making(tmp_path / "\ud800"):
         pass
