@@ -215,13 +215,17 @@ def _stiffness_axis(axes: Axes, panel: Sequence[StiffnessCurve]) -> None:
 
 
 def _common_legend(figure: Figure, every: Sequence[Axes] | Any) -> None:
-    """One legend for several panels, each label once; what is shared by all regimes is drawn in ink."""
+    """One legend for several panels, each label once: the regimes in the order of the cycle, then what any of them has."""
     shown: dict[str, Any] = {}
     for axes in every:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             shown.setdefault(label, handle)
-    columns = 2
-    figure.legend(list(shown.values()), list(shown), loc="outside upper left", ncols=columns, borderpad=0.0, columnspacing=1.2)
+    labels = [each for each in COLOURS if each in shown] + [each for each in shown if each not in COLOURS]
+    handles = [shown[each] for each in labels]
+    drawn = figure.legend(handles, labels, loc="outside upper left", ncols=2, borderpad=0.0, columnspacing=1.2)
+    for label, line in zip(labels, drawn.legend_handles, strict=True):
+        if label not in COLOURS and line is not None:  # of no regime alone, and so of no regime's colour
+            line.set(color=LIGHT["ink"])
 
 
 @dataclass(frozen=True)

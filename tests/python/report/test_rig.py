@@ -12,6 +12,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.report import rig_figures
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig import rig_report, setting, summary, unknown
+from strainwave.report.rig_figures import COLOURS
 from strainwave.report.rig_files import angle_files, loop_files, loop_names, plain, results, results_json
 from strainwave.report.rig_numbers import stated
 from strainwave.report.rig_setup import rig_rows
@@ -110,6 +111,16 @@ def test_each_loop_has_its_widths_by_every_definition(html: str, found: Evaluati
     assert analysis.hysteresis_loss is not None
     assert printed(cells["Hysteresis loss"].rstrip("°")) == pytest.approx(degrees(analysis.hysteresis_loss.value), abs=0.01)
     assert len(loops.find("svg")) == 2 * len(found.analyses)
+
+
+def test_the_legend_has_the_regimes_first_and_the_regression_in_ink(html: str) -> None:
+    local = section(html, "loops").find("svg")[1]
+    words = [text for node in local.find("text") if (text := node.text.strip()) in (*COLOURS, "regression over the regime")]
+    assert words == [*COLOURS, "regression over the regime"]
+
+
+def test_the_definitions_of_widths_are_as_wide_as_a_narrow_screen(html: str) -> None:
+    assert "(min-width: 48.01rem) { .widths td:nth-child(2) { width: 45%; } }" in html
 
 
 def test_budget_photographs_steps_and_rig_are_in_the_page(html: str, angles: Angles) -> None:

@@ -12,6 +12,7 @@ from strainwave.rig.loop import Loop
 
 USUAL = 0.6  # of the steps of torque that must be alike for another to be called a gap
 LONG = 1.5  # of the usual step: longer is a gap
+SHOWN = 4  # gaps that are told one by one
 MIXED = 0.1  # share of the steps that go back, beyond which points that are sorted may be those of two branches
 
 
@@ -75,11 +76,15 @@ def _of_gaps(loop: Loop) -> Iterator[str]:
     alike = np.abs(steps - usual) < 0.05 * usual
     if usual == 0.0 or np.mean(alike) < USUAL:
         return
-    for row in np.flatnonzero(steps > LONG * usual).tolist():
-        yield (
-            f"between points {row + 1} and {row + 2} the torque changes by {steps[row]:.4g} N.m, {steps[row] / usual:.2g} "
-            "times the usual step: a step was left out, or not recorded. Values between are taken on a straight line"
-        )
+    rows = np.flatnonzero(steps > LONG * usual).tolist()
+    if not rows:
+        return
+    told = ", ".join(f"{row + 1} and {row + 2} by {steps[row]:.4g} N.m" for row in rows[:SHOWN])
+    more = f" and {len(rows) - SHOWN} more" if len(rows) > SHOWN else ""
+    yield (
+        f"the torque changes between points {told}{more}, and by {usual:.4g} N.m as a rule: steps were left out, or "
+        "not recorded. Values between are taken on a straight line"
+    )
 
 
 def _of_late(regime: Quarter) -> str:

@@ -133,7 +133,15 @@ def test_a_step_left_out_is_told_where_it_is() -> None:
     angle, torque = straight(2.0, 0.5, 1.0, 10)
     keep = np.arange(len(angle)) != 5
     (remark,) = segment(loop(angle[keep], torque[keep])).remarks
-    assert remark.startswith("between points 5 and 6 the torque changes by 0.2 N.m, 2 times the usual step")
+    assert remark.startswith("the torque changes between points 5 and 6 by 0.2 N.m, and by 0.1 N.m as a rule")
+
+
+def test_steps_left_out_are_told_together() -> None:
+    angle, torque = straight(2.0, 0.5, 1.0, 20)
+    keep = ~np.isin(np.arange(len(angle)), [5, 9, 13, 17, 25, 29])
+    (remark,) = segment(loop(angle[keep], torque[keep])).remarks
+    assert remark.count("by 0.1 N.m") == 4
+    assert "and 2 more" in remark
 
 
 def test_one_branch_has_the_regimes_it_has() -> None:
