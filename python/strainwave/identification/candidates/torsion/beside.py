@@ -28,6 +28,7 @@ class Beside(ABC):
 
     whole_spring = False  # whether it is a spring, too, and stands alone
     dear = False  # whether what it can contribute takes long to find
+    minima = 1  # of least squares: from how many starts they are sought
 
     @abstractmethod
     def words(self, gear: Gear) -> str:

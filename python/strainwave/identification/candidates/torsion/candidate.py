@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.torsion.beside import SLIPS, Beside, half_span, maxwell, pairs
-from strainwave.identification.candidates.torsion.library import solve
+from strainwave.identification.candidates.torsion.library import Answer, solve
 from strainwave.identification.candidates.torsion.springs import Kind
 from strainwave.identification.experiments.branches import PRESLIDING
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
@@ -70,8 +70,10 @@ class Start(ComparedByFields):
     error: float
 
 
-def start(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> Start:
-    """The best spring of a kind with what stands beside it, without starting values.
+def starts(
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside, most: int = 1
+) -> list[Start]:
+    """The best springs of a kind with what stands beside them, without starting values.
 
     Args:
         loop: measured torque over twist
@@ -79,30 +81,39 @@ def start(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Ki
         training: samples that take part, shape (n,)
         spring: kind of spring sought
         beside: what is sought beside it
+        most: how many are wanted; they differ in knees and other numbers that the torque is not linear in
+
+    Returns:
+        starts, best first
 
     Raises:
         ValueError: nothing of these kinds fits the loop
     """
-    loop, training = _sparse(loop, training) if beside.dear else (loop, training)
+    seen, training = _sparse(loop, training) if beside.dear else (loop, training)
     middle = 0.0 if loop.single_branch else loop.middle
-    half = float(np.abs(loop.twist - middle).max())
-    sought = loop.torque - beside.known(loop, gear)
-    zeros = _zero_columns(loop)
-    libraries = [spring.library(loop.twist - middle, half, gear), beside.library(loop, gear)]
+    half = float(np.abs(seen.twist - middle).max())
+    sought = seen.torque - beside.known(seen, gear)
+    zeros = _zero_columns(seen)
+    libraries = [spring.library(seen.twist - middle, half, gear), beside.library(seen, gear)]
     rows = [replace(library, torques=library.torques[training]) for library in libraries]
-    found = solve(sought[training], rows, zeros[training])
-    level = float(np.abs(loop.torque).max())
-    torque_zero = level * float(found.weights[-1][0] - found.weights[-1][1]) if zeros.size else 0.0
-    return Start(found.put(gear), replace(loop, torque_zero=torque_zero), found.error)
+    answers = solve(sought[training], rows, zeros[training], most)
+    level = float(np.abs(seen.torque).max())
+
+    def begun(answer: Answer) -> Start:
+        torque_zero = level * float(answer.weights[-1][0] - answer.weights[-1][1]) if zeros.size else 0.0
+        return Start(answer.put(gear), replace(loop, torque_zero=torque_zero), answer.error)
+
+    return [begun(answer) for answer in answers]
 
 
 def candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> TorsionCandidate:
-    """A kind of spring and what stands beside it, fitted from the convex problem's answer."""
+    """A kind of spring and what stands beside it, fitted from the convex problem's answers."""
     histories = [loop] if loop.single_branch else [loop, loop.virgin()]
-    best = min((start(each, gear, training, spring, beside) for each in histories), key=lambda answer: answer.error)
-    measured = replace(loop, history=best.loop.history, torque_zero=best.loop.torque_zero)
+    most = max(spring.minima, beside.minima)
+    begun = min((starts(each, gear, training, spring, beside, most) for each in histories), key=lambda found: found[0].error)
     twist_zero = loop.twist_zero if spring.knows_zero or beside.whole_spring else loop.middle
-    return finished(best.gear, replace(measured, twist_zero=twist_zero), training, spring, beside, gear)
+    found = [finished(each.gear, replace(each.loop, twist_zero=twist_zero), training, spring, beside, gear) for each in begun]
+    return min(found, key=lambda each: float(each.fit.rms()[0]))
 
 
 def finished(

@@ -67,8 +67,8 @@ class Answer(ComparedByFields):
         return gear
 
 
-def solve(sought: Array, libraries: Sequence[Library], always: Array) -> Answer:
-    """The choice of each library that explains the torque sought best, with positive weights.
+def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int = 1) -> list[Answer]:
+    """Those choices of each library that explain the torque sought best, with positive weights.
 
     Of given choices the weights are a convex problem, non-negative least squares (Lawson and Hanson 1974), which the triangle
     of one QR decomposition of all columns holds as well as the columns. The libraries are gone through in turn until nothing
@@ -78,50 +78,54 @@ def solve(sought: Array, libraries: Sequence[Library], always: Array) -> Answer:
         sought: torque to explain [N.m], shape (n,)
         libraries: kinds of parts; one choice of each is taken
         always: columns that take part whatever is chosen, shape (n, k)
+        most: how many answers are wanted
+
+    Returns:
+        answers, best first
 
     Raises:
         ValueError: no choice has an answer
 
     >>> x = np.linspace(-1.0, 1.0, 9)
     >>> powers = Library.of([x, x**3, x**5], [Choice((0, 1), lambda gear, w: gear), Choice((0, 2), lambda gear, w: gear)])
-    >>> found = solve(2.0 * x + 3.0 * x**5, [powers], np.empty((9, 0)))
+    >>> found = solve(2.0 * x + 3.0 * x**5, [powers], np.empty((9, 0)))[0]
     >>> found.choices[0].columns, found.weights[0].round(12)
     ((0, 2), array([2., 3.]))
     """
     matrix = np.column_stack([*(library.torques for library in libraries), always])
     size = np.linalg.norm(matrix, axis=0)
     size = np.where(size > 0.0, size, 1.0)
-    triangle: Array = np.linalg.qr(np.column_stack((matrix / size, sought)), mode="r")
+    triangle = np.asarray(np.linalg.qr(np.column_stack((matrix / size, sought)), mode="r"), float)
     firsts = np.cumsum([0, *(library.torques.shape[1] for library in libraries)])
     constant = [*range(firsts[-1], matrix.shape[1])]
 
-    def tried(choices: Sequence[Choice]) -> Answer | None:
+    answers: dict[tuple[int, ...], Answer] = {}
+
+    def tries(numbers: tuple[int, ...]) -> None:
+        choices = [library.choices[number] for library, number in zip(libraries, numbers, strict=True)]
         places = [
             [first + column for column in choice.columns] for first, choice in zip(firsts[:-1].tolist(), choices, strict=True)
         ]
         order = [*chain(*places), *constant]
         found = _positive(triangle[:, order], triangle[:, -1])
-        if found is None:
-            return None
-        ends = np.cumsum([len(each) for each in places])
-        return Answer(tuple(choices), tuple(np.split(found[0] / size[order], ends)), found[1])
+        if found is not None:
+            ends = np.cumsum([len(each) for each in places])
+            answers[numbers] = Answer(tuple(choices), tuple(np.split(found[0] / size[order], ends)), found[1])
 
-    best: Answer | None = None
-    chosen = [library.choices[0] for library in libraries]
+    chosen = (0,) * len(libraries)
     for _ in range(ROUNDS):
-        before = best
+        before = len(answers)
         for place, library in enumerate(libraries):
-            for choice in library.choices:
-                answer = tried([*chosen[:place], choice, *chosen[place + 1 :]])
-                if answer is not None and (best is None or answer.error < best.error):
-                    best = answer
-            if best is not None:
-                chosen = list(best.choices)
-        if best is before or len(libraries) == 1:
+            for number in range(len(library.choices)):
+                numbers = (*chosen[:place], number, *chosen[place + 1 :])
+                if numbers not in answers:
+                    tries(numbers)
+            chosen = min(answers, key=lambda each: answers[each].error, default=chosen)
+        if len(answers) == before:
             break
-    if best is None:
+    if not answers:
         raise ValueError("no spring and hysteresis fits this loop")
-    return best
+    return sorted(answers.values(), key=lambda answer: answer.error)[:most]
 
 
 def _positive(matrix: Array, sought: Array) -> tuple[Array, float] | None:

@@ -80,6 +80,7 @@ class Scaled(Beside):
     """A law whose torque has a factor; all else is tried."""
 
     dear = True
+    minima = 3
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         laws = [*self.units(loop, gear)]
@@ -125,12 +126,13 @@ class Preisach(Scaled):
         return " with Preisach's hysteresis of a power density"
 
     def units(self, loop: TorsionLoop, gear: Gear) -> Iterator[Law]:
-        for limit, exponent in product((0.3, 0.6, 1.0, 1.5, 3.0), (1.3, 2.0, 4.0, 8.0)):
+        for limit, exponent in product((0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.5, 3.0), (1.3, 2.0, 4.0, 8.0)):
             density = hysteresis.PowerDensity(limit=limit * half_span(loop), saturation=1.0, exponent=exponent)
             yield hysteresis.Preisach(density=density)
 
     def put(self, gear: Gear, law: Law, factor: float) -> Gear:
-        assert isinstance(law, hysteresis.Preisach) and isinstance(law.density, hysteresis.PowerDensity)
+        assert isinstance(law, hysteresis.Preisach)
+        assert isinstance(law.density, hysteresis.PowerDensity)
         return gear.replace(hysteresis=law.replace(density=law.density.replace(saturation=factor)))
 
     def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:

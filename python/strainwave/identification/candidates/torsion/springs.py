@@ -29,6 +29,7 @@ class Kind(ABC):
 
     name: str
     words: str
+    minima = 1  # of least squares: from how many starts they are sought
 
     @abstractmethod
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
@@ -138,6 +139,7 @@ class MultiCompliance(Kind):
     """Its torque is linear in a factor of both stiffnesses that divides both hardenings; all else is tried."""
 
     name, words = "multi_compliance", "multi-compliance spring"
+    minima = 3
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         ratio = abs(gear.kinematics.ratio)
@@ -160,6 +162,7 @@ class Backlash(Kind):
     """Play before a spring of another kind."""
 
     law: Kind
+    minima = 3
 
     @property
     def name(self) -> str:  # type: ignore[override]
