@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
-from strainwave.files.tables import unreadable
+from strainwave.files.labels import unreadable
 from strainwave.files.writing import remove_drafts, replacing
 from strainwave.messages import one_line
 

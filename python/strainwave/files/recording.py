@@ -174,7 +174,7 @@ class Recording:
         import pyarrow
         from pyarrow.csv import write_csv
 
-        from strainwave.files.tables import TITLE
+        from strainwave.files.text_table import TITLE
 
         table = pyarrow.table({f"{name} [{unit}]": self[name] for name, unit in self.units.items()})
         with replacing(path) as file:
@@ -217,9 +217,9 @@ class Recording:
     @staticmethod
     def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> Recording:
         """Read a file by its suffix: .csv, .txt, .tsv (see `from_csv`) or .parquet (see `from_parquet`)."""
-        from strainwave.files.tables import is_parquet
+        from strainwave.files.tables import open_table, read_table
 
-        return (Recording.from_parquet if is_parquet(path) else Recording.from_csv)(path, columns, units)
+        return _checked(path, read_table(open_table(path), columns, units))
 
     @staticmethod
     def header(path: str | Path) -> tuple[str, ...]:
@@ -228,9 +228,9 @@ class Recording:
         Raises:
             ValueError: the file cannot be read, or its suffix is not known.
         """
-        from strainwave.files.tables import labels
+        from strainwave.files.tables import open_table
 
-        return tuple(label.name for label in labels(path))
+        return tuple(label.name for label in open_table(path).labels)
 
     @staticmethod
     def from_csv(
@@ -257,9 +257,10 @@ class Recording:
         ...     Recording.from_csv(path, columns={"time": "Time", "speed": "Motor Speed"}, units={"speed": "rpm"})
         <Recording: 2 samples from 0 s to 0.0005 s; time [ms], speed [rpm]>
         """
-        from strainwave.files.tables import read_csv
+        from strainwave.files.tables import read_table
+        from strainwave.files.text_table import open_csv
 
-        return _checked(path, read_csv(path, columns, units))
+        return _checked(path, read_table(open_csv(path), columns, units))
 
     @staticmethod
     def from_parquet(
@@ -269,9 +270,10 @@ class Recording:
 
         Args, Raises: as `from_csv`.
         """
-        from strainwave.files.tables import read_parquet
+        from strainwave.files.parquet_table import open_parquet
+        from strainwave.files.tables import read_table
 
-        return _checked(path, read_parquet(path, columns, units))
+        return _checked(path, read_table(open_parquet(path), columns, units))
 
     def plot(self, names: Sequence[str] | None = None, against: str = "time") -> Figure:
         """Draw columns over another one, in panels below each other on one x axis.

@@ -139,6 +139,19 @@ def _check_finite(values: Values, converted: Values, unit: str, to: str) -> None
         raise ValueError(f"{worst} {unit} is too large a number in {to}")
 
 
+def measures(unit: str, wanted: str) -> bool:
+    """Whether a unit is known and measures what another one does.
+
+    >>> measures("1/min", "rad/s"), measures("N.m", "rad/s"), measures("furlong", "m")
+    (True, False, False)
+    """
+    try:
+        convert(1.0, unit, wanted)
+    except ValueError:
+        return False
+    return True
+
+
 def check(unit: str) -> str:
     """Standard spelling of a unit, which must be known.
 

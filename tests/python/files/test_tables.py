@@ -100,7 +100,11 @@ def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
         ("", " is empty"),
         ("\n# nothing\n\n", " is empty"),
         ("time [s],torque [N.m]\n", " has a header but no rows"),
-        ("# c\n0.0,1.0\n", " line 2 holds numbers; it must name each column and its unit, as in torque [N.m]"),
+        (
+            "# c\n0.0,1.0\n",
+            ' column "column_1" has no unit; write it behind the name, as in torque [N.m], '
+            'or give it with --unit column_1=UNIT (in Python units={"column_1": "UNIT"})',
+        ),
         ("time [s],torque [N.m]\n0,1\n1,abc\n", ' line 3, column "torque": "abc" is not a number'),
         ("time [s],torque [N.m]\n0,\n", f' line 2, column "torque": {EMPTY}'),
         ("# c\n\ntime [s],torque [N.m]\n0,1\n# c\n1,nan\n", ' line 6, column "torque": nan is not finite'),

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Literal
 
 from strainwave import arguments
+from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
-from strainwave.files.tables import Label, labels
-from strainwave.files.units import convert
+from strainwave.files.tables import open_table
+from strainwave.files.units import convert, measures
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Kind = Literal["friction", "torsion", "log"]
@@ -73,7 +74,7 @@ def read_measurement(
     <Recording: 2 samples; speed [1/min], torque [N.m]>
     ('Room',)
     """
-    present = labels(path)
+    present = _labels(path)
     found = _found(kind, path, present, columns)
     _check_needed(kind, path, present, found)
     if extra := (units or {}).keys() - found.keys():
@@ -104,7 +105,7 @@ def read_measurements(
     named, given = dict(columns or {}), dict(units or {})
     own_columns = {kind: columns_in(kind, path, named) for kind, path in files.items()}
     own_units = {
-        kind: {name: given[name] for name in given.keys() & _found(kind, path, labels(path), own_columns[kind]).keys()}
+        kind: {name: given[name] for name in given.keys() & _found(kind, path, _labels(path), own_columns[kind]).keys()}
         for kind, path in files.items()
     }
     for name in named.keys() - {name for own in own_columns.values() for name in own}:
@@ -116,7 +117,7 @@ def read_measurements(
 
 def columns_in(kind: Kind, path: str | Path, columns: Mapping[str, str]) -> dict[str, str]:
     """Those columns that a measurement of this kind can have, and the file has."""
-    there = {text for label in labels(path) for text in (label.text, label.name)}
+    there = {text for label in _labels(path) for text in (label.text, label.name)}
     return {name: columns[name] for name in columns.keys() & COLUMNS[kind].keys() if columns[name] in there}
 
 
@@ -129,9 +130,13 @@ def unused_columns(kind: Kind, path: str | Path, columns: Mapping[str, str] | No
     Raises:
         ValueError: the file cannot be read, or has no column of a name that `columns` gives
     """
-    present = labels(path)
+    present = _labels(path)
     used = {name_in_file for name, name_in_file in _found(kind, path, present, columns).items() if name not in NOT_FITTED}
     return tuple(label.name for label in present if not used & {label.text, label.name})
+
+
+def _labels(path: str | Path) -> Sequence[Label]:
+    return open_table(path).labels
 
 
 def _found(kind: Kind, path: str | Path, present: Sequence[Label], columns: Mapping[str, str] | None) -> dict[str, str]:
@@ -204,22 +209,14 @@ def _likeness(name: str, name_in_file: str) -> float:
 def _stated_unit(label: Label, wanted: Units) -> str | None:
     """The unit that a header states, behind the name or as its last word, if it measures what is wanted."""
     for unit in (label.unit, re.split(r"[\s_]", label.name)[-1]):
-        if unit is not None and any(_measures(unit, each) for each in wanted):
+        if unit is not None and any(measures(unit, each) for each in wanted):
             return unit
     return None
 
 
-def _measures(unit: str, wanted: str) -> bool:
-    try:
-        convert(1.0, unit, wanted)
-    except ValueError:
-        return False
-    return True
-
-
 def _check_unit(kind: Kind, column: str, name: str, unit: str) -> None:
     wanted = COLUMNS[kind][name]
-    if any(_measures(unit, each) for each in wanted):
+    if any(measures(unit, each) for each in wanted):
         return
     remedy = f"correct its unit, or name another column with {as_option('column', name, 'NAME')}"
     try:

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from strainwave.files.gear_file import at
-from strainwave.files.tables import Label, open_csv
+from strainwave.files.labels import Label
+from strainwave.files.text_table import open_csv
 from strainwave.files.units import convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, quoted

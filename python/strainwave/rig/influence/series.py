@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.files.tables import open_csv
+from strainwave.files.text_table import open_csv
 from strainwave.files.units import convert
 from strainwave.messages import listed, quoted
 from strainwave.rig.analysis.analysis import analyse

@@ -1,0 +1,135 @@
+"""What files call their columns, and which of them are to be read, with their units."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.files.units import check as check_unit
+from strainwave.messages import as_option, listed, one_line, quoted
+
+Content = Literal["numbers", "dates", "other"]  # of a column
+
+
+class Label(NamedTuple):
+    """What a file calls a column: its text, and what this says of name and unit."""
+
+    text: str
+    name: str
+    unit: str | None
+
+
+class Source(NamedTuple):
+    """A column to read: where it stands, its name in the file and in the recording, and its unit."""
+
+    position: int
+    label: str
+    name: str
+    unit: str
+
+
+def label_of(text: str) -> Label:
+    """Split `speed [rad/s]` or `speed (rad/s)`. Round brackets around no unit are a part of the name."""
+    if square := re.fullmatch(r"(.*\S)\s*\[([^\[\]]*)\]", text):
+        return Label(text, square[1], square[2])
+    brackets = re.fullmatch(r"(.*\S)\s*\(((?:[^()]|\([^()]*\))*)\)", text)
+    if brackets and is_unit(brackets[2]):
+        return Label(text, brackets[1], brackets[2])
+    return Label(text, text, None)
+
+
+def is_unit(text: str) -> bool:
+    try:
+        check_unit(text)
+    except ValueError:
+        return False
+    return True
+
+
+def sources_of(
+    file: str, labels: Sequence[Label], columns: Mapping[str, str] | None, units: Mapping[str, str] | None
+) -> list[Source]:
+    """The columns to read, each found in the file and with its unit."""
+    arguments.mapping("columns", {} if columns is None else columns, '{"speed": "Motor Speed"}')
+    arguments.mapping("units", {} if units is None else units, '{"speed": "rpm"}')
+    if columns is None:
+        _check_labels(file, labels)
+        chosen = {label.name: index for index, label in enumerate(labels)}
+    else:
+        chosen = {name: _find(file, labels, wanted) for name, wanted in columns.items()}
+    if not chosen:
+        raise ValueError(f"{file}: no column to read")
+    if extra := (units or {}).keys() - chosen.keys():
+        raise ValueError(f"{file}: units names {quoted(min(extra))}, which is not read; there are {listed(chosen)}")
+    return [
+        Source(index, labels[index].name, name, _unit(file, labels[index], name, (units or {}).get(name)))
+        for name, index in chosen.items()
+    ]
+
+
+def _check_labels(file: str, labels: Sequence[Label]) -> None:
+    names = [label.name for label in labels]
+    for number, name in enumerate(names, start=1):
+        if not name:
+            raise ValueError(f"{file} column {number} has no name; name it, or pick columns with columns={{...}}")
+    for name, count in Counter(names).most_common(1):
+        if count > 1:
+            raise ValueError(f"{file} has {count} columns named {quoted(name)}; names must differ")
+
+
+def places_of(labels: Sequence[Label], wanted: str) -> list[int]:
+    """Where the columns stand that are called so; if none is, the column of this number, counted from 1.
+
+    >>> places_of([Label("t [s]", "t", "s"), Label("q", "q", None)], "q"), places_of([Label("t [s]", "t", "s")], "1")
+    ([1], [0])
+    """
+    found = [i for i, label in enumerate(labels) if label.text == wanted]
+    found = found or [i for i, label in enumerate(labels) if label.name == wanted]
+    if not found and re.fullmatch(r"[1-9]\d{0,5}", wanted, re.ASCII) and int(wanted) <= len(labels):
+        return [int(wanted) - 1]
+    return found
+
+
+def _find(file: str, labels: Sequence[Label], wanted: str) -> int:
+    found = places_of(labels, wanted)
+    if len(found) > 1:
+        raise ValueError(f"{file} has {len(found)} columns named {quoted(wanted)}; names must differ")
+    if not found:
+        raise ValueError(f"{file} has no column {quoted(wanted)}; it has {listed(label.name for label in labels)}")
+    return found[0]
+
+
+def _unit(file: str, label: Label, name: str, given: str | None) -> str:
+    """The unit the file states, or the one given where the file states none that is known."""
+    column = f"{file} column {quoted(label.name)}"
+    if given is not None:
+        if label.unit is not None and is_unit(label.unit) and check_unit(label.unit) != check_unit(given):
+            raise ValueError(f"{column} is in {quoted(label.unit)}, but the unit given for it is {quoted(given)}")
+        return given
+    if label.unit is None:
+        hint = f"write it behind the name, as in torque [N.m], or give it with {as_option('unit', name, 'UNIT')}"
+        raise ValueError(f"{column} has no unit; {hint}")
+    try:
+        return check_unit(label.unit)
+    except ValueError as error:
+        raise ValueError(f"{column}: {error}") from None
+
+
+def unreadable(path: str | Path, error: Exception) -> str:
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error).partition("\n")[0]
+    return one_line(f"{path} cannot be read: {reason}")
+
+
+def seconds_since_first(stamps: NDArray[np.datetime64]) -> NDArray[np.float64]:
+    """Dates as seconds since the first that is written; nan where there is none."""
+    there = stamps[~np.isnat(stamps)]
+    elapsed = stamps - there[0] if there.size else stamps - stamps
+    seconds: NDArray[np.float64] = elapsed / np.timedelta64(1, "s")
+    return seconds

@@ -1,0 +1,113 @@
+"""Parquet files: what they call their columns, and their numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.labels import Content, Label, Source, label_of, seconds_since_first, unreadable
+from strainwave.messages import one_line, quoted
+
+if TYPE_CHECKING:
+    import pyarrow
+
+Array = NDArray[np.float64]
+
+
+def open_parquet(path: str | Path) -> ParquetTable:
+    """The schema of a Parquet file."""
+    import pyarrow
+    from pyarrow.parquet import read_schema
+
+    file = Path(path)
+    try:
+        schema = read_schema(file)
+        title = (schema.metadata or {}).get(b"title", b"").decode()
+        labels = [_label(field) for field in schema]
+    except (OSError, pyarrow.ArrowException, UnicodeError) as error:
+        raise ValueError(unreadable(path, error)) from None
+    return ParquetTable(one_line(str(path)), title, labels, file, schema)
+
+
+@dataclass(frozen=True)
+class ParquetTable:
+    """A Parquet file whose columns are still on the disk."""
+
+    file: str
+    title: str
+    labels: Sequence[Label]
+    path: Path
+    schema: pyarrow.Schema
+
+    @property
+    def contents(self) -> list[Content]:
+        return [_content(field.type) for field in self.schema]
+
+    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+        """The columns wanted, which must be numbers."""
+        table = self._read(sources)
+        return {source.name: self._numbers(table, source.position) for source in sources}
+
+    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+        """The columns wanted, nan where nothing is written, dates as seconds; and what was left out."""
+        table = self._read(sources)
+        dates = {source.position for source in sources if self.contents[source.position] == "dates"}
+        return {
+            source.name: _seconds(table, self.schema.field(source.position))
+            if source.position in dates
+            else self._numbers(table, source.position)
+            for source in sources
+        }, []
+
+    def place(self, row: int) -> str:
+        return f"row {row}"
+
+    def _read(self, sources: Sequence[Source]) -> pyarrow.Table:
+        import pyarrow
+        from pyarrow.parquet import ParquetFile
+
+        wanted = [self.schema.field(source.position).name for source in sources]
+        try:
+            with ParquetFile(self.path, page_checksum_verification=True) as opened:
+                return opened.read(columns=wanted, use_threads=False)  # threads: apache/arrow#34314
+        except (OSError, pyarrow.ArrowException, UnicodeError) as error:
+            raise ValueError(unreadable(self.path, error)) from None
+
+    def _numbers(self, table: pyarrow.Table, position: int) -> Array:
+        import pyarrow
+
+        field = self.schema.field(position)
+        column = f"{self.file} column {quoted(field.name)}"
+        if _content(field.type) != "numbers":
+            raise ValueError(f"{column} holds {one_line(str(field.type))}, not numbers")
+        try:
+            values: Array = table.column(field.name).cast(pyarrow.float64()).to_numpy()
+        except pyarrow.ArrowInvalid as error:
+            raise ValueError(f"{column}: {one_line(str(error))}") from None
+        return values
+
+
+def _label(field: pyarrow.Field) -> Label:
+    unit = (field.metadata or {}).get(b"unit")
+    return label_of(field.name) if unit is None else Label(field.name, field.name, unit.decode())
+
+
+def _content(kind: pyarrow.DataType) -> Content:
+    import pyarrow
+
+    if pyarrow.types.is_floating(kind) or pyarrow.types.is_integer(kind):
+        return "numbers"
+    return "dates" if pyarrow.types.is_timestamp(kind) else "other"
+
+
+def _seconds(table: pyarrow.Table, field: pyarrow.Field) -> Array:
+    """Time stamps as seconds since the first one."""
+    import pyarrow
+
+    whole = table.column(field.name).cast(pyarrow.timestamp("ns", field.type.tz)).to_numpy()
+    return seconds_since_first(whole)

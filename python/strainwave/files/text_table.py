@@ -1,0 +1,308 @@
+"""Text tables: their header, where they have one, and their numbers, or where they have none."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.labels import Content, Label, Source, label_of, seconds_since_first, unreadable
+from strainwave.messages import one_line, quoted
+
+if TYPE_CHECKING:
+    import pyarrow
+
+Array = NDArray[np.float64]
+
+TITLE = "# title: "
+
+# Sign, digits, one decimal mark (group 1), exponent.
+_NUMBER = re.compile(r"[+-]?(?=[.,]?\d)\d*([.,]?)\d*(?:[eE][+-]?\d+)?", re.ASCII)
+
+
+_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
+NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
+_SEEN = 1000  # rows that tell what a column holds
+
+_LONGEST_LABEL = 1000  # characters of a header cell: a bound for the work that a text from outside can cause
+
+_BLOCK = 2**20  # bytes that Arrow reads at a time; a line must fit into one
+
+
+def open_csv(path: str | Path) -> CsvTable:
+    """The header of a text table, and its rows as they stand; without a header the columns are column_1, column_2 …"""
+    file = one_line(str(path))
+    try:
+        data = Path(path).read_bytes()
+    except (OSError, UnicodeError) as error:
+        raise ValueError(unreadable(path, error)) from None
+    data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
+    title = re.match(TITLE.encode() + rb"([^\n]*)", data)
+    comment = re.match(rb"(?:(?:#[^\n]*| *)\n)*?#([^\n]*)\n(?!#)", data)
+    data = _blank_comments(data)
+    header = re.match(rb"\n*([^\n]+)(?:\n+([^\n]+))?", data)
+    if not header:
+        raise ValueError(f"{file} is empty")
+    line = 1 + data.count(b"\n", 0, header.start(1))
+    first, second = header[1].decode(), (header[2] or b"").decode()
+    delimiter = _delimiter(first, second)
+    if delimiter == " ":
+        data = re.sub(rb"(?m) +", b" ", re.sub(rb"(?m)^ +| +$", b"", data))
+        header = re.match(rb"\n*([^\n]+)", data)
+        assert header is not None
+        first = re.sub(r" (?=[\[(])", "", header[1].decode())
+    labels = _labels(f"{file} line {line}", first, delimiter)
+    begins = header.end(1)
+    if all(_NUMBER.fullmatch(label.text) for label in labels):
+        begins = header.start(1)
+        labels = _labels_above(comment, len(labels), delimiter) or [
+            Label(f"column_{number}", f"column_{number}", None) for number in range(1, len(labels) + 1)
+        ]
+    body = memoryview(data)[begins:]
+    if not re.search(rb"[^\n]", body):
+        raise ValueError(f"{file} has a header but no rows")
+    return CsvTable(file, title[1].decode() if title else "", delimiter, labels, body, line)
+
+
+def _checked_text(file: str, data: bytes) -> bytes:
+    """The text, with `\\n` at the end of each line, whatever ended it."""
+    try:
+        if not data.isascii():
+            data.decode()
+    except UnicodeDecodeError as error:
+        line = 1 + len(re.findall(rb"\r\n?|\n", data[: error.start]))
+        raise ValueError(f"{file} line {line} is not UTF-8: byte {error.start} is 0x{data[error.start]:02x}") from None
+    if b"\0" in data:
+        raise ValueError(f"{file} holds a zero byte at {data.index(0)}, which no text does; save it as UTF-8, not as UTF-16")
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
+
+
+def _blank_comments(data: bytes) -> bytes:
+    """Empty the lines that hold a comment or spaces; line numbers stay."""
+    if data[:1] in (b"#", b" ") or b"\n#" in data or b"\n " in data:
+        return re.sub(rb"(?m)^(?:#.*| +)$", b"", data)
+    return data
+
+
+def _delimiter(header: str, row: str) -> str:
+    """A tab outside quotes delimits before a semicolon, a semicolon before a comma, and blanks where there is none of them."""
+    bare = re.sub(r'"[^"]*"', "", header.strip())
+    if found := next((mark for mark in "\t;," if mark in bare), None):
+        return found
+    cells = row.split() if row else header.split()
+    names = re.sub(r" +(?=[\[(])", "", header).split()
+    apart = len(cells) > 1 and len(names) == len(cells) and all(_NUMBER.fullmatch(cell) for cell in cells)
+    return " " if apart and '"' not in header else ","
+
+
+def _labels(place: str, text: str, delimiter: str) -> list[Label]:
+    try:
+        cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=True, strict=True))
+    except csv.Error as error:
+        raise ValueError(f"{place}: the header cannot be read: {one_line(str(error))}") from None
+    for cell in cells:
+        if len(cell) > _LONGEST_LABEL:
+            raise ValueError(f"{place}: {quoted(cell)} has {len(cell)} characters; a header cell has at most {_LONGEST_LABEL}")
+    return [label_of(cell.strip()) for cell in cells]
+
+
+def _labels_above(comment: re.Match[bytes] | None, count: int, delimiter: str) -> list[Label] | None:
+    """The names that a comment right above the first row gives to its columns, as programs write them that know no header."""
+    if comment is None or len(comment[1]) > _LONGEST_LABEL or comment[0].startswith(TITLE.encode()):
+        return None
+    text = re.sub(r"\s+(?=[\[(])", "", comment[1].decode().strip())
+    names = [each.strip() for each in (text.split() if delimiter == " " else text.split(delimiter))]
+    if len(names) != count or not all(names) or any(_NUMBER.fullmatch(name) for name in names):
+        return None
+    return [label_of(name) for name in names]
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """A text table whose rows are still text; `line` is the line its header stands in, `file` how messages call it."""
+
+    file: str
+    title: str
+    delimiter: str
+    labels: Sequence[Label]
+    body: memoryview
+    line: int
+
+    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+        """The columns wanted; a cell that is no number is refused with its place."""
+        import pyarrow
+
+        self._check_quotes()
+        for mark in "." if self.delimiter == "," else ".,":
+            try:
+                return self._parse(sources, mark)
+            except pyarrow.ArrowInvalid as error:
+                reason = f": {one_line(str(error))}"
+        raise ValueError(f"{self.file}{self._fault(sources) or reason}")
+
+    @property
+    def contents(self) -> list[Content]:
+        """What the first rows hold, where anything is written in them."""
+        seen: list[list[str]] = [[] for _ in self.labels]
+        for line, text in islice(self._rows(), _SEEN):
+            for cells, cell in zip(seen, self._cells(line, text), strict=False):
+                cells.append(cell.strip(" \t"))
+        return [_content([cell for cell in cells if cell not in NOTHING]) for cells in seen]
+
+    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+        """The columns wanted, nan where nothing is written, dates as seconds since the first; and what was left out.
+
+        A last row that ends too early is left out: its writer was stopped.
+        """
+        import pyarrow
+
+        whole, remarks = self._without_torn_end()
+        contents = self.contents
+        dates = [source for source in sources if contents[source.position] == "dates"]
+        whole._check_quotes()
+        for mark in "." if self.delimiter == "," else ".,":
+            try:
+                return whole._parse(sources, mark, NOTHING, dates), remarks
+            except pyarrow.ArrowInvalid as error:
+                reason = f": {one_line(str(error))}"
+        numbers = [source for source in sources if source not in dates]
+        raise ValueError(f"{self.file}{whole._fault(numbers, NOTHING) or reason}")
+
+    def _without_torn_end(self) -> tuple[CsvTable, list[str]]:
+        """This table without its last row, if that has fewer cells than the header, and the others have not."""
+        text = self.body.tobytes().rstrip(b"\n")
+        start = text.rfind(b"\n") + 1
+        before = text[text.rfind(b"\n", 0, max(start - 1, 0)) + 1 : max(start - 1, 0)]
+        line = self.line + text.count(b"\n")
+        torn = text[start:].decode()
+        if not before or len(self._cells(line, torn)) >= len(self.labels) > 1:
+            return self, []
+        if len(self._cells(line - 1, before.decode())) != len(self.labels) or len(self.labels) == 1:
+            return self, []
+        remark = f"its last row, line {line}, ends too early and is left out: {quoted(torn)}"
+        return replace(self, body=self.body[:start]), [remark]
+
+    def texts(self) -> Iterator[tuple[int, list[str]]]:
+        """Line and cells of each row, as they stand; a row with another number of cells than the header is refused."""
+        self._check_quotes()
+        for line, text in self._rows():
+            if len(cells := self._cells(line, text)) != len(self.labels):
+                raise ValueError(f"{self.file} line {line}: {self._miscounted(cells)}")
+            yield line, [cell.strip(" \t") for cell in cells]
+
+    def place(self, row: int) -> str:
+        """Where a row of numbers stands in the file."""
+        line, _ = next(islice(self._rows(), row, None))
+        return f"line {line}"
+
+    def _check_quotes(self) -> None:
+        """A cell whose quotes do not close before its end would swallow what follows it, rows too."""
+        if fault := _quotation_fault(self.body, self.delimiter):
+            line = self.line + self.body[:fault].tobytes().count(b"\n")
+            raise ValueError(f"{self.file} line {line}: a quoted cell must end with its quote, on the same line")
+
+    def _parse(
+        self, sources: Sequence[Source], decimal_mark: str, nothing: Sequence[str] = (), dates: Sequence[Source] = ()
+    ) -> dict[str, Array]:
+        """The columns as Arrow reads them: nan for what means nothing, seconds for dates."""
+        import pyarrow
+        from pyarrow import csv as arrow_csv
+
+        keys = {source.name: str(source.position) for source in sources}  # labels may occur twice, positions cannot
+        table = arrow_csv.read_csv(
+            pyarrow.BufferReader(pyarrow.py_buffer(self.body)),
+            read_options=arrow_csv.ReadOptions(
+                use_threads=False,  # which the process may end before, and abort: apache/arrow#34314
+                block_size=_BLOCK,
+                column_names=[str(i) for i in range(len(self.labels))],
+            ),
+            parse_options=arrow_csv.ParseOptions(delimiter=self.delimiter),
+            convert_options=arrow_csv.ConvertOptions(
+                include_columns=sorted(set(keys.values())),
+                column_types=dict.fromkeys(keys.values(), pyarrow.float64())
+                | {str(source.position): self._date_type(source) for source in dates},
+                null_values=list(nothing),
+                decimal_point=decimal_mark,
+            ),
+        )
+        seconds = {source.name for source in dates}
+        found = {name: table.column(key).to_numpy() for name, key in keys.items()}
+        return {name: seconds_since_first(values) if name in seconds else values for name, values in found.items()}
+
+    def _date_type(self, source: Source) -> pyarrow.DataType:
+        """A time stamp with the zone, if the first one has one."""
+        import pyarrow
+
+        cells = (self._cells(line, text)[source.position].strip(" \t") for line, text in islice(self._rows(), _SEEN))
+        written = next(cell for cell in cells if cell not in NOTHING)
+        return pyarrow.timestamp("ns", "UTC" if re.search(r"(?:Z|[+-]\d\d:?\d\d)$", written) else None)
+
+    def _fault(self, sources: Sequence[Source], nothing: Sequence[str] = ()) -> str | None:
+        """The first row or cell that cannot be read."""
+        marks = "." if self.delimiter == "," else ".,"
+        for line, text in self._rows():
+            if (length := len(text.encode())) > _BLOCK:
+                return f" line {line} has {length} bytes; at most {_BLOCK} can be read"
+            cells = self._cells(line, text)
+            if len(cells) != len(self.labels):
+                return f" line {line}: {self._miscounted(cells)}"
+            for source in sources:
+                cell = cells[source.position].strip(" \t")
+                number = _NUMBER.fullmatch(cell)
+                if cell in nothing:
+                    continue
+                if not number or number[1] not in marks:
+                    return f" line {line}, column {quoted(source.label)}: {_not_a_number(cell, marks)}"
+                marks = number[1] or marks
+        return None
+
+    def _miscounted(self, cells: Sequence[str]) -> str:
+        return f"the number of cells is {len(cells)}; the header has {len(self.labels)}"
+
+    def _rows(self) -> Iterator[tuple[int, str]]:
+        """Line and text of each row, one at a time: slow, but it knows where it is."""
+        lines = io.TextIOWrapper(io.BytesIO(self.body), encoding="utf-8", newline="\n")
+        for line, text in enumerate(lines, start=self.line):
+            if text != "\n":
+                yield line, text.removesuffix("\n")
+
+    def _cells(self, line: int, text: str) -> list[str]:
+        if '"' not in text:
+            return text.split(self.delimiter)
+        try:
+            return next(csv.reader([text], delimiter=self.delimiter))
+        except csv.Error as error:
+            raise ValueError(f"{self.file} line {line}: {one_line(str(error))}") from None
+
+
+def _content(cells: Sequence[str]) -> Content:
+    if cells and all(_NUMBER.fullmatch(cell) for cell in cells):
+        return "numbers"
+    return "dates" if cells and all(_DATE.fullmatch(cell) for cell in cells) else "other"
+
+
+def _quotation_fault(text: memoryview, delimiter: str) -> int | None:
+    """Where the first cell begins that a quote opens, and none closes before the next delimiter or line end."""
+    end = rb"[\n%b]" % re.escape(delimiter.encode())
+    other = rb"[^\n%b]" % re.escape(delimiter.encode())
+    quoted_cell = rb'(?<!%b)"(?:[^"\n]++|"")*+"(?=%b|\Z)' % (other, end)
+    within_a_cell = rb'(?<=%b)"' % other
+    sound = re.match(rb'(?:[^"]++|%b|%b)*+' % (quoted_cell, within_a_cell), text)
+    return None if sound is None or sound.end() == len(text) else sound.end()
+
+
+def _not_a_number(text: str, marks: str) -> str:
+    if not text:
+        return "the cell is empty; every cell must hold a number"
+    if _NUMBER.fullmatch(text) and len(marks) == 1:
+        return f'{quoted(text)} is not a number with the decimal mark "{marks}"'
+    return f"{quoted(text)} is not a number"

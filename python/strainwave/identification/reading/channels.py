@@ -1,0 +1,61 @@
+"""The channels of each kind of measurement: their names here, what they measure, and on which side."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from strainwave.identification.reading.names import UNITS, Quantity, Side
+
+Kind = Literal["friction", "torsion", "log", "encoders", "effort"]
+
+KINDS: dict[Kind, str] = {
+    "friction": "a table of steady friction",
+    "torsion": "a torsion loop or branch",
+    "log": "a log of a drive",
+    "encoders": "a record of two encoders",
+    "effort": "torque or current without the motion that made it, or at one constant speed",
+}
+
+
+class Channel(NamedTuple):
+    """What a channel measures, and of which shaft; whether it is a reference instead."""
+
+    quantity: Quantity
+    side: Side | None = None
+    commanded: bool = False
+
+    @property
+    def unit(self) -> str:
+        return UNITS[self.quantity]
+
+
+# All channels by name. Where a name says no side, the kind of measurement or the other columns do.
+CHANNELS: dict[str, Channel] = {
+    "time": Channel("time"),
+    "command": Channel("angle", commanded=True),
+    "voltage": Channel("voltage"),
+    "current": Channel("current"),
+    "input_torque": Channel("torque", "input"),  # of the motor, at its shaft
+    "joint_torque": Channel("torque", "output"),  # of the motor, counted at the output; or of a sensor there
+    "input_angle": Channel("angle", "input"),
+    "input_speed": Channel("speed", "input"),
+    "output_angle": Channel("angle", "output"),
+    "output_speed": Channel("speed", "output"),
+    "twist": Channel("twist"),
+    "temperature": Channel("temperature"),
+    "torque": Channel("torque"),
+    "speed": Channel("speed"),
+    "angle": Channel("angle"),
+}
+ALIASES = {"position": "angle", "output_torque": "joint_torque", "velocity": "speed"}  # other names that people may give
+
+OF_KIND: dict[Kind, tuple[str, ...]] = {
+    "friction": ("speed", "torque", "current", "temperature"),
+    "torsion": ("twist", "torque", "input_angle", "input_torque"),
+    "log": (
+        *("time", "command", "voltage", "current", "input_torque", "joint_torque"),
+        *("input_angle", "input_speed", "output_angle", "output_speed", "temperature"),
+    ),
+    "encoders": ("time", "input_angle", "output_angle", "temperature"),
+    "effort": ("time", "angle", "speed", "torque", "current", "voltage", "temperature"),
+}

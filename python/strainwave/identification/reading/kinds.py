@@ -1,0 +1,254 @@
+"""What a set of columns is: a table of friction, a torsion loop, a log, two encoders, or torque without motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from strainwave.identification.experiments.branches import turning_points
+from strainwave.identification.reading.channels import KINDS, Kind
+from strainwave.identification.reading.columns import Column
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Quantity, Side
+from strainwave.identification.reading.sides import (
+    UndecidedError,
+    pair,
+    side_of_motion,
+    side_of_table,
+    side_of_torque,
+    sides_of_angles,
+)
+from strainwave.messages import as_option, listed
+
+STEADY = 0.05  # of the mean speed: a record whose speed varies by less has one speed
+SAMPLED = 500  # rows: no table of friction measured point by point has more
+FEWEST = 4  # rows of a torsion loop or branch
+TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted, it turns
+LOADED = 0.9  # correlation of torque and angle of a spring, which an alternating torque has
+
+
+@dataclass(frozen=True)
+class Found:
+    """What the columns are.
+
+    Args:
+        kind: of measurement
+        columns: by the names of the channels
+        side: where it was measured, if that is one
+        why: what tells so
+        remarks: what was assumed
+    """
+
+    kind: Kind
+    columns: dict[str, Column]
+    side: Side | None
+    why: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+
+
+def kind_of(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    """What the columns are, and which channel each is.
+
+    Raises:
+        UndecidedError: it cannot be told, or they are no measurement
+    """
+    return _READERS[mapping.kind or _kind(columns, mapping)](columns, mapping)
+
+
+def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
+    has = {column.channel.quantity for column in columns if not column.channel.commanded}
+    timed = "time" in has or "rate" in mapping.constants
+    effort, motion = has & {"torque", "current"}, has & {"angle", "speed"}
+    commanded = any(column.channel.commanded for column in columns)
+    if "twist" in has and "torque" in has:
+        return "torsion"
+    if timed and motion and (effort or "voltage" in has or commanded):
+        return "log"
+    if len(_measured(columns, "angle")) > 1 and not effort:
+        return "encoders"
+    if "speed" in has and effort and "angle" not in has:
+        return _table_or_samples(columns)
+    if "angle" in has and "torque" in has:
+        return _loop_or_turns(columns)
+    if effort:
+        return "effort"
+    raise UndecidedError(
+        f"it holds {_names(columns)}, which is no measurement that is known: friction needs speed and torque; torsion twist "
+        "and torque, or input_angle and input_torque; a log time, a motion, and a current, torque, voltage or command; "
+        f"encoders two angles. If it holds more, name it, as with {as_option('column', 'torque', 'NAME')}"
+    )
+
+
+def _table_or_samples(columns: Sequence[Column]) -> Kind:
+    """Whether speeds and torques without time are a table, or samples at one speed."""
+    speed = _measured(columns, "speed")[0].si
+    if len(speed) > 20 and np.ptp(speed) < STEADY * abs(speed.mean()):
+        return "effort"
+    if len(speed) > SAMPLED:
+        raise UndecidedError(
+            f"it holds {len(speed)} rows of speed and torque without time: samples of a log if their rate is known, with "
+            "--constant rate=HZ, or a table of friction, with --kind friction"
+        )
+    return "friction"
+
+
+def _loop_or_turns(columns: Sequence[Column]) -> Kind:
+    """Whether angles and torques without time are a torsion loop, or torque while the shaft turns on."""
+    angle, torque = _measured(columns, "angle")[0].si, _measured(columns, "torque")[0].si
+    turns_on = abs(angle[-1] - angle[0]) > TURNING and not turning_points(angle)
+    if not turns_on:
+        return "torsion"
+    is_spring = torque.min() < 0.0 < torque.max() and np.corrcoef(angle, torque)[0, 1] ** 2 > LOADED**2
+    return "torsion" if is_spring else "effort"
+
+
+def _friction(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    effort: Quantity = "torque" if _measured(columns, "torque") else "current"
+    speed, torque = _needed(columns, "speed", "friction"), _needed(columns, effort, "friction")
+    side, told = side_of_table(speed, torque, mapping.side)
+    order = "in no order of time" if (np.diff(speed.si) < 0.0).any() else "in the order of speed"
+    why = f"its columns are {pair(speed, torque)}, {len(speed.si)} rows {order}: {KINDS['friction']}"
+    found = {"speed": speed, effort: torque, **_temperature(columns)}
+    return Found("friction", found, side, (why, told))
+
+
+def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    torque = _needed(columns, "torque", "torsion")
+    twists = _measured(columns, "twist")
+    angle = twists[0] if twists else _needed(columns, "angle", "torsion")
+    if (rows := len(angle.si)) < FEWEST:
+        raise UndecidedError(f"{rows} rows of {pair(angle, torque)} are no torsion loop or branch; {FEWEST} are the least")
+    side = mapping.side or torque.channel.side or angle.channel.side or ("output" if twists else None)
+    if side is None:
+        raise UndecidedError(
+            f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated: --side input if the motor was turned "
+            "with the output locked, --side output if the output was loaded with the input locked"
+        )
+    turns = len(turning_points(angle.si))
+    shape = f"a torsion loop with {turns} reversals" if turns else "one branch of a torsion loop, which tells stiffness only"
+    why = f"its columns are {pair(angle, torque)}, {rows} rows: {shape}"
+    inside = "the friction of the input is in the loop"
+    if side == "input":
+        told = f"angle and torque are those of the input: the output was locked, and {inside}"
+        return Found("torsion", {"input_angle": angle, "input_torque": torque}, side, (why, told))
+    counted = f"{torque.name} is a torque of the motor, counted at the output: {inside}"
+    remarks = (counted,) if "motor" in torque.name.casefold() else ()
+    told = "twist and torque are those of the output"
+    return Found("torsion", {"twist": angle, "torque": torque}, side, (why, told), remarks)
+
+
+def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    found: dict[str, Column] = {}
+    why = [f"it holds {_names(columns)}, {len(columns[0].si)} rows in time: {KINDS['log']}"]
+    for column in _measured(columns, "time"):
+        _put(found, "time", column)
+    motions = [*_measured(columns, "angle"), *_measured(columns, "speed")]
+    if not motions:
+        raise UndecidedError(f"a log needs an angle or a speed; it holds {_names(columns)}")
+    torques, currents, remarks = _efforts(columns)
+    sides: set[Side] = set()
+    for column in motions:
+        side, told = side_of_motion(column, (*motions, *torques), found.get("time"), mapping.side)
+        sides.add(side)
+        why.append(told)
+        _put(found, f"{side}_{column.channel.quantity}", column)
+    for column in torques:
+        side, told = side_of_torque(column, sides, mapping.side)
+        why.append(told)
+        _put(found, "joint_torque" if side == "output" else "input_torque", column)
+    for name, some in (
+        ("current", currents),
+        ("voltage", _measured(columns, "voltage") or _commanded(columns, "voltage")),
+        ("command", _commanded(columns, "angle")),
+        ("temperature", _measured(columns, "temperature")),
+    ):
+        for column in some:
+            _put(found, name, column)
+    return Found("log", found, next(iter(sides)) if len(sides) == 1 else None, tuple(filter(None, why)), remarks)
+
+
+def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tuple[str, ...]]:
+    """Torques and currents of a log: those measured; where there are none, those commanded."""
+    torques, currents = _measured(columns, "torque"), _measured(columns, "current")
+    if torques or currents:
+        return torques, currents, ()
+    torques, currents = _commanded(columns, "torque"), _commanded(columns, "current")
+    remarks = (f"{column.name} is a reference, and is taken for what the drive did" for column in (*torques, *currents))
+    return torques, currents, tuple(remarks)
+
+
+def _encoders(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    angles = _measured(columns, "angle")
+    if len(angles) != 2:
+        raise UndecidedError(f"a record of two encoders needs two angles; it holds {_names(columns)}")
+    fast, slow, told = sides_of_angles(angles)
+    why = f"its columns are {pair(*angles)}, and no torque or current: {KINDS['encoders']}"
+    times = {"time": column for column in _measured(columns, "time")[:1]}  # noqa: B035 - one or none
+    found = {**times, "input_angle": fast, "output_angle": slow, **_temperature(columns)}
+    return Found("encoders", found, None, tuple(filter(None, (why, told))))
+
+
+def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    found: dict[str, Column] = {}
+    for column in columns:
+        if not column.channel.commanded:
+            _put(found, column.channel.quantity, column)
+    effort = listed(found[name].name for name in ("torque", "current") if name in found)
+    side = mapping.side or next((column.channel.side for column in found.values() if column.channel.side), None)
+    if "speed" in found:
+        why = f"it holds {effort} at one speed, {found['speed'].si.mean():.4g} rad/s: a record at constant speed"
+    elif "angle" in found:
+        turns = np.ptp(found["angle"].si) / (2.0 * np.pi)
+        why = f"it holds {effort} over {found['angle'].name}, which runs on for {turns:.3g} turns"
+    else:
+        why = f"it holds {effort} and nothing that moves: the output was locked, or the speed was constant and is not stated"
+    return Found("effort", found, side, (why,))
+
+
+_READERS: dict[Kind, Callable[[Sequence[Column], FileMapping], Found]] = {
+    "friction": _friction,
+    "torsion": _torsion,
+    "log": _log,
+    "encoders": _encoders,
+    "effort": _effort,
+}
+
+
+def _measured(columns: Sequence[Column], quantity: Quantity) -> list[Column]:
+    return [column for column in columns if column.channel.quantity == quantity and not column.channel.commanded]
+
+
+def _commanded(columns: Sequence[Column], quantity: Quantity) -> list[Column]:
+    return [column for column in columns if column.channel.quantity == quantity and column.channel.commanded]
+
+
+def _needed(columns: Sequence[Column], quantity: Quantity, kind: Kind) -> Column:
+    """The one column of a quantity, or the one that a person named."""
+    found = _measured(columns, quantity)
+    found = found if len(found) == 1 else [column for column in found if column.said] or found
+    if len(found) == 1:
+        return found[0]
+    lack = f"each of {_names(found)} may be it" if found else f"it holds {_names(columns)}"
+    raise UndecidedError(
+        f"{KINDS[kind]} needs one {quantity}: {lack}; say which, as with {as_option('column', quantity, 'NAME')}"
+    )
+
+
+def _temperature(columns: Sequence[Column]) -> dict[str, Column]:
+    found = _measured(columns, "temperature")
+    return {"temperature": found[0]} if found else {}
+
+
+def _put(found: dict[str, Column], name: str, column: Column) -> None:
+    """A channel; a column that a person named goes before one whose name tells."""
+    if name not in found or (column.said and not found[name].said):
+        found[name] = column
+    elif column.said or not found[name].said:
+        ways = as_option("column", name, column.name)
+        raise UndecidedError(f"{pair(found[name], column)} may both be the {name}; say which, as with {ways}")
+
+
+def _names(columns: Sequence[Column]) -> str:
+    return listed(column.name for column in columns)

@@ -1,0 +1,212 @@
+"""What the name of a column means: quantity, side, reference or not, and of which joint, in the spellings that logs have."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import lru_cache
+from typing import Literal, NamedTuple
+
+from strainwave.files.labels import Label
+from strainwave.files.units import measures
+
+Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature"]
+Side = Literal["input", "output"]
+
+UNITS: dict[Quantity, str] = {
+    "time": "s", "angle": "rad", "twist": "rad", "speed": "rad/s", "torque": "N.m", "current": "A", "voltage": "V",
+    "temperature": "K",
+}  # fmt: skip
+
+# English, German, French, Spanish and Italian words without accents, and the symbols of textbooks and robots.
+QUANTITIES: dict[Quantity, tuple[str, ...]] = {
+    "time": ("time", "t", "zeit", "zeitstempel", "timestamp", "stamp", "temps", "tiempo", "tempo", "clock", "elapsed"),
+    "angle": (
+        "angle", "position", "positions", "pos", "q", "theta", "th", "phi", "winkel", "lage", "drehwinkel", "stellung",
+        "angulo", "angolo", "posicion", "posizione", "encoder", "enc", "geber", "drehgeber", "resolver", "rotation",
+    ),
+    "twist": ("twist", "torsion", "deflection", "verdrehung", "verdrillung", "deflexion", "torsione", "windup"),
+    "speed": (
+        "speed", "velocity", "velocities", "vel", "omega", "w", "dq", "qd", "qdot", "qp", "dtheta", "thetadot", "dpos", "dphi",
+        "drehzahl", "geschwindigkeit", "winkelgeschwindigkeit", "vitesse", "velocidad", "velocita", "rpm", "n",
+        "drehgeschwindigkeit",
+    ),
+    "torque": (
+        "torque", "torques", "tau", "trq", "moment", "drehmoment", "reibmoment", "reibung", "friction", "couple", "effort",
+        "efforts", "frottement", "par", "coppia", "momento", "m",
+    ),
+    "current": ("current", "currents", "strom", "i", "iq", "isq", "courant", "corriente", "corrente", "amps", "amperage"),
+    "voltage": ("voltage", "volt", "spannung", "u", "v", "uq", "voltaje", "tensione", "vir"),
+    "temperature": ("temperature", "temp", "temperatur", "temperatura", "temper"),
+}  # fmt: skip
+SIDES: dict[Side, tuple[str, ...]] = {
+    "input": (
+        "motor", "mot", "moteur", "motore", "input", "in", "eingang", "eingangs", "antrieb", "antriebs", "rotor", "wave", "wg",
+        "entree", "entrada", "ingresso", "primary",
+    ),
+    "output": (
+        "output", "out", "joint", "jnt", "link", "load", "ausgang", "ausgangs", "abtrieb", "abtriebs", "gelenk", "last", "arm",
+        "flexspline", "articulation", "sortie", "salida", "uscita", "secondary", "j",
+    ),
+}  # fmt: skip
+COMMANDED = (
+    "command", "commanded", "cmd", "reference", "ref", "setpoint", "set", "target", "desired", "des", "demand", "soll",
+    "sollwert", "vorgabe", "consigne", "consigna", "riferimento", "referencia", "goal",
+)  # fmt: skip
+NEUTRAL = (
+    "actual", "act", "measured", "meas", "mes", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data", "sensor",
+    "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the", "rig", "fb",
+    "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady",
+)  # fmt: skip
+# What is no measurement of the quantity beside it.
+OTHERS = (
+    "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
+    "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "estimate", "tool", "gripper", "power", "id",
+)  # fmt: skip
+# Symbols that say two things at once.
+SYMBOLS: dict[str, tuple[str, ...]] = {
+    "qm": ("q", "motor"), "qg": ("q", "reference"), "ql": ("q", "link"), "qdes": ("q", "desired"), "qref": ("q", "reference"),
+    "dqdes": ("dq", "desired"), "taudes": ("tau", "desired"), "dqm": ("dq", "motor"), "dql": ("dq", "link"),
+    "taum": ("tau", "motor"), "tauj": ("tau", "joint"), "thetam": ("theta", "motor"), "thetal": ("theta", "link"),
+    "im": ("i", "motor"), "um": ("u", "motor"),
+}  # fmt: skip
+BEHIND = {"m": "motor", "l": "link", "d": "desired", "r": "reference", "a": "actual"}  # an index behind a symbol, as in q_m
+ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts")  # what robots call their joints' channels
+
+_QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTITIES.items() for word in words}
+_SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for word in words}
+_VOCABULARY = {
+    word for word in (*_QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS) if len(word) > 2 and word not in ("par", "the")
+}
+_GREEK = str.maketrans({"ω": "omega", "τ": "tau", "θ": "theta", "φ": "phi"})
+_UNIT_NAMES = {"rpm": "rpm"}  # words that say quantity and unit
+
+
+class Meaning(NamedTuple):
+    """What a column seems to hold.
+
+    Args:
+        quantity: what is measured
+        side: of which shaft, where the name says so
+        commanded: whether it is a reference and no measurement
+        which: what else the name says, as the number of a joint; empty where nothing
+        unit: the unit that the name states, as it is written there
+        robot: whether this is the word of robots for a joint's channel
+    """
+
+    quantity: Quantity
+    side: Side | None = None
+    commanded: bool = False
+    which: str = ""
+    unit: str | None = None
+    robot: bool = False
+
+
+def meaning(label: Label) -> Meaning | None:
+    """What a column seems to hold; None where its name and unit say nothing that is known.
+
+    >>> meaning(Label("Motordrehzahl [U/min]", "Motordrehzahl", "U/min"))
+    Meaning(quantity='speed', side='input', commanded=False, which='', unit='U/min', robot=False)
+    >>> meaning(Label("joint3_pos_deg", "joint3_pos_deg", None))
+    Meaning(quantity='angle', side='output', commanded=False, which='3', unit='deg', robot=False)
+    """
+    name, unit = (label.name, label.unit) if label.unit else _without_unit(label.name)
+    words = words_of(name)
+    if any(word in OTHERS for word in words):
+        return None
+    quantity, at = _quantity(words, unit)
+    if quantity is None and unit is None:  # the name may be nothing but a unit, as in rpm,Nm
+        quantity = next((each for each, standard in UNITS.items() if measures(name, standard)), None)
+        unit = name if quantity else None
+    if quantity is None and any(word in COMMANDED for word in words):
+        quantity = "angle"
+    if quantity is None:
+        return None
+    words = [BEHIND.get(word, word) if place > at else word for place, word in enumerate(words)]
+    sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
+    if unit == name:
+        return Meaning(quantity, unit=unit)
+    return Meaning(
+        quantity,
+        sides[-1] if sides else None,
+        any(word in COMMANDED for word in words),
+        _which(words),
+        unit or next((_UNIT_NAMES[word] for word in words if word in _UNIT_NAMES), None),
+        at >= 0 and words[at] in ROBOT,
+    )
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name, in small letters without accents; compounds are taken apart.
+
+    >>> words_of("Sollposition Achse2"), words_of("motorCurrent"), words_of("theta_m")
+    (['soll', 'position', 'achse', '2'], ['motor', 'current'], ['theta', 'm'])
+    """
+    plain = unicodedata.normalize(
+        "NFKD", name.replace("ω", "omega").replace("τ", "tau").replace("θ", "theta").replace("φ", "phi")
+    )
+    plain = "".join(each for each in plain if not unicodedata.combining(each))
+    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain)
+    found: list[str] = []
+    for word in re.findall(r"[a-z]+|\d+", apart.casefold()):
+        found += SYMBOLS.get(word) or _parts(word) or [word]
+    return (
+        [f"{found[0]}q", *found[2:]] if found[1:2] == ["q"] and found[0] in ("i", "u") else found
+    )  # of a field-oriented drive
+
+
+@lru_cache(maxsize=4096)
+def _parts(word: str) -> list[str] | None:
+    """A compound in words that are known; None where it is none."""
+    if word in _VOCABULARY:
+        return [word]
+    if len(word) > 60:  # a bound for the work that a text from outside can cause
+        return None
+    for end in range(len(word) - 3, 2, -1):
+        if word[:end] in _VOCABULARY and (rest := _parts(word[end:]) or _parts(word[end:].removeprefix("s"))):
+            return [word[:end], *rest]
+    return None
+
+
+def _without_unit(name: str) -> tuple[str, str | None]:
+    """A name whose last word, or last two, are a unit of what the others name: `torque_Nm`, `speed rad/s`, `vel_deg_s`."""
+    words = re.split(r"[_\s.]+", name.strip())
+    for count in (2, 1):
+        if len(words) <= count:
+            continue
+        unit = "/".join(words[-count:])
+        rest = "_".join(words[:-count])
+        quantity, _ = _quantity(words_of(rest), None)
+        if quantity is not None and measures(unit, UNITS[quantity]):
+            return rest, unit
+    return name, None
+
+
+def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]:
+    """What the words name, and the place of the word that says so; where none does, what the unit measures, and -1."""
+    places = [place for place, word in enumerate(words) if word in _QUANTITY_OF]
+    beside = {*_SIDE_OF, *COMMANDED, *NEUTRAL}
+    places = [place for place in places if len(words[place]) > 1] or [
+        place for place in places[:1] if all(word in beside for word in words[:place])
+    ]  # a letter behind another word is an index
+    named = [(_QUANTITY_OF[words[place]], place) for place in places]
+    twist = [each for each in named if each[0] == "twist"]
+    torque = [each for each in named if each[0] == "torque"]
+    found = (twist if not torque else []) or named[::-1]
+    if unit is not None:
+        found = [each for each in found if measures(unit, UNITS[each[0]])] or found
+        fits = [quantity for quantity, standard in UNITS.items() if quantity != "twist" and measures(unit, standard)]
+        if fits and not (found and measures(unit, UNITS[found[0][0]])):
+            return (fits[0], places[-1] if places else -1) if not found or len(words[found[0][1]]) == 1 else (None, -1)
+    if not found:
+        return None, -1
+    quantity, place = found[0]
+    if quantity == "angle" and "dot" in words[place + 1 :]:
+        quantity = "speed"
+    return quantity, place
+
+
+def _which(words: list[str]) -> str:
+    numbers = [str(int(word)) for word in words if word.isdigit()]
+    known = {*_QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, "dot"}
+    return ".".join(numbers) or "_".join(word for word in words if word not in known)

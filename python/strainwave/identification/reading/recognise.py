@@ -1,0 +1,130 @@
+"""What a file of measurements seems to be, and why: its kind, the channel in each column, side, units and time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.recording import Recording
+from strainwave.files.tables import OpenTable, open_table
+from strainwave.identification.reading.channels import Kind
+from strainwave.identification.reading.clock import Clock, clock, regular
+from strainwave.identification.reading.columns import Column, chosen, read
+from strainwave.identification.reading.kinds import kind_of
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.sides import UndecidedError
+from strainwave.messages import listed, one_line
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """What a file seems to be.
+
+    Args:
+        path: the file
+        kind: `friction`, `torsion`, `log`, `encoders` (two angles) or `effort` (torque or current alone, or at one speed)
+        columns: the name in the file of each channel
+        units: the unit of each channel in the file, stated there, given or assumed
+        side: where it was measured, if at one side
+        why: what tells so, in short sentences
+        remarks: what was left out, assumed or put right, in short sentences
+        constants: numbers that a person gave with it
+        recording: the channels in SI units, with the names of `CHANNELS`
+    """
+
+    path: Path
+    kind: Kind
+    columns: Mapping[str, str]
+    units: Mapping[str, str]
+    side: Side | None
+    why: tuple[str, ...]
+    remarks: tuple[str, ...]
+    constants: Mapping[str, float]
+    recording: Recording
+
+
+def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognised:
+    """Reads a file of measurements, and tells what it seems to be.
+
+    Args:
+        path: a file of any of the formats of `Recording.read`
+        mapping: what a person says of it
+
+    Raises:
+        ValueError: the file cannot be read, or what it is cannot be told; says which option settles it
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "table.csv")
+    ...     _ = path.write_text("Drehzahl [1/min];Reibmoment [mNm]\\n600;41,2\\n-600;-40,9\\n1200;50,1\\n")
+    ...     found = recognise(path)
+    >>> found.kind, found.side, found.recording
+    ('friction', 'input', <Recording: 3 samples; speed [rad/s], torque [N.m]>)
+    >>> print(*found.why, sep="\\n")
+    its columns are Drehzahl and Reibmoment, 3 rows in no order of time: a table of steady friction
+    it reaches 1200 1/min, so it was measured at the input
+    """
+    said = mapping or FileMapping()
+    table = open_table(path)
+    columns, remarks = read(table, chosen(table, said), said)
+    try:
+        found = kind_of(columns, said)
+    except UndecidedError as undecided:
+        raise ValueError(one_line(f"{table.file}: {undecided}")) from None
+    remarks += found.remarks
+    series = {name: said.signs.get(name, 1) * column.si for name, column in found.columns.items()}
+    if found.kind in ("log", "encoders", "effort"):
+        try:
+            when = _clock(series, said, found.kind)
+        except ValueError as error:
+            raise ValueError(one_line(f"{table.file}: {error}")) from None
+        if when is not None:
+            remarks += when.remarks
+            series = {"time": when.time} | {name: values[when.rows] for name, values in series.items() if name != "time"}
+    remarks += _unused(table, found.columns)
+    return Recognised(
+        Path(path),
+        found.kind,
+        {name: column.name for name, column in found.columns.items()},
+        {name: column.unit or "1" for name, column in found.columns.items()},
+        found.side,
+        found.why,
+        tuple(remarks),
+        dict(said.constants),
+        Recording(series, {name: _unit(name, found.columns) for name in series}, table.title),
+    )
+
+
+def _unit(name: str, columns: Mapping[str, Column]) -> str:
+    if name == "time":
+        return "s"
+    column = columns[name]
+    return column.channel.unit if not (name == "command" and column.unit and column.unit.endswith("V")) else "V"
+
+
+def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock | None:
+    """The time of the rows; none where nothing tells it and nothing needs it."""
+    count = len(next(iter(series.values())))
+    if "time" in series:
+        others = [values for name, values in series.items() if name != "time"]
+        repeated = np.zeros(count, bool)
+        repeated[1:] = np.all([np.diff(values) == 0.0 for values in others], axis=0)
+        return clock(series["time"], repeated)
+    if "rate" in said.constants:
+        return regular(count, said.constants["rate"])
+    if kind == "log":
+        raise ValueError("it has no time; give the rate of its rows, with --constant rate=HZ")
+    return None
+
+
+def _unused(table: OpenTable, columns: Mapping[str, Column]) -> Sequence[str]:
+    used = {column.position for column in columns.values()}
+    names = [label.name for place, label in enumerate(table.labels) if place not in used and label.name]
+    return [f"columns not used: {listed(names)}"] if names else []

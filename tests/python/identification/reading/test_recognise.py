@@ -1,0 +1,158 @@
+"""What files seem to be: files in the shapes that people have, each with what it must be taken for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import Recognised, recognise
+
+RPM = np.array([-3000.0, 10.0, 100.0, 1000.0, -10.0, 200.0])
+TIME = np.arange(400) * 0.002
+SWING = np.sin(2.0 * np.pi * TIME)
+
+
+def write(path: Path, header: str, *series: object, delimiter: str = ",", form: str = "%.9g") -> Path:
+    rows = np.column_stack([np.asarray(each, float) for each in series])
+    np.savetxt(path, rows, fmt=form, delimiter=delimiter, header=header, comments="")
+    return path
+
+
+def told(found: Recognised) -> str:
+    return " | ".join((*found.why, *found.remarks))
+
+
+@pytest.mark.parametrize(
+    ("header", "side"),
+    [
+        ("rpm,torque [mNm]", "input"),
+        ("Drehzahl [1/min],Reibmoment [mNm]", "input"),
+        ("speed (U/min),moment (mNm)", "input"),
+        ("n_rpm,torque_mNm", "input"),
+        ("vitesse [rpm],couple [mN.m]", "input"),
+        ("joint speed [rpm],joint torque [mNm]", "output"),
+        ("dq [rpm],tau [mNm]", "output"),
+        ("Abtriebsdrehzahl [1/min],Abtriebsmoment [mNm]", "output"),
+    ],
+)
+def test_a_table_of_friction(tmp_path: Path, header: str, side: str) -> None:
+    found = recognise(write(tmp_path / "table.csv", header, RPM, np.sign(RPM) * 50.0))
+    assert (found.kind, found.side) == ("friction", side)
+    assert found.recording["speed"] == pytest.approx(RPM * np.pi / 30.0)
+    assert found.recording["torque"] == pytest.approx(np.sign(RPM) * 0.05)
+    assert "a table of steady friction" in told(found)
+
+
+def test_a_slow_table_says_that_its_side_is_taken(tmp_path: Path) -> None:
+    path = write(tmp_path / "table.csv", "speed [rpm],torque [N.m]", RPM / 100.0, np.sign(RPM))
+    assert recognise(path).side == "input"
+    assert "--side output" in told(recognise(path))
+    assert recognise(path, FileMapping(side="output")).side == "output"
+
+
+@pytest.mark.parametrize(
+    ("header", "names", "side"),
+    [
+        ("twist [arcmin],torque [N.m]", ("twist", "torque"), "output"),
+        ("input_angle [deg],input_torque [N.m]", ("input_angle", "input_torque"), "input"),
+        ("Antriebswinkel [deg],Antriebsmoment [Nm]", ("input_angle", "input_torque"), "input"),
+        ("deflection_deg,motor_torque_output_side_Nm", ("twist", "torque"), "output"),
+        ("Torsionswinkel [arcmin],Drehmoment [Nm]", ("twist", "torque"), "output"),
+    ],
+)
+def test_a_torsion_loop_and_a_branch(tmp_path: Path, header: str, names: tuple[str, ...], side: str) -> None:
+    loop = recognise(write(tmp_path / "loop.csv", header, SWING + 0.01 * np.sign(np.gradient(SWING)), SWING))
+    assert (loop.kind, loop.side, loop.recording.names) == ("torsion", side, names)
+    assert "a torsion loop with 2 reversals" in told(loop)
+    branch = recognise(write(tmp_path / "branch.csv", header, SWING[:100], SWING[:100]))
+    assert (branch.kind, branch.side) == ("torsion", side)
+    assert "one branch" in told(branch)
+
+
+@pytest.mark.parametrize(
+    ("header", "names"),
+    [
+        ("time [s],command [deg],current [A],motor_angle [deg]", ("time", "command", "current", "input_angle")),
+        ("Zeit [s],Sollposition [°],Motorstrom [A],Motorwinkel [°]", ("time", "command", "current", "input_angle")),
+        ("t [s],q_des [deg],i_q [A],theta_m [deg]", ("time", "command", "current", "input_angle")),
+        ("t,q [deg],dq [deg/s],tau [N.m]", ("time", "output_angle", "output_speed", "joint_torque")),
+        ("time,position,velocity,effort", ("time", "output_angle", "output_speed", "joint_torque")),
+        ("stamp_s,joint1_pos_deg,joint1_vel_deg_s,joint1_current_A", ("time", "output_angle", "output_speed", "current")),
+        ("t,u [V],theta_m [rad],theta_l [rad]", ("time", "voltage", "input_angle", "output_angle")),
+    ],
+)
+def test_a_log(tmp_path: Path, header: str, names: tuple[str, ...]) -> None:
+    found = recognise(write(tmp_path / "log.csv", header, TIME, SWING, np.gradient(SWING, TIME), np.cos(TIME)))
+    assert found.kind == "log"
+    assert set(found.recording.names) == set(names)
+
+
+def test_two_angles_without_torque_are_those_of_two_encoders(tmp_path: Path) -> None:
+    for header in ("motor [deg],link [deg]", "time [s],motor_encoder [deg],output_encoder [deg]"):
+        series = [TIME, 80.0 * SWING, SWING][-len(header.split(",")) :]
+        found = recognise(write(tmp_path / "encoders.csv", header, *series))
+        assert found.kind == "encoders"
+        assert np.ptp(found.recording["input_angle"]) == pytest.approx(80.0 * np.ptp(found.recording["output_angle"]))
+
+
+def test_torque_alone_or_at_one_speed(tmp_path: Path) -> None:
+    alone = recognise(write(tmp_path / "torque.csv", "time_s,torque_Nm", TIME, SWING))
+    assert alone.kind == "effort"
+    assert "nothing that moves" in told(alone)
+    steady = recognise(write(tmp_path / "steady.csv", "speed [rpm],torque [Nm]", 30.0 + 0.01 * SWING, SWING))
+    assert steady.kind == "effort"
+    assert "at one speed, 3.142 rad/s" in told(steady)
+
+
+def test_crooked_rows_are_left_out_and_told(tmp_path: Path) -> None:
+    """A loop at 100 Hz whose stamps scatter, with rows that are repeated and rows that are missing."""
+    random = np.random.default_rng(1)
+    kept = np.sort(np.r_[np.delete(np.arange(1000), [200, 201, 500]), 100, 700])
+    stamps = np.round(0.01 * kept + 6e-4 * random.standard_normal(len(kept)), 4)
+    values = np.sin(0.01 * kept)
+    found = recognise(write(tmp_path / "log.csv", "t,q,dq,tau", stamps, values, np.cos(0.01 * kept), values))
+    assert len(found.recording) == 997
+    assert found.recording["output_angle"] == pytest.approx(np.sin(found.recording.time), abs=2e-4)
+    words = told(found)
+    assert "2 rows repeat the row before and are left out" in words
+    assert "3 rows are missing at 2 places, the longest: a gap of 0.03 s after 1.9" in words
+    assert "about a clock of 100 Hz" in words
+
+
+def test_several_joints_are_asked_for(tmp_path: Path) -> None:
+    header = "time [s],q1 [rad],q2 [rad],tau1 [N.m],tau2 [N.m]"
+    path = write(tmp_path / "arm.csv", header, TIME, SWING, 2.0 * SWING, SWING, 3.0 * SWING)
+    with pytest.raises(ValueError, match=r"it holds 2 joints, as q1, q2; say which with --joint 1, or name columns"):
+        recognise(path)
+    second = recognise(path, FileMapping(joint="2"))
+    assert second.columns == {"time": "time", "output_angle": "q2", "joint_torque": "tau2"}
+    assert recognise(path, FileMapping(columns={"output_angle": "q1", "joint_torque": "5"})).columns["joint_torque"] == "tau2"
+    with pytest.raises(ValueError, match=r'has no joint "3"; it has 1, 2$'):
+        recognise(path, FileMapping(joint="3"))
+
+
+def test_a_side_that_cannot_be_told_is_asked_for(tmp_path: Path) -> None:
+    path = write(tmp_path / "log.csv", "time [s],position [rad],current [A]", TIME, SWING, SWING)
+    with pytest.raises(ValueError, match=r"say it with --column input_angle=position or --column output_angle=position, or"):
+        recognise(path)
+    assert "output_angle" in recognise(path, FileMapping(side="output")).recording
+    assert "input_angle" in recognise(path, FileMapping(columns={"input_angle": "position"})).recording
+    fast = write(tmp_path / "fast.csv", "time [s],position [rad],current [A]", TIME, 300.0 * TIME, SWING)
+    assert "reaches 2865 1/min, so it is at the input" in told(recognise(fast))
+
+
+def test_rows_without_time_need_a_rate(tmp_path: Path) -> None:
+    path = write(tmp_path / "log.csv", "q [rad],dq [rad/s],tau [N.m]", SWING, SWING, SWING)
+    found = recognise(path, FileMapping(constants={"rate": 500.0}))
+    assert found.recording.time == pytest.approx(TIME)
+
+
+def test_what_is_no_measurement_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(
+        ValueError, match=r"no name of a column tells what it measures: foo, bar; say it, as with --column speed=foo"
+    ):
+        recognise(write(tmp_path / "a.csv", "foo,bar", [1.0, 2.0], [1.0, 2.0]))
+    with pytest.raises(ValueError, match=r"it holds time, position, which is no measurement that is known"):
+        recognise(write(tmp_path / "b.csv", "time [s],position [rad]", TIME, SWING))
