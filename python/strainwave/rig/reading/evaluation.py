@@ -128,12 +128,12 @@ def budgets(found: Evaluation, analysis: LoopAnalysis) -> list[Budget]:
     reading = float(np.median(loop.angle_sigma))
     torque = torque_budget(found.rig, peak)
     turned = float(np.ptp(loop.angle))
-    made = [torque, replace(angle_budget(found.rig, turned, reading, torque), quantity="angle")]
+    made = [torque, replace(angle_budget(found.rig, turned, reading, torque, loop.angle_scale), quantity="angle")]
     for each in analysis.stiffnesses:
         sign = 1.0 if each.name.startswith("positive") else -1.0
         low, high = sorted(sign * value for value in each.segments.stretch(each.segments.softest))
         within = [step for step in steps if low - 1e-9 <= sign * torque_of_masses(found.rig, step) <= high + 1e-9]
         if len({step.mass_positive - step.mass_negative for step in within}) > 1 and each.softest.value > 0.0:
-            budget = stiffness_budget(found.rig, each.softest.value, within, angle_sigma=reading)
+            budget = stiffness_budget(found.rig, each.softest.value, within, angle_sigma=reading, angle_scale=loop.angle_scale)
             made.append(replace(budget, quantity=f"stiffness, {each.name.replace('_', ' ')}"))
     return made

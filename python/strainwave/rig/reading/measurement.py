@@ -207,6 +207,7 @@ def _loops_of(place: Place, steps: Sequence[Step], rig: Rig, pictures: Sequence[
         name=_called(place),
         angle_sigma=sigma if np.any(sigma > 0.0) else scatter(own[rows], torque.shaft[rows]),
         torque_sigma=torque.sigma[rows],
+        angle_scale=_scale(steps, pictures),
         torque_scale=torque.scale,
         friction_sigma=torque.friction_sigma,
         compliance_sigma=rig.compliance.sigma,
@@ -230,6 +231,12 @@ def _readings(steps: Sequence[Step], pictures: Sequence[Angles]) -> tuple[list[R
     found = [seen.get(step.image or "", nothing if step.angle is None else Reading(step.angle, 0.0)) for step in steps]
     references = {angles.reference for angles in pictures}
     return found, next((row for row, step in enumerate(steps) if step.image in references), None)
+
+
+def _scale(steps: Sequence[Step], pictures: Sequence[Angles]) -> float:
+    """What the angles of the photographs share, relative to the angle."""
+    named = {step.image for step in steps}
+    return max((each.scale for each in pictures if named & {frame.name for frame in each.useful}), default=0.0)
 
 
 def _series(values: Sequence[float | None]) -> list[float] | None:
@@ -259,6 +266,8 @@ def _remarks(
             yield f"step {step.number} is left out: {f'{step.image}: ' if step.image else ''}{reason}"
         if step.mass_positive and step.mass_negative:
             yield f"step {step.number} has masses on both pairs of pans; their difference counts"
+    if any(step.torque is not None for step in steps):
+        yield "the torque was measured, and steps.csv tells no error of it: intervals leave out those of the sensor"
     for before, after in pairwise(steps):
         if after.number > before.number + 1:
             yield f"between steps {before.number} and {after.number} the numbers leave {after.number - before.number - 1} out"

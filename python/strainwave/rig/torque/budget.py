@@ -16,6 +16,7 @@ from strainwave.rig.bench.steps import Step
 from strainwave.rig.torque.torque import arm, mass_sigma, shared_errors
 
 Kind = Literal["random", "common", "by direction"]
+PICTURE = "shape of the picture, as the markers tell it"
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,7 @@ def torque_budget(rig: Rig, step: Step, angle: float = 0.0) -> Budget:
     return Budget.of("torque", torque, "N.m", contributions)
 
 
-def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget) -> Budget:
+def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget, scale: float = 0.0) -> Budget:
     r"""Uncertainty of the gear's own angle, the reading less what coupling and frame turn: theta - C T.
 
     Args:
@@ -129,6 +130,7 @@ def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget) -> Budget
         angle: of the gear [rad]
         sigma: standard deviation of a reading [rad]
         torque: the budget of the torque there
+        scale: standard deviation of what all readings share, relative to the angle, as `Angles.scale` [1]
 
     >>> from strainwave.rig import load, Step
     >>> rig = load("couple-rig")
@@ -137,18 +139,21 @@ def angle_budget(rig: Rig, angle: float, sigma: float, torque: Budget) -> Budget
     """
     contributions = [
         Contribution("reading of the markers", sigma, "random"),
+        Contribution(PICTURE, abs(angle) * scale, "common"),
         Contribution("compliance of coupling and frame", abs(torque.value) * rig.compliance.sigma, "common"),
         Contribution("torque, through the compliance", rig.compliance.value * torque.sigma, "common"),
     ]
     return Budget.of("angle", angle, "rad", contributions)
 
 
-def stiffness_budget(rig: Rig, stiffness: float, steps: Sequence[Step], angle: float = 0.0, angle_sigma: float = 0.0) -> Budget:
+def stiffness_budget(
+    rig: Rig, stiffness: float, steps: Sequence[Step], angle: float = 0.0, angle_sigma: float = 0.0, angle_scale: float = 0.0
+) -> Budget:
     r"""Uncertainty of the stiffness of a straight regime, by regression of angle on torque over its steps.
 
     .. math:: \frac{\sigma_k^2}{k^2} = (1 + k C)^2 \left( \frac{\sigma_T^2}{S^2} + \frac{\sigma_g^2}{g^2}
               + \frac{\sigma_r^2}{r^2} + \overline{\tan^2} \, \sigma_t^2 + \sigma_s^2 \right)
-              + \frac{k^2 \sigma_\theta^2}{S^2} + k^2 \sigma_C^2,
+              + \frac{k^2 \sigma_\theta^2}{S^2} + k^2 \sigma_C^2 + \sigma_q^2,
               \quad S^2 = \sum (T_i - \bar T)^2
 
     An error of the torque counts 1 + k C times, as C T is taken out of a reading to which the true torque has led.
@@ -159,6 +164,7 @@ def stiffness_budget(rig: Rig, stiffness: float, steps: Sequence[Step], angle: f
         steps: of the regime, two or more at different torques
         angle: reading of the angle in the middle of the regime [rad]
         angle_sigma: standard deviation of a reading [rad]
+        angle_scale: of what all readings share, relative to the angle, as `Angles.scale` [1]
 
     Raises:
         ValueError: the steps have one torque, the stiffness is not positive, or as `arm`
@@ -187,6 +193,7 @@ def stiffness_budget(rig: Rig, stiffness: float, steps: Sequence[Step], angle: f
     lever = 1.0 + stiffness * rig.compliance.value
     relative = [dataclasses.replace(each, sigma=lever * each.sigma) for each in of_torque]
     relative.append(Contribution("reading of the markers", stiffness * angle_sigma / spread, "random"))
+    relative.append(Contribution(PICTURE, angle_scale, "common"))
     relative.append(Contribution("compliance of coupling and frame", stiffness * rig.compliance.sigma, "common"))
     scaled = [Contribution(each.name, stiffness * each.sigma, each.kind) for each in relative]
     return Budget.of("stiffness", stiffness, "N.m/rad", scaled)

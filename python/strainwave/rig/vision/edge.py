@@ -32,7 +32,7 @@ _FEW = 0.003  # share of the pixels of a side whose leaving out or not does not 
 _PASSES = 5
 _MOVED, _WIDENED = 0.15, 0.06  # px, and of the blur: what the next pass would still change is the square of it
 _ROUND = 12.0  # ratio of variances above which points are an ellipse's: 4e-5 of all circles of 70 points reach it
-_WIDE_ARC = 0.6  # share of the edge that an ellipse needs
+WIDE_ARC = 0.6  # share of the edge that an ellipse needs
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,13 +235,36 @@ def fit_points(x: Array, y: Array, arc: float) -> tuple[Ellipse, Array, float]:
     n = len(x)
     fit = geometric(x, y)
     plain = circle(fit.x, fit.y, fit.radius), fit.covariance[:2, :2], fit.rms
-    if arc < _WIDE_ARC or n < 10:
+    if arc < WIDE_ARC or n < 10:
         return plain
     curve = fit_ellipse(x, y, plain[0])
     rest = float(np.sum(curve.distance(x, y) ** 2))
     if (n * fit.rms**2 - rest) / 2.0 <= _ROUND * rest / (n - 5):
         return plain
     return curve, centre_covariance(curve, x, y) * (rest / (n - 5)), float(np.sqrt(rest / n))
+
+
+def oblong(x: Array, y: Array, curve: Ellipse, residual: float) -> tuple[complex, float]:
+    """How far points of an edge are from round: the share by which one axis is shorter, and where it lies.
+
+    A circle squeezed by e lies e R/2 cos(2 (turn - direction)) inside of the mean circle. Of points that scatter by s, both
+    parts err by s sqrt(2/n), so that a mean over many pictures shows what each by itself does not.
+
+    Args:
+        x, y: of the points, all round [px], shape (n,)
+        curve: through them
+        residual: rms distance of the points from it [px]
+
+    Returns:
+        e exp(2 i direction), the direction from x towards the top of the picture; the standard deviation of both of its parts
+    """
+    turn = np.arctan2(curve.y - y, x - curve.x)
+    reach = np.hypot(x - curve.x, y - curve.y)
+    columns = np.column_stack((np.ones_like(turn), np.cos(turn), np.sin(turn), np.cos(2.0 * turn), np.sin(2.0 * turn)))
+    found = np.linalg.lstsq(columns, reach)[0]
+    n, twice = len(x), 2.0 / float(found[0])
+    sigma = twice * residual * float(np.sqrt(2.0 / max(n - 5, 1)))
+    return complex(-twice * found[3], -twice * found[4]), sigma
 
 
 def _clipped(inside: _Pixels, outside: _Pixels, top: float) -> float:

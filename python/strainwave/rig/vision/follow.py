@@ -38,6 +38,8 @@ class Angles(ComparedByFields):
         sigma: standard deviation of each by itself [rad], same shape; the difference of two angles has the root of the sum
             of both squares, and so has the angle of an image from the reference
         reference: name of the image whose angle is 0
+        scale: standard deviation of what all angles share, relative to the angle [1]: by how much the markers show, or may
+            hide, that the picture is squeezed, by a tilt or by pixels that are not square
         centre: about which the shaft turned [px], x and y, and the rms distance of the markers from their circles;
             None where the turn is too small to tell it
         remarks: what holds for all images and makes the angles doubtful
@@ -47,6 +49,7 @@ class Angles(ComparedByFields):
     angle: Array
     sigma: Array
     reference: str
+    scale: float
     centre: tuple[float, float, float] | None
     remarks: tuple[str, ...] = ()
 
@@ -92,7 +95,11 @@ def follow(
         frames[i] = replace(frames[i], warnings=frames[i].warnings + doubts)
     angle -= angle[told]
     sigma = np.array([sight.sigma for sight in sights])
-    return Angles(tuple(frames), angle, sigma, frames[useful[told]].name, _centre(sights, angle), _askew(sights, frames))
+    shape, shape_sigma = _squeezed(sights)
+    return Angles(
+        tuple(frames), angle, sigma, frames[useful[told]].name, float(np.hypot(abs(shape) / 2.0**0.5, shape_sigma)),
+        _centre(sights, angle), _askew(sights),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,22 +281,40 @@ def camera_seen(frames: Iterable[Frame]) -> Camera:
     Raises:
         ValueError: there is none
     """
-    pairs = [frame.markers for frame in frames if frame.markers is not None]
-    if not pairs:
+    sights = [_Sight.of(frame, PERFECT) for frame in frames if frame.markers is not None]
+    if not sights:
         raise ValueError("no image shows both markers, which would tell the tilt of the camera")
-    shape = np.array([np.mean([(1.0 - each.ratio) * np.exp(2j * each.short_direction) for each in pair]) for pair in pairs])
-    turned = np.array([np.exp(2j * np.arctan2(one.y - other.y, other.x - one.x)) for one, other in pairs])
-    columns = np.column_stack((np.ones(len(pairs)), turned))
-    wide = len(pairs) > 2 and np.ptp(np.unwrap(np.angle(turned))) > 2.0 * _WIDE_TURN
-    mean = np.linalg.lstsq(columns, shape)[0][0] if wide else np.mean(shape)
-    tilt, direction = float(np.arccos(max(1.0 - abs(mean), 0.0))), float(0.5 * np.angle(mean))
-    source = f"from the shape of the markers in {len(pairs)} images"
+    return _tilted(sights)
+
+
+def _tilted(sights: Sequence[_Sight]) -> Camera:
+    shape, _ = _squeezed(sights)
+    tilt, direction = float(np.arccos(max(1.0 - abs(shape), 0.0))), float(0.5 * np.angle(shape))
+    source = f"from the shape of the markers in {len(sights)} images"
     return Camera(tilt=tilt, tilt_direction=direction, sources={"tilt": source, "tilt_direction": source})
 
 
-def _askew(sights: Sequence[_Sight], frames: Sequence[Frame]) -> tuple[str, ...]:
+def _squeezed(sights: Sequence[_Sight]) -> tuple[complex, float]:
+    r"""How far the picture is squeezed, as `oblong` has it, and the standard deviation of either part.
+
+    A picture squeezed by e turns the directions of its vectors by e/2 sin(2 (direction - shorter axis)): angles are in error by
+    e cos(2 ...) of themselves, in the mean of all directions by e/sqrt(2).
+    """
+    seen = [(marker, sight.vector) for sight in sights for marker in sight.markers if np.isfinite(marker.ratio_sigma)]
+    if not seen:  # of no marker enough to tell
+        return 0j, 0.0
+    shape = np.array([(1.0 - marker.ratio) * np.exp(2j * marker.short_direction) for marker, _ in seen])
+    turned = np.array([np.exp(2j * np.arctan2(up, right)) for _, (right, up) in seen])
+    wide = len(sights) > 2 and np.ptp(np.unwrap(np.angle(turned))) > 2.0 * _WIDE_TURN
+    columns = np.column_stack((np.ones(len(seen)), turned))[:, : 2 if wide else 1]
+    mean = np.linalg.lstsq(columns, shape)[0][0]
+    spread = float(np.linalg.inv(columns.conj().T @ columns)[0, 0].real)
+    return complex(mean), float(np.sqrt(spread * np.mean([marker.ratio_sigma**2 for marker, _ in seen])))
+
+
+def _askew(sights: Sequence[_Sight]) -> tuple[str, ...]:
     """Whether the camera looks at the target at an angle that it does not know of."""
-    seen = camera_seen(frames)
+    seen = _tilted(sights)
     error = 0.5 * (1.0 - np.cos(seen.tilt))
     if error < _LARGE * float(np.median([sight.sigma for sight in sights])):
         return ()

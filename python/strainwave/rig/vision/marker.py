@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +14,7 @@ from strainwave import arguments
 from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.blob import blobs
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, in_picture
-from strainwave.rig.vision.edge import Edge, edge, fit_points
+from strainwave.rig.vision.edge import WIDE_ARC, Edge, edge, fit_points, oblong
 from strainwave.rig.vision.outline import Grey, outline
 
 Array = NDArray[np.float64]
@@ -35,8 +37,10 @@ class Marker:
         blur: standard deviation of the edge's spread [px]
         arc: share of the edge that was seen and used [1]
         dark: whether it is darker than the ground
-        ratio: of the shorter axis to the longer, where the camera is known after its tilt was undone [1]
+        ratio: of the shorter axis to the longer, where the camera is known after its tilt was undone [1]; 1 where less than
+            six tenths of the edge are seen
         short_direction: of the shorter axis, from x towards the top of the image [rad]
+        ratio_sigma: standard deviation of the ratio, along the axes and between them [1]
         clipped: share of the pixels inside or outside of the edge that are at an end of the scale [1]
     """
 
@@ -51,6 +55,7 @@ class Marker:
     dark: bool = True
     ratio: float = 1.0
     short_direction: float = 0.0
+    ratio_sigma: float = inf
     clipped: float = 0.0
 
     @property
@@ -127,12 +132,13 @@ def _is_round(fine: Edge, dark: bool) -> bool:
 def _marker(fine: Edge, camera: Camera, shape: tuple[int, ...], dark: bool) -> Marker:
     curve, covariance = fine.curve, fine.covariance
     x, y, radius = curve.x, curve.y, curve.radius
+    points = np.column_stack((fine.x, fine.y))
     if not changes_nothing(camera):
         size = (shape[0], shape[1])
-        points = flat(np.column_stack((fine.x, fine.y)), camera, size)
+        points = flat(points, camera, size)
         curve, _, _ = fit_points(points[:, 0], points[:, 1], fine.arc)
         (x, y), _ = in_picture(np.array([curve.x, curve.y]), camera, size, np.array([x, y]))
-    longer, shorter = curve.half_axes
+    squeezed, sigma = oblong(points[:, 0], points[:, 1], curve, fine.residual) if fine.arc >= WIDE_ARC else (0j, inf)
     return Marker(
         x=float(x),
         y=float(y),
@@ -143,8 +149,9 @@ def _marker(fine: Edge, camera: Camera, shape: tuple[int, ...], dark: bool) -> M
         blur=fine.blur,
         arc=fine.arc,
         dark=dark,
-        ratio=shorter / longer,
-        short_direction=curve.short_direction,
+        ratio=1.0 - abs(squeezed),
+        short_direction=0.5 * cmath.phase(squeezed),
+        ratio_sigma=sigma,
         clipped=fine.clipped,
     )
 

@@ -22,6 +22,7 @@ from strainwave.rig.reading.measurement import loops, read_test
 from strainwave.rig.reading.recorded import loop_of, read_loop, scatter
 from strainwave.rig.running.plan import plan
 from strainwave.rig.torque.couple import couple
+from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.render import Scene
 from strainwave.rig.virtual.test import simulate_test
 
@@ -110,6 +111,10 @@ def test_steps_without_an_angle_are_told_and_left_out() -> None:
     [
         ({7: {"number": 9}}, "between steps 7 and 9 the numbers leave 1 out"),
         ({3: {"mass_negative": 0.1}}, "step 4 has masses on both pairs of pans; their difference counts"),
+        (
+            {3: {"torque": 0.2}},
+            "the torque was measured, and steps.csv tells no error of it: intervals leave out those of the sensor",
+        ),
         ({3: {"time": 5.0}}, "28 of 29 steps have no time; that of the others is left out"),
     ],
 )
@@ -120,6 +125,21 @@ def test_what_a_reader_must_know_stands_in_the_remarks(change: dict[int, dict[st
     shift = steps[7].number - 8
     steps[8:] = [dataclasses.replace(step, number=step.number + shift) for step in steps[8:]]
     assert remark in loops(steps, RIG)[0].remarks
+
+
+def test_a_measured_torque_has_no_pulleys_before_it_on_either_rig() -> None:
+    """Masses and a sensor tell the same loop: what the virtual rig holds of the masses, the evaluation takes off."""
+    rig = dataclasses.replace(RIG, pulley_torque=Value(0.01), pulley_share=Value(0.03))
+    gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4), friction_input=sw.friction.Coulomb(coulomb=0.05))
+    by_masses = [Step(n, max(m, 0.0), max(-m, 0.0)) for n, m in enumerate(MASSES, start=1)]
+    loading = load_by_steps(gear, rig, by_masses)
+    by_sensor = [Step(step.number, torque=float(torque)) for step, torque in zip(by_masses, loading.shaft, strict=True)]
+    np.testing.assert_allclose(load_by_steps(gear, rig, by_sensor).angle, loading.angle, atol=1e-9)
+    made = []
+    for steps in (by_masses, by_sensor):
+        seen = [dataclasses.replace(step, angle=float(angle)) for step, angle in zip(steps, loading.angle, strict=True)]
+        made.append(loops(seen, rig)[0].torque[1:])  # of the first step, reached from rest, only the sensor knows all
+    np.testing.assert_allclose(made[0], made[1], atol=1e-9)
 
 
 def test_a_step_that_the_pulleys_hold_is_told() -> None:

@@ -58,8 +58,8 @@ def test_the_budget_of_a_torque_is_what_draws_of_its_numbers_show() -> None:
 def test_the_budget_of_an_angle_is_what_draws_of_its_numbers_show() -> None:
     random = np.random.default_rng(2)
     torque = drawn_torques(random, 0.0)[:, -1]
-    seen = 0.1 + 2e-4 * random.standard_normal(DRAWS)
-    budget = angle_budget(RIG, 0.1, 2e-4, torque_budget(RIG, STEPS[-1]))
+    seen = 0.1 * (1.0 + 1e-3 * random.standard_normal(DRAWS)) + 2e-4 * random.standard_normal(DRAWS)
+    budget = angle_budget(RIG, 0.1, 2e-4, torque_budget(RIG, STEPS[-1]), 1e-3)
     assert_as_drawn(budget, seen - drawn(random, RIG.compliance) * torque)
 
 
@@ -68,11 +68,12 @@ def test_the_budget_of_a_stiffness_is_what_regressions_over_draws_show() -> None
     random, angle, stiffness, sigma = np.random.default_rng(3), math.radians(-10.0), 4.5, 3e-4
     true = drawn_torques(random, angle)
     seen = true * (1.0 / stiffness + drawn(random, RIG.compliance))[:, None] + sigma * random.standard_normal(true.shape)
+    seen = seen * (1.0 + 2e-3 * random.standard_normal(DRAWS))[:, None]
     nominal = np.array([torque_budget(RIG, step, angle).value for step in STEPS])
     own = seen - RIG.compliance.value * nominal
     centred = nominal - nominal.mean()
     found = 1.0 / (own @ centred / (centred @ centred))
-    budget = stiffness_budget(RIG, stiffness, STEPS, angle, sigma)
+    budget = stiffness_budget(RIG, stiffness, STEPS, angle, sigma, 2e-3)
     assert_as_drawn(budget, found)
 
 

@@ -353,6 +353,17 @@ def test_a_tilt_that_is_not_known_is_told_by_the_shape_of_the_markers() -> None:
         camera_seen([])
 
 
+@pytest.mark.parametrize("tilt", [0.0, 1.0, 1.5, 2.5])
+def test_what_the_picture_squeezes_is_in_the_scale_of_the_angles(tilt: float) -> None:
+    """A tilt too small to be told is in error by e/2 sin(2 ...), e = 1 - cos(tilt): at most by sqrt(1/2) of what e scales."""
+    camera, degrees = Camera(tilt=np.radians(tilt), tilt_direction=0.4), np.linspace(0.0, 60.0, 13)
+    angles = measure_angles([seen_askew(np.radians(each), f"{each:05.1f}", camera) for each in degrees])
+    squeezed = (1.0 - np.cos(np.radians(tilt))) / np.sqrt(2.0)
+    assert squeezed * 0.7 <= angles.scale <= squeezed * 1.3 + 2.5e-4
+    error = angles.angle[-1] - np.radians(60.0)
+    assert abs(error) < 3.0 * np.hypot(angles.scale * np.radians(60.0), np.sqrt(2.0) * np.median(angles.sigma))
+
+
 def test_a_lens_that_distorts_is_not_taken_for_a_tilt() -> None:
     camera = Camera(radial=(2e-6, 0.0))
     images = [seen_askew(np.radians(each), f"{each:03.0f}", camera) for each in (0.0, 45.0, 90.0, 135.0)]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from strainwave.rig.vision.edge import oblong
 from strainwave.rig.vision.ellipse import Ellipse, centre_covariance, circle, fit_ellipse
 
 Array = NDArray[np.float64]
@@ -71,3 +72,16 @@ def test_the_centre_scatters_as_its_covariance_says() -> None:
 def test_points_on_a_line_are_no_ellipse() -> None:
     with pytest.raises(np.linalg.LinAlgError):
         fit_ellipse(np.linspace(0.0, 10.0, 20), np.zeros(20), circle(5.0, 3.0, 4.0))
+
+
+@settings(max_examples=30, deadline=None)
+@given(squeeze=st.floats(1e-4, 0.05), direction=st.floats(-1.5, 1.5), seed=st.integers(0, 99))
+def test_how_oblong_points_are_is_told_within_its_error(squeeze: float, direction: float, seed: int) -> None:
+    turn, scatter = 2.0 * np.pi * np.arange(72) / 72, 0.03
+    along, across = 40.0 * (1.0 - squeeze) * np.cos(turn), 40.0 * np.sin(turn)
+    x = along * np.cos(direction) - across * np.sin(direction)
+    y = -(along * np.sin(direction) + across * np.cos(direction))
+    x, y = (each + scatter * np.random.default_rng([seed, n]).standard_normal(72) for n, each in enumerate((x, y)))
+    found, sigma = oblong(x, y, circle(0.0, 0.0, 40.0), scatter)
+    assert sigma == pytest.approx(2.0 / 40.0 * scatter * np.sqrt(2.0 / 67.0), rel=0.03)
+    assert abs(found - squeeze * np.exp(2j * direction)) < 5.0 * sigma + squeeze**2
