@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
     from strainwave.files.recording import Recording
     from strainwave.identification.fitting.fit import Fit, fit
+    from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
     from strainwave.identification.twin import Twin, twin
     from strainwave.simulation import scenario
     from strainwave.simulation.controller import Seen, simulate_controlled
@@ -77,6 +78,7 @@ _LAZY = {
     "Run": "simulation.run",
     "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
+    "TransmissionError": "identification.orders.two_encoders",
     "Twin": "identification.twin",
     "bearing_orders": "analysis.orders",
     "catalogue": "files.gear_set",
@@ -100,6 +102,7 @@ _LAZY = {
     "simulate_controlled": "simulation.controller",
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
+    "transmission_error": "identification.orders.two_encoders",
     "twin": "identification.twin",
 }
 
@@ -127,6 +130,7 @@ __all__ = [
     "ScenarioFile",
     "Seen",
     "Sensors",
+    "TransmissionError",
     "Twin",
     "bearing_orders",
     "catalogue",
@@ -164,6 +168,7 @@ __all__ = [
     "stiffness",
     "structure",
     "thermal",
+    "transmission_error",
     "twin",
     "variation",
 ]

@@ -1,0 +1,1 @@
+"""Orders found in measurements: the kinematic error from two encoders, and ripple in torque or current."""

@@ -1,0 +1,166 @@
+"""A shaft that turns, as a recording has it: evenly in time, without wraps, each sample with its direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi, tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
+from strainwave.messages import quoted
+
+Array = NDArray[np.float64]
+
+FEWEST = 64  # samples
+LARGEST_STEP = 0.45 * tau  # between samples of an angle that wraps; beyond it the sense is a guess
+LONGEST_GAP = 8  # samples missing in a row that are filled with a straight line
+JITTER = 0.35  # of a step, by which a time stamp may be off
+REST = 1e-3  # of the fastest speed, below which a shaft counts as resting
+
+
+@dataclass(frozen=True, eq=False)
+class Evenly(ComparedByFields):
+    """Columns of a recording, evenly in time.
+
+    Attributes:
+        columns: by name, as in the recording, shape (n,)
+        measured: where there was a row; elsewhere the columns are straight lines between their neighbours, shape (n,)
+        step: between two samples [s]; 1 without time
+        timed: whether there is a time
+        start: time of the first sample [s]; 0 without time
+        remarks: what was done to the recording, in words
+    """
+
+    columns: dict[str, Array]
+    measured: NDArray[np.bool_]
+    step: float
+    timed: bool
+    start: float
+    remarks: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.measured)
+
+
+def evenly(recording: Recording, names: Sequence[str], rate: float | None = None) -> Evenly:
+    """The named columns, each row at its place in an even time.
+
+    Stamps are rounded to whole steps of their median distance, so that jitter of the stamps does not matter. Where rows are
+    missing for long, the longest stretch without such a gap is taken, and that is said.
+
+    Args:
+        recording: with or without the column `time`
+        names: of the columns wanted
+        rate: samples per second, where there is no time [Hz]
+
+    Raises:
+        ValueError: there are too few rows, the stamps are no even time, or both `time` and `rate` are given
+    """
+    columns = {name: recording[name] for name in names}
+    count = len(recording)
+    if count < FEWEST:
+        raise ValueError(f"the recording has {count} samples; orders need {FEWEST} or more")
+    if "time" not in recording:
+        step = 1.0 if rate is None else 1.0 / rate
+        return Evenly(columns, np.ones(count, dtype=bool), step, rate is not None, 0.0, ())
+    if rate is not None:
+        raise ValueError(f"rate = {rate:g} Hz is given, but the recording has a time; leave one of them out")
+    return _placed(columns, recording.time)
+
+
+def _placed(columns: dict[str, Array], time: Array) -> Evenly:
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    whole = np.rint(steps / step)
+    off = np.abs(steps - whole * step)
+    if float(np.quantile(off, 0.95)) > JITTER * step:
+        raise ValueError(
+            f"time is not even: steps between samples vary around {step:.4g} s by more than {JITTER:.0%} of it; orders need "
+            "samples at equal distances in time; resample the log, or leave the time out"
+        )
+    place = np.concatenate([[0], np.cumsum(whole)]).astype(int)
+    first = np.concatenate([[True], np.diff(place) > 0])
+    remarks = []
+    if doubled := int(np.sum(~first)):
+        remarks.append(f"{doubled} rows repeat the time of the row before and are left out")
+    place, time = place[first], time[first]
+    columns = {name: values[first] for name, values in columns.items()}
+    stretch = _longest(place)
+    if stretch.stop - stretch.start < len(place):
+        used, all_of_it = time[stretch.stop - 1] - time[stretch.start], time[-1] - time[0]
+        remarks.append(
+            f"rows are missing for more than {LONGEST_GAP} samples; the longest stretch without such a gap is used, "
+            f"{used:.4g} s of {all_of_it:.4g} s"
+        )
+    place, time = place[stretch] - place[stretch.start], time[stretch]
+    count = int(place[-1]) + 1
+    if count < FEWEST:
+        raise ValueError(f"between gaps the recording has no more than {count} samples; orders need {FEWEST} or more")
+    if missing := count - len(place):
+        remarks.append(f"{missing} of {count} samples are missing; straight lines stand for them")
+    measured = np.zeros(count, dtype=bool)
+    measured[place] = True
+    everywhere = np.arange(count)
+    filled = {name: np.interp(everywhere, place, values[stretch]) for name, values in columns.items()}
+    exact = float(np.polyfit(place, time, 1)[0])
+    return Evenly(filled, measured, exact, True, float(time[0]), tuple(remarks))
+
+
+def _longest(place: NDArray[np.int_]) -> slice:
+    """The longest run of places without a long gap."""
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(place) > LONGEST_GAP + 1) + 1, [len(place)]])
+    longest = int(np.argmax(np.diff(edges)))
+    return slice(int(edges[longest]), int(edges[longest + 1]))
+
+
+def unwrapped(name: str, angle: Array) -> Array:
+    """An angle that goes on where a revolution ends [rad], shape (n,); as it is, where it goes on already.
+
+    An angle that stays within one revolution, and jumps by more than half of one, is taken to wrap.
+
+    Raises:
+        ValueError: it wraps, and turns by nearly half a revolution between two samples
+
+    >>> unwrapped("input_angle", np.array([6.0, 6.2, 0.1, 0.3])).round(3)
+    array([6.   , 6.2  , 6.383, 6.583])
+    """
+    jumps = np.abs(np.diff(angle)) > pi
+    if not jumps.any() or float(np.ptp(angle)) > tau * (1.0 + 1e-3):
+        return angle
+    turned = np.unwrap(angle)
+    if (largest := float(np.quantile(np.abs(np.diff(turned)), 0.999))) > LARGEST_STEP:
+        raise ValueError(
+            f"{quoted(name)} wraps at each revolution and turns by up to {largest:.3g} rad between two samples; which way it "
+            "turns cannot be told beyond half a revolution; record faster, or turn slower"
+        )
+    return turned
+
+
+def smooth_speed(angle: Array, reach: int) -> Array:
+    """Speed over some samples [rad per sample], shape (n,): the slope of a line through 2 reach + 1 of them."""
+    from scipy.signal import savgol_filter
+
+    length = 2 * reach + 1
+    speed: Array = savgol_filter(angle, length, 1, deriv=1, mode="interp")
+    return speed
+
+
+def direction(speed: Array) -> Array:
+    """1 forward, -1 backward, shape (n,); at rest that of the motion before, and before any motion that of the first."""
+    fastest = float(np.abs(speed).max())
+    sense = np.where(np.abs(speed) > REST * fastest, np.sign(speed), 0.0)
+    moving = np.flatnonzero(sense)
+    if not len(moving):
+        return np.zeros_like(speed)
+    last = np.maximum.accumulate(np.where(sense != 0.0, np.arange(len(sense)), moving[0]))
+    held: Array = sense[last]
+    return held
+
+
+def reach_of(count: int) -> int:
+    """Samples on each side over which a speed is told: few, as orders pass by in tens of samples."""
+    return max(1, min(5, count // 32))

@@ -1,0 +1,457 @@
+"""The kinematic error of a gear from two encoders: ratio, orders, lost motion, what is elastic in it.
+
+    transmission error = input angle / ratio - output angle = kinematic error + twist
+
+Its orders of the input are regressed together with direction, gravity, inertia and losses of the output, through the output
+stage where the record shows its resonance (`stage`). No simulation is run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, hypot, inf, pi, tau
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import arguments, kinematic_error
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording, check_recording
+from strainwave.files.units import convert
+from strainwave.identification.orders.stage import HIGHEST, Problem, Regressed
+from strainwave.identification.orders.turning import Evenly, direction, evenly, reach_of, smooth_speed, unwrapped
+from strainwave.messages import listed
+
+Array = NDArray[np.float64]
+Shaft = Literal["input", "mesh", "output"]
+
+ORDERS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)  # of the input, looked for in every record
+MESH_ORDERS = (1.0, 2.0, 4.0)  # of the wave generator seen from the spline that turns: 2 z_c / z_f and its like
+OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gravity
+LONGEST = 2**17  # samples that are compared; of a longer record neighbours are averaged
+INDEPENDENT = 10.0  # samples, of what load leaves unexplained of a ratio (assumed)
+WINDUP = 2e-3  # rad: standard deviation of what each load winds a gear up by, in the mean of a record (assumed)
+TINY = 1e-9  # rad, less than any encoder tells
+WINDUP_SPREAD = 0.2  # of the wind-up that load explains, which is no linear function of it (assumed)
+SETTLED = 3.0  # standard deviations within which a whole ratio may lie
+LOOSE = 0.02  # of the angle of the output, above which the error is none of a gear
+SWING = 0.1  # rad of the output, above which gravity is told from a constant
+MOST_HARMONICS = 16  # of `kinematic_error.Fourier`
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number with its standard deviation, in a unit."""
+
+    value: float
+    sigma: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """The signed ratio of two shafts, input over output.
+
+    Attributes:
+        value: as the angles tell it; negative where the recorded angles run against each other
+        sigma: its standard deviation
+        used: with which the error was told: the nearest whole number, if the angles allow it, or what was given
+        whole: whether that is a whole number within the uncertainty
+    """
+
+    value: float
+    sigma: float
+    used: float
+    whole: bool
+
+
+@dataclass(frozen=True)
+class ErrorOrder:
+    """One order in the transmission error.
+
+    Attributes:
+        order: periods per revolution of the input [1]
+        shaft: whose angle it follows: the input; the input as the spline that turns sees it (`mesh`); or the output
+        amplitude: at the output, free of what output stage and load make of it [rad]
+        phase: where the recorded input angle is 0 [rad], as of a sine
+        amplitude_sigma, phase_sigma: standard deviations
+        false_alarm: probability that noise alone gives as much anywhere among the orders looked for
+        significant: whether that is less than was allowed
+    """
+
+    order: float
+    shaft: Shaft
+    amplitude: float
+    phase: float
+    amplitude_sigma: float
+    phase_sigma: float
+    false_alarm: float
+    significant: bool
+
+
+@dataclass(frozen=True, eq=False)
+class TransmissionError(ComparedByFields):
+    """What two encoders tell of a gear.
+
+    Attributes:
+        ratio: of the angles
+        orders: all that were looked for, by shaft and order
+        lost_motion: of the output, between forward and backward at one place: play, hysteresis, and the wind-up by friction of
+            the output; None where the shaft never turns back
+        windup: twist per torque or current, where the recording has one
+        natural_frequency: of the output with the input held [Hz]; None where the record does not show it, or has no time
+        damping_ratio: of that vibration [1]; None likewise
+        noise: root mean square of what is neither order nor explained by load and direction [rad]
+        revolutions: of the input, end to end
+        curves: time, input_angle, transmission_error, kinematic_error as found, residual, as compared
+        remarks: what to know of these numbers, in words
+    """
+
+    ratio: Ratio
+    orders: tuple[ErrorOrder, ...]
+    lost_motion: Measured | None
+    windup: Measured | None
+    natural_frequency: Measured | None
+    damping_ratio: Measured | None
+    noise: float
+    revolutions: float
+    curves: Recording
+    remarks: tuple[str, ...]
+
+    @property
+    def law(self) -> kinematic_error.Fourier:
+        """The significant orders of the input and of the mesh as a law, for the input angle as it was recorded."""
+        found = [each for each in self.orders if each.significant and each.shaft != "output"]
+        found = sorted(sorted(found, key=lambda each: -each.amplitude)[:MOST_HARMONICS], key=lambda each: each.order)
+        return kinematic_error.Fourier(
+            order=[each.order for each in found],
+            amplitude=[each.amplitude for each in found],
+            phase=[each.phase for each in found],
+        )
+
+
+def transmission_error(
+    recording: Recording,
+    *,
+    ratio: float | None = None,
+    orders: ArrayLike = ORDERS,
+    rate: float | None = None,
+    false_alarm: float = 0.01,
+) -> TransmissionError:
+    """Ratio, kinematic error and lost motion of a gear from the angles of both shafts.
+
+    Args:
+        recording: with `input_angle` and `output_angle`, of any zero and sense, that may wrap at each revolution; with `time`,
+            if the motion is not slow; and with `torque` or `current`, if the wind-up is to be told
+        ratio: signed, input over output, if it is known; its sign is that of the recorded angles, or one of them is counted the
+            other way round, which is said
+        orders: of the input to look for [1], shape (n,)
+        rate: samples per second of a recording without time [Hz]
+        false_alarm: largest probability that noise makes any order significant
+
+    Returns:
+        The orders with standard deviations that allow for coloured noise, and for a gear that is no linear spring.
+
+    Raises:
+        TypeError: an argument is not of its kind
+        ValueError: an angle is missing or does not turn, the two do not belong together, or the ratio given is not theirs
+
+    Valid where the twist is small and the output stage close to linear: each order is corrected for the vibration of the output
+    with 10 % of its stiffness and 30 % of its damping uncertain. `strainwave.twin` fits the same with the whole model.
+
+    >>> import strainwave as sw
+    >>> time = np.arange(0.0, 20.0, 0.002)
+    >>> theta = 30.0 * np.sin(0.5 * time)
+    >>> noise = np.random.default_rng(1).normal(0.0, 1e-5, len(time))
+    >>> output = -theta / 100.0 - 3e-4 * np.sin(2 * theta + 0.3) + noise
+    >>> columns = {"time": time, "input_angle": theta, "output_angle": output}
+    >>> found = sw.transmission_error(sw.Recording(columns, {"time": "s", "input_angle": "rad", "output_angle": "rad"}))
+    >>> found.ratio.used, [(each.order, round(each.amplitude, 5)) for each in found.orders if each.significant]
+    (-100.0, [(2.0, 0.0003)])
+    """
+    check_recording("recording", recording)
+    wanted = np.unique(arguments.numbers("orders", orders))
+    if wanted.ndim != 1 or not wanted.size or not (wanted > 0.0).all():
+        raise ValueError("orders must be one series of positive numbers")
+    false_alarm = arguments.number("false_alarm", false_alarm, low=0.0, high=1.0)
+    load = next((name for name in ("torque", "current") if name in recording), None)
+    names = ["input_angle", "output_angle", *([load] if load else [])]
+    record = evenly(recording, names, rate)
+    theta = unwrapped("input_angle", convert(record.columns["input_angle"], recording.unit("input_angle"), "rad"))
+    output = unwrapped("output_angle", convert(record.columns["output_angle"], recording.unit("output_angle"), "rad"))
+    pair = _Pair(record, theta, output)
+    told = _ratio(pair, ratio)
+    chosen, left_out = _chosen(pair, wanted, told.used)
+    shapes = [_shape(pair, order) for order, _ in chosen]
+    loads = _loads(pair, told.used)
+    found, every = _regressed(pair, told.used, [wave for shape in shapes for wave in shape], loads, dynamic=record.timed)
+    remarks = [*record.remarks, *_ratio_remarks(told, pair, ratio), *left_out, *_stage_remarks(found, pair, every, chosen)]
+    values, covariance = found.values, found.covariance
+    tested = len(chosen)
+    listed_orders = tuple(
+        _order(order, shaft, values[2 * k : 2 * k + 2], covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2], tested, false_alarm)
+        for k, (order, shaft) in enumerate(chosen)
+    )
+    first = 2 * tested
+    lost = None
+    if pair.reverses:
+        lost = Measured(2.0 * float(values[first]), 2.0 * float(np.sqrt(covariance[first, first])), "rad")
+    else:
+        remarks.append("the shafts turn one way only: lost motion is not told")
+    error = sum(
+        (a * s + b * c for (s, c), a, b in zip(shapes, values[0:first:2], values[1:first:2], strict=True)), np.zeros(len(theta))
+    )
+    whole = theta / told.used - output
+    frequency, damping = _stage_numbers(found, record, every)
+    return TransmissionError(
+        ratio=told,
+        orders=listed_orders,
+        lost_motion=lost,
+        windup=_windup(pair, whole - error, load, recording),
+        natural_frequency=frequency,
+        damping_ratio=damping,
+        noise=float(np.sqrt(np.mean(found.residual**2))),
+        revolutions=float(np.ptp(theta)) / tau,
+        curves=_curves(pair, whole - whole.mean(), error, found.residual, every),
+        remarks=tuple(remarks),
+    )
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Both shafts, and how they move."""
+
+    record: Evenly
+    input: Array
+    output: Array
+
+    def __post_init__(self) -> None:
+        for name, angle in (("input_angle", self.input), ("output_angle", self.output)):
+            if float(np.ptp(angle)) == 0.0:
+                raise ValueError(f"{name} does not change; orders need a shaft that turns")
+
+    @property
+    def speed(self) -> Array:
+        return smooth_speed(self.input, reach_of(len(self.input)))
+
+    @property
+    def fastest(self) -> float:
+        """Of the input [rad per sample], but for one sample in a hundred."""
+        return float(np.quantile(np.abs(self.speed), 0.99))
+
+    @property
+    def reverses(self) -> bool:
+        sense = direction(self.speed)
+        return bool(sense.any()) and float(np.mean(sense > 0.0)) not in (0.0, 1.0)
+
+
+def _ratio(pair: _Pair, given: float | None) -> Ratio:
+    """The ratio by regression: first the slope alone, then beside orders, direction, gravity and the output stage."""
+    slope = float(np.polyfit(pair.input - pair.input.mean(), pair.output - pair.output.mean(), 1)[0])
+    off = pair.output - slope * pair.input
+    if slope == 0.0 or float(np.std(off)) > LOOSE * float(np.ptp(pair.output)):
+        raise ValueError(
+            f"input_angle and output_angle do not move together: {float(np.std(off)):.3g} rad of "
+            f"{float(np.ptp(pair.output)):.3g} rad are left where one "
+            "is a multiple of the other; check which columns they are, their units, and whether one wraps"
+        )
+    value, sigma = _slow_ratio(pair, 1.0 / slope)
+    if given is not None:
+        given = arguments.number("ratio", given)
+        if abs(abs(given) - abs(value)) > max(SETTLED * sigma, LOOSE * abs(value)):
+            raise ValueError(
+                f"ratio = {given:g} is not that of the angles, {value:.5g} ± {sigma:.2g}; check the units of both, "
+                "and on which side of the gear the encoders sit"
+            )
+        return Ratio(value, sigma, float(np.copysign(given, value)), float(given).is_integer())
+    nearest = float(np.copysign(max(1.0, np.rint(abs(value))), value))
+    whole = abs(nearest - value) <= max(SETTLED * sigma, 1e-9 * abs(value))
+    return Ratio(value, sigma, nearest if whole else value, whole)
+
+
+def _slow_ratio(pair: _Pair, near: float) -> tuple[float, float]:
+    """The ratio and its standard deviation by plain least squares, which the large slow motion decides, not the ripple.
+
+    Beside it stand direction, speed, acceleration and gravity, each of which winds up by no more than gears do, since a
+    motion may be such that they look like a ratio. What they leave lasts, so that few of the samples count as independent; and
+    what load explains counts as uncertain by a fifth, as no gear is a linear spring.
+    """
+    acceleration = smooth_speed(pair.speed, reach_of(len(pair.speed)))
+    wound = np.stack([acceleration, *_loads(pair, near)], axis=1)
+    wound -= wound.mean(axis=0)
+    size = np.std(wound, axis=0)
+    kept = size > 0.0
+    turned = pair.input / near - float(np.mean(pair.input / near))
+    columns = np.concatenate([turned[:, None], wound[:, kept] / size[kept]], axis=1)
+    compared = pair.output - pair.output.mean()
+    noise = compared - columns @ np.linalg.lstsq(columns, compared, rcond=1e-9)[0]
+    weight = INDEPENDENT / len(compared) / max(float(np.mean(noise**2)), TINY**2)
+    known = np.diag([0.0, *[WINDUP**-2.0] * int(kept.sum())])
+    covariance = np.linalg.inv(weight * columns.T @ columns + known)
+    found = covariance @ (weight * columns.T @ compared)
+    unsure = WINDUP_SPREAD * float(np.std(columns[:, 1:] @ found[1:])) / float(np.std(turned))
+    sigma = hypot(float(np.sqrt(covariance[0, 0])), unsure)
+    share = float(found[0])
+    return near / share, abs(near) * sigma / share**2
+
+
+def _chosen(pair: _Pair, wanted: Array, ratio: float) -> tuple[list[tuple[float, Shaft]], list[str]]:
+    """The orders that the record can tell, and what is said of those that it cannot."""
+    turns_in, turns_out = float(np.ptp(pair.input)) / tau, float(np.ptp(pair.output)) / tau
+    highest = HIGHEST * tau / pair.fastest if pair.fastest > 0.0 else inf
+    found: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if 1.0 / turns_in <= order < highest]
+    remarks = []
+    if missed := [f"{order:g}" for order in wanted if order >= highest]:
+        remarks.append(f"orders {listed(missed)} pass faster than the samples can follow; record faster, or turn slower")
+    if missed := [f"{order:g}" for order in wanted if order < 1.0 / turns_in]:
+        remarks.append(f"orders {listed(missed)} need a whole period; the input turns {turns_in:.2g} revolutions")
+    if not found:
+        raise ValueError("none of the orders can be told: " + "; ".join(remarks))
+    slip = 1.0 / abs(ratio)
+    if turns_in * slip >= 1.0:
+        for order in MESH_ORDERS:
+            mesh = order * (1.0 - 1.0 / ratio)
+            if mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in found):
+                found.append((mesh, "mesh"))
+        found += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= 1.0]
+    else:
+        near = 2.0 * (1.0 - 1.0 / ratio)
+        remarks.append(
+            f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "
+            "spline, are told from each other after a whole one"
+        )
+    return found, remarks
+
+
+def _shape(pair: _Pair, order: float) -> tuple[Array, Array]:
+    """Sine and cosine of an order, over the input angle as recorded; one of the output is told over the input, too."""
+    return np.sin(order * pair.input), np.cos(order * pair.input)
+
+
+def _loads(pair: _Pair, ratio: float) -> list[Array]:
+    """What load makes of the twist but for the inertia: direction, speed, and gravity over the output angle."""
+    speed = pair.speed / ratio
+    loads = [direction(speed), speed]
+    if float(np.ptp(pair.output)) > SWING:
+        loads += [np.sin(pair.output), np.cos(pair.output)]
+    return loads
+
+
+def _regressed(
+    pair: _Pair, ratio: float, shapes: Sequence[Array], loads: Sequence[Array], *, dynamic: bool
+) -> tuple[Regressed, int]:
+    """The regression, and how many samples each that is compared is the mean of."""
+    count = len(pair.input)
+    allowed = 2.0 * HIGHEST * pi / (max(ORDERS) * pair.fastest) if pair.fastest > 0.0 else inf
+    every = int(max(1.0, min(-(-count // LONGEST), allowed)))
+
+    def mean(series: Array) -> Array:
+        means: Array = series[: count // every * every].reshape(-1, every).mean(axis=1)
+        return means
+
+    problem = Problem(
+        angle=mean(pair.input / ratio),
+        error=mean(pair.input / ratio - pair.output),
+        orders=np.stack([mean(each) for each in shapes], axis=1),
+        loads=np.stack([mean(each) for each in loads], axis=1),
+    )
+    return problem.regress(dynamic=dynamic), every
+
+
+def _order(order: float, shaft: Shaft, pair: Array, covariance: Array, tested: int, allowed: float) -> ErrorOrder:
+    sine, cosine = pair.tolist()
+    amplitude, phase = hypot(sine, cosine), float(np.arctan2(cosine, sine))
+    along = np.array([np.cos(phase), np.sin(phase)])
+    across = np.array([-along[1], along[0]])
+    sigmas = [float(np.sqrt(max(each @ covariance @ each, 0.0))) for each in (along, across)]
+    inverse = np.asarray(np.linalg.pinv(covariance))
+    alarm = min(1.0, tested * exp(-0.5 * float(pair @ inverse @ pair)))
+    turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
+    return ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
+
+
+def _windup(pair: _Pair, twist: Array, load: str | None, recording: Recording) -> Measured | None:
+    """Twist per torque or current, beside direction, speed and acceleration of the input."""
+    if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
+        return None
+    reach = reach_of(len(twist))
+    unit = {"torque": "N.m", "current": "A"}[load]
+    driven = convert(pair.record.columns[load], recording.unit(load), unit)
+    speed = pair.speed
+    acceleration = smooth_speed(speed, reach)
+    loads = np.stack([driven, direction(speed), speed, acceleration], axis=1)
+    found = Problem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
+    return Measured(
+        float(found.values[0]), float(np.sqrt(found.covariance[0, 0])), f"rad/({unit})" if "." in unit else f"rad/{unit}"
+    )
+
+
+def _ratio_remarks(told: Ratio, pair: _Pair, given: float | None) -> list[str]:
+    """What the sign of the ratio means, and whether its size is settled."""
+    remarks = []
+    size = abs(told.used)
+    if told.whole and size >= 10.0:
+        if told.used < 0.0:
+            means = f"circular spline fixed, {2 * size:.0f} and {2 * size + 2:.0f} teeth"
+            other = f"flexspline fixed, {2 * size - 2:.0f} and {2 * size:.0f} teeth"
+        else:
+            means = f"flexspline fixed, {2 * size - 2:.0f} and {2 * size:.0f} teeth"
+            other = f"circular spline fixed, {2 * size:.0f} and {2 * size + 2:.0f} teeth"
+        remarks.append(
+            f"ratio {told.used:g} is that of a gear with {means}; if one encoder counts the other way round, {other}"
+        )
+    elif not told.whole:
+        remarks.append(
+            f"no whole ratio lies within {SETTLED:g} standard deviations of {told.value:.6g} ± {told.sigma:.2g}; it is used "
+            "as it is; a belt before the gear, or a wrong scale of an encoder, would explain it"
+        )
+    if told.sigma > 0.3:
+        remarks.append(f"the ratio is told to ± {told.sigma:.2g} only; more than one whole number is near; give --ratio")
+    if given is not None and given * told.used < 0.0:
+        remarks.append(
+            f"ratio {given:g} is given, but the recorded angles run {'against' if told.used < 0 else 'with'} each other: one "
+            "encoder counts the other way round. If it is that of the output, the error has the other sign"
+        )
+    return remarks
+
+
+def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[Measured | None, Measured | None]:
+    if found.stage is None or not record.timed:
+        return None, None
+    hertz = found.stage.frequency / (tau * record.step * every)
+    return (
+        Measured(hertz, hertz * found.spread[0], "Hz"),
+        Measured(found.stage.damping, found.stage.damping * found.spread[1], "1"),
+    )
+
+
+def _stage_remarks(found: Regressed, pair: _Pair, every: int, chosen: Sequence[tuple[float, Shaft]]) -> list[str]:
+    if found.stage is not None:
+        fastest = max(order for order, _ in chosen) * pair.fastest * every
+        if fastest < 0.3 * found.stage.frequency:
+            return []
+        return [
+            "orders come near the natural frequency of the output, or pass it: their amplitudes are corrected for it, and less "
+            "certain than those of a slow run"
+        ]
+    if not pair.record.timed:
+        return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
+    return []
+
+
+def _curves(pair: _Pair, error: Array, orders: Array, residual: Array, every: int) -> Recording:
+    count = len(residual)
+
+    def mean(series: Array) -> Array:
+        means: Array = series[: count * every].reshape(-1, every).mean(axis=1)
+        return means
+
+    columns = {"time": pair.record.start + pair.record.step * every * (np.arange(count) + 0.5 * (every - 1) / every)}
+    columns |= {"input_angle": mean(pair.input), "output_angle": mean(pair.output)}
+    columns |= {"transmission_error": mean(error), "kinematic_error": mean(orders), "residual": residual}
+    units = {name: "s" if name == "time" else "rad" for name in columns}
+    if not pair.record.timed:
+        del columns["time"], units["time"]
+    return Recording(columns, units, "transmission error")
