@@ -58,16 +58,35 @@ ELSEWHERE = {
     "Coulomb": {
         "specialised.hpp": USUAL,
         "analysis/linear.py": "holds the input while the output vibrates",
+        "friction/asymmetric.hpp": "what it modulates by default",
         "friction/thermal.hpp": "what it modulates by default",
         "identification/dynamics/log.py": LOG,
         "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
         "identification/candidates/torsion.py": AT_REST,
     },
     "Stribeck": {
         "specialised.hpp": USUAL,
         "friction/cyclic.hpp": "what it modulates by default",
         "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
         "identification/candidates/torsion.py": AT_REST,
+    },
+    "Asymmetric": {
+        "any.hpp": BOUND_TO_ANY,
+        "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
+    },
+    "CurvedViscous": {
+        "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
+    },
+    "MixedLubrication": {
+        "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
+    },
+    "MaxwellSlipFriction": {
+        "identification/candidates/friction.py": "bristles that a table of steady friction leaves as they are"
     },
     "DC": {"specialised.hpp": USUAL},
     "OpenLoop": {
@@ -100,8 +119,16 @@ ELSEWHERE = {
         "identification/candidates/friction.py": STEADY_TABLE,
         "identification/candidates/torsion.py": AT_REST,
     },
-    "Cyclic": {"any.hpp": BOUND_TO_ANY},
-    "Thermal": {"any.hpp": BOUND_TO_ANY},
+    "Cyclic": {
+        "any.hpp": BOUND_TO_ANY,
+        "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
+    },
+    "Thermal": {
+        "any.hpp": BOUND_TO_ANY,
+        "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
+    },
     "Preisach": {"any.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {
@@ -243,7 +270,7 @@ def with_one_more(folder: Path) -> Path:
         "#include <strainwave/friction/stribeck.hpp>\n",
         "#include <strainwave/friction/quadratic.hpp>\n#include <strainwave/friction/stribeck.hpp>\n",
     )
-    after, lists = re.subn(r"(using Plain = List<Viscous[^>]*)>", r"\1, Quadratic>", after)
+    after, lists = re.subn(r"(using Levelled = List<Viscous[^>]*)>", r"\1, Quadratic>", after)
     assert lists == 1
     assert len(after.splitlines()) == len(before.splitlines()) + 1
     models.write_text(after)

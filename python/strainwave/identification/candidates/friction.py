@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from time import perf_counter
 from typing import Any, get_args
 
 import numpy as np
@@ -13,82 +14,173 @@ from numpy.typing import NDArray
 from strainwave import friction
 from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields
+from strainwave.identification.candidates.steady_shapes import Shape, beside_speed, over_speed
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
 
-FOLDS = 20  # a table is cut into at most so many parts, each predicted once from the others
-KINETIC = ("coulomb", "viscous")
-FALLING = ("coulomb", "breakaway", "stribeck_speed", "viscous")
+FOLDS = 10  # a table is cut into at most so many parts, each predicted once from the others
+STEPS = 2_000  # of a law, timed
+BY_CHANCE = 0.01  # what explains more with this probability by chance does not count
+STEADY = ("coulomb", "breakaway", "stribeck_speed", "viscous")  # what bristles have in common with a law of steady friction
 
-Law = friction.Viscous | friction.Coulomb | friction.Stribeck | friction.LuGre  # what a table of torque over speed can tell
+Plain = (
+    friction.Viscous
+    | friction.Coulomb
+    | friction.Stribeck
+    | friction.LuGre
+    | friction.MaxwellSlipFriction
+    | friction.CurvedViscous
+    | friction.MixedLubrication
+)  # what a table of torque over speed can tell
+Modulated = friction.Asymmetric | friction.Thermal | friction.Cyclic
 
 
 @dataclass(frozen=True, eq=False)
 class FrictionCandidate(ComparedByFields):
-    """One set of free parameters fitted to a friction table.
+    """One law fitted to a friction table.
 
     Attributes:
         name: what it describes
         fit: the fit to the whole table
         held_out: torque at each speed as predicted without the measurements near it [N.m], shape (n,)
         error: rms of measured less `held_out` [N.m]
+        error_sigma: standard error of `error` [N.m]
+        whiteness: probability that residuals in the order of the speed are as alike as these by chance (Ljung, Box 1978)
+        information: Akaike's criterion, corrected for few samples (Hurvich, Tsai 1989) [1]; the least is best
+        chance: probability that the first candidate's residuals shrink as much by chance (F test); of the first, 1
     """
 
     name: str
     fit: Fit
     held_out: Array
     error: float
+    error_sigma: float
+    whiteness: float
+    information: float
+    chance: float = 1.0
+
+    @property
+    def law(self) -> Any:
+        """The law found, as it stands at the input of the gear."""
+        return self.fit.gear.friction_input
+
+    @property
+    def parameters(self) -> int:
+        """How many numbers were fitted."""
+        return len(self.fit.estimates)
 
     @property
     def coulomb(self) -> float:
         """Coulomb torque found [N.m]."""
-        return self.fit.estimates[0].value
+        return self._found("coulomb")
 
     @property
     def viscous(self) -> float:
-        """Viscous friction found [N.m.s/rad]."""
-        return self.fit.estimates[-1].value
+        """Viscous friction found [N.m.s/rad]; of a curved one, its chord to the reference speed."""
+        if isinstance(innermost(self.law), friction.CurvedViscous):
+            return self._found("viscous_torque") / float(innermost(self.law).reference_speed)
+        return self._found("viscous")
+
+    def _found(self, name: str) -> float:
+        return next(each.value for each in self.fit.estimates if each.path.rpartition(".")[2] == name)
+
+
+@dataclass(frozen=True)
+class Rank:
+    """A line of the ranking of laws.
+
+    Attributes:
+        name: what the law describes
+        law: its name in gear files, from the outside in
+        parameters: how many numbers were fitted
+        error: rms error of predictions from the rest of the table [N.m]
+        error_sigma: its standard error [N.m]
+        whiteness: probability that chance leaves residuals as alike as these
+        information: Akaike's criterion, corrected for few samples
+        chance: probability that chance alone explains more than Coulomb's law does (F test)
+        cost: time of one step of the law on this machine [µs]
+    """
+
+    name: str
+    law: str
+    parameters: int
+    error: float
+    error_sigma: float
+    whiteness: float
+    information: float
+    chance: float
+    cost: float
 
 
 def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
-    """Fits the input friction of a gear to a table, with and without a fall of torque at low speed.
+    """Fits the input friction of a gear to a table by every law that it can tell, and ranks them.
 
-    The law of `gear.friction_input` is kept; a purely viscous one becomes Coulomb's, and Coulomb's becomes Stribeck's if the
-    table shows a fall from breakaway. A table that shows none gives a law without one; of Coulomb's law, whose steady torque
-    does not depend on breakaway, the ratio of breakaway to Coulomb torque is kept. Bristles are damped so little that they
-    dissipate.
+    Tried are Coulomb and viscous friction, a fall from breakaway, a curved viscous part, both, and each of them asymmetric
+    where both directions were measured. Around the best of them what varies with the temperature, the load and the angle is
+    tried, where the table has these columns. Bristles of the gear (LuGre, Maxwell slip) are kept, for a table says nothing of
+    them, and damped so little that they dissipate; a curved viscous part leaves them out. Of Coulomb's law, whose steady torque
+    does not depend on breakaway, the ratio of breakaway to Coulomb torque is kept.
 
     Args:
         table: measured torque over speed
         gear: the gear to start from
 
     Returns:
-        candidates, best first by the error of predictions from the rest of the table; the simpler one unless the other is
-        better by more than 5 %
+        candidates, best first: the one with fewest parameters whose error of predictions from the rest of the table lies within
+        one standard error of the least, the difference taken sample by sample, or is larger by what may be chance; behind it
+        the others by their error
 
     Raises:
-        ValueError: fewer than four speeds, or a law of the gear that depends on more than speed
+        ValueError: fewer than four speeds, or a law of the gear that a table cannot tell
     """
-    if not isinstance(gear.friction_input, Law):
-        names = [law.name for law in get_args(Law)]
+    known = _known(gear.friction_input, table)
+    if not isinstance(known, Plain):
+        names = [law.name for law in get_args(Plain)]
         raise ValueError(
-            f"a friction table cannot be fitted to {gear.friction_input.name} friction; "
+            f"a friction table cannot be fitted to {known.name} friction; "
             f"it can to {', '.join(names[:-1])} or {names[-1]}, so start from a gear with one of these at the input"
         )
     speeds = len(np.unique(table.speed))
     if speeds < 4:
         raise ValueError(f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}")
-    candidates = [_straight(table, gear, gear.friction_input)]
-    straight = candidates[0].fit.gear.friction_input
-    if speeds > len(FALLING) + 1:
-        falling = _falling(table, gear, straight)
-        estimates = {estimate.path.rpartition(".")[2]: estimate.value for estimate in falling.fit.estimates}
-        if estimates["breakaway"] > estimates["coulomb"]:  # else the torque rises from rest on, and a line says as much
-            candidates.append(falling)
-    best = min(candidate.error for candidate in candidates)
-    return sorted(candidates, key=lambda c: (c.error > 1.05 * best, len(c.fit.estimates)))
+    shapes = list(over_speed(table))
+    tried = [(shape, candidate) for shape in shapes if _falls(candidate := _candidate(shape, table, gear))]
+    shape, best = _chosen(tried)
+    for more in beside_speed(table, replace(shape, law=best.law), best.fit.residuals[0]):
+        tried.append((more, _candidate(more, table, gear)))
+    _, best = _chosen(tried)
+    simplest = tried[0][1]
+    others = sorted((candidate for _, candidate in tried if candidate is not best), key=lambda candidate: candidate.error)
+    return [replace(each, chance=_chance(simplest, each), fit=_written(each, gear, known)) for each in (best, *others)]
+
+
+def ranking(candidates: Sequence[FrictionCandidate]) -> list[Rank]:
+    """The candidates as lines of a table, in their order, each with what its law costs in a simulation."""
+    return [
+        Rank(
+            each.name, _called(each.law), each.parameters, each.error, each.error_sigma, each.whiteness, each.information,
+            each.chance, cost_of(each.law),
+        )
+        for each in candidates
+    ]  # fmt: skip
+
+
+def innermost(law: Any) -> Any:
+    """The law that others modulate."""
+    return innermost(law.law) if isinstance(law, Modulated) else law
+
+
+def cost_of(law: Any) -> float:
+    """Time of one step of a law on this machine [µs], the least of five tries."""
+    time, speed = np.linspace(0.0, 1.0, STEPS), np.linspace(-1.0, 1.0, STEPS)
+    tries = []
+    for _ in range(5):
+        begun = perf_counter()
+        law.trace(time, speed)
+        tries.append(perf_counter() - begun)
+    return 1e6 * min(tries) / STEPS
 
 
 def dissipating(law: Any) -> Any:
@@ -99,40 +191,115 @@ def dissipating(law: Any) -> Any:
     return law if law.bristle_damping <= most else law.replace(bristle_damping=0.5 * most)
 
 
-def _straight(table: FrictionTable, gear: Gear, known: Law) -> FrictionCandidate:
-    """Coulomb and viscous friction, written into the law of the gear."""
-    line = np.polynomial.polynomial.polyfit(np.abs(table.speed), np.abs(table.torque), 1)
-    coulomb, viscous = max(float(line[0]), 1e-3 * float(np.abs(table.torque).max())), max(float(line[1]), 0.0)
-    start = gear.replace(friction_input=friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=viscous))
-    candidate = _candidate("Coulomb and viscous", table, start, KINETIC)
-    law = friction.Coulomb(coulomb=coulomb, breakaway=coulomb) if isinstance(known, friction.Viscous) else known
-    ratio = law.breakaway / law.coulomb if isinstance(law, friction.Coulomb) and law.coulomb > 0.0 else 1.0
-    found = {"coulomb": candidate.coulomb, "breakaway": ratio * candidate.coulomb, "viscous": candidate.viscous}
+def _known(law: Any, table: FrictionTable) -> Any:
+    """The law that others modulate, as far as the table tells what modulates it."""
+    told = isinstance(law, friction.Asymmetric)
+    told |= isinstance(law, friction.Thermal) and table.temperature is not None
+    told |= isinstance(law, friction.Cyclic) and table.angle is not None
+    return _known(law.law, table) if told else law
+
+
+def _called(law: Any) -> str:
+    return f"{law.name} of {_called(law.law)}" if isinstance(law, Modulated) else str(law.name)
+
+
+def _falls(candidate: FrictionCandidate) -> bool:
+    """False where a fall was tried but the torque rises from rest on: a law without one says as much."""
+    law = innermost(candidate.law)
+    return "fall" not in candidate.name or bool(law.breakaway > law.coulomb)
+
+
+def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, FrictionCandidate]:
+    """The simplest within one standard error of the best (Breiman et al. 1984), compared sample by sample.
+
+    Also one that chance may have made worse than the best (F test): of many laws tried some look better than they are.
+    """
+    best = min((candidate for _, candidate in tried), key=lambda candidate: candidate.error)
+    squares = _squares(best)
+
+    def as_good(candidate: FrictionCandidate) -> bool:
+        worse = _squares(candidate) - squares
+        within = bool(np.mean(worse) <= np.std(worse, ddof=1) / np.sqrt(len(worse)))
+        return within or (candidate.parameters < best.parameters and _chance(candidate, best) > BY_CHANCE)
+
+    return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))
+
+
+def _squares(candidate: FrictionCandidate) -> Array:
+    squares: Array = (candidate.fit.experiment.measured[0] - candidate.held_out) ** 2
+    return squares
+
+
+def _chance(simplest: FrictionCandidate, candidate: FrictionCandidate) -> float:
+    from scipy.stats import f as fisher
+
+    more, n = candidate.parameters - simplest.parameters, len(candidate.held_out)
+    freedom = n - candidate.parameters
+    if more <= 0 or freedom <= 0:
+        return 1.0
+    left, before = (float(np.sum(each.fit.residuals**2)) for each in (candidate, simplest))
+    return float(fisher.sf(max(before - left, 0.0) / more * freedom / left, more, freedom)) if left > 0.0 else 0.0
+
+
+def _written(candidate: FrictionCandidate, gear: Gear, known: Plain) -> Fit:
+    """The fit with the law as the gear shall have it."""
+    fell = any(estimate.path.endswith("breakaway") for estimate in candidate.fit.estimates)
     with warnings.catch_warnings(action="ignore", category=PassivityWarning):
-        written = dissipating(law.replace(**found))
-    return replace(candidate, fit=replace(candidate.fit, model=gear.replace(friction_input=written)))
+        return replace(candidate.fit, model=gear.replace(friction_input=_kept(candidate.law, known, fell)))
 
 
-def _falling(table: FrictionTable, gear: Gear, straight: Any) -> FrictionCandidate:
-    """Stribeck's fall, in the law of the gear or, where that has none, in Stribeck's."""
-    speed = np.abs(table.speed[table.speed != 0.0])
-    middle = float(np.sqrt(speed.min() * speed.max()))
-    falling = {"breakaway": 1.5 * straight.coulomb, "stribeck_speed": middle}
-    with warnings.catch_warnings(action="ignore", category=PassivityWarning):  # what is tried on the way need not be passive
-        if isinstance(straight, friction.Coulomb):
-            law = friction.Stribeck(coulomb=straight.coulomb, viscous=straight.viscous, **falling)
-        else:
-            law = straight.replace(**falling)
-        candidate = _candidate("with a fall at low speed", table, gear.replace(friction_input=law), FALLING)
-        found = candidate.fit.gear.replace(friction_input=dissipating(candidate.fit.gear.friction_input))
-    return replace(candidate, fit=replace(candidate.fit, model=found))
+def _kept(found: Any, known: Plain, fell: bool) -> Any:
+    """The law found, by the bristles of the gear where it has such; without a fall, with the gear's ratio of breakaway."""
+    if isinstance(found, Modulated):
+        return found.replace(law=_kept(found.law, known, fell))
+    ratio = known.breakaway / known.coulomb if isinstance(known, friction.Coulomb) and known.coulomb > 0.0 else 1.0
+    law = found if fell else found.replace(breakaway=ratio * found.coulomb)
+    if isinstance(law, friction.Stribeck) or (isinstance(law, friction.Coulomb) and not isinstance(known, friction.Viscous)):
+        bristles = isinstance(known, friction.LuGre | friction.MaxwellSlipFriction)
+        if bristles or isinstance(known, friction.Stribeck):
+            return dissipating(known.replace(**{name: getattr(law, name) for name in STEADY if hasattr(law, name)}))
+    return law
 
 
-def _candidate(name: str, table: FrictionTable, start: Gear, free: Sequence[str]) -> FrictionCandidate:
-    paths = [f"friction_input.{parameter}" for parameter in free]
+def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandidate:
+    paths = [f"friction_input.{path}" for path in shape.free]
+    whole = fit(gear.replace(friction_input=shape.law), table, paths)
     fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(FOLDS, len(table.speed))
     held_out = np.empty(len(table.speed))
     for part in np.unique(fold):
         left_out = fold == part
-        held_out[left_out] = fit(start, table, paths, training=~left_out).predicted[0, left_out]
-    return FrictionCandidate(name, fit(start, table, paths), held_out, float(np.sqrt(np.mean((table.torque - held_out) ** 2))))
+        held_out[left_out] = fit(whole.gear, table, paths, training=~left_out).predicted[0, left_out]
+    squares = (table.torque - held_out) ** 2
+    error = float(np.sqrt(np.mean(squares)))
+    spread = float(np.std(squares, ddof=1) / np.sqrt(len(squares)))
+    residual = whole.residuals[0]
+    return FrictionCandidate(
+        shape.name, whole, held_out, error, 0.5 * spread / error if error > 0.0 else 0.0,
+        whiteness(residual[np.argsort(table.speed, kind="stable")]), information(residual, len(paths)),
+    )  # fmt: skip
+
+
+def whiteness(residual: Array) -> float:
+    """Probability that white noise has autocorrelations as large as these (Ljung, Box 1978), over up to ten lags.
+
+    >>> whiteness(np.random.default_rng(1).normal(size=200)) > 0.01, whiteness(np.sin(np.arange(200.0) / 9.0)) < 1e-9
+    (True, True)
+    """
+    from scipy.stats import chi2
+
+    n, lags = len(residual), min(10, len(residual) // 5)
+    centred = residual - residual.mean()
+    power = float(np.sum(centred**2))
+    if lags == 0 or power == 0.0:
+        return 1.0
+    correlation = np.array([np.sum(centred[lag:] * centred[:-lag]) for lag in range(1, lags + 1)]) / power
+    return float(chi2.sf(n * (n + 2) * np.sum(correlation**2 / (n - np.arange(1, lags + 1))), lags))
+
+
+def information(residual: Array, parameters: int) -> float:
+    """Akaike's criterion of residuals of equal variance, corrected for few samples; infinite where there are too few."""
+    n, unknowns = len(residual), parameters + 1
+    if n <= unknowns + 1:
+        return np.inf
+    variance = max(float(np.mean(residual**2)), np.finfo(float).tiny)
+    return float(n * np.log(variance) + 2.0 * unknowns * n / (n - unknowns - 1))

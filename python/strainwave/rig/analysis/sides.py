@@ -122,6 +122,6 @@ def friction_at_rest(table: Recording, gear: Gear) -> Value:
     0.05
     """
     best = fit_friction(FrictionTable.of(table), arguments.gear(gear))[0]
-    by_path = {estimate.path: estimate for estimate in best.fit.estimates}
-    found = by_path.get("friction_input.breakaway", best.fit.estimates[0])
+    by_name = {estimate.path.rpartition(".")[2]: estimate for estimate in best.fit.estimates}
+    found = by_name.get("breakaway", by_name["coulomb"])
     return Value(found.value, found.sigma, f"friction table {table.title}".strip())

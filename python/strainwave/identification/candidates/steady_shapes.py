@@ -1,0 +1,172 @@
+"""Shapes that steady friction may have over the speed, and over what else was measured: what a table is fitted to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import friction
+from strainwave.identification.experiments.friction_table import FrictionTable
+
+Array = NDArray[np.float64]
+
+STRIBECK_SPEEDS = 16  # tried between the slowest and the fastest measured
+EXPONENTS = (0.3, 0.5, 0.7, 1.4, 2.0)  # of a curved viscous part, tried
+SPEEDS_EACH_WAY = 3  # that tell a direction
+SPAN = 3.0  # of the speeds: within less a curve looks straight
+WARMER = 2.0  # K: a smaller spread of temperature tells nothing
+ORDERS = 8  # of the turn, looked for
+SURE = 1e-3  # probability that chance alone gives a harmonic, over all looked for
+WAVES = 4  # harmonics taken at most
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A law to start from, and the numbers of it that a table shall tell.
+
+    Attributes:
+        name: what it describes
+        law: the law at its start
+        free: paths of its free numbers, the dry torque first
+    """
+
+    name: str
+    law: Any
+    free: tuple[str, ...]
+
+    def around(self, name: str, outer: type[Any], free: tuple[str, ...], **members: Any) -> Shape:
+        """The same, modulated by another law."""
+        inner = tuple(f"law.{path}" for path in self.free)
+        return Shape(f"{self.name}, {name}", outer(law=self.law, **members), (*inner, *free))
+
+
+def over_speed(table: FrictionTable) -> Iterator[Shape]:
+    """The shapes over the speed, simplest first, as far as a table has speeds enough to tell them and to validate."""
+    speeds, span = len(np.unique(table.speed)), float(np.abs(table.speed).max() / np.abs(table.speed).min())
+    both_ways = min(len(np.unique(table.speed[side])) for side in (table.speed < 0.0, table.speed > 0.0)) >= SPEEDS_EACH_WAY
+    for curved, falls in product((False, True), (False, True)):
+        shape = _started(table, curved=curved, falls=falls)
+        simple = not (curved or falls)
+        if curved and span < SPAN:
+            continue
+        if simple or speeds > len(shape.free) + 2:
+            yield shape
+        if both_ways and speeds > len(shape.free) + 4:
+            yield shape.around("asymmetric", friction.Asymmetric, ("dry_asymmetry", "viscous_asymmetry"))
+
+
+def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
+    """A shape at the best of a grid over its speeds and exponents, the rest by linear least squares (Golub, Pereyra 1973)."""
+    speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
+    fastest = float(speed.max())
+    grid = list(
+        product(
+            np.geomspace(speed.min(), fastest, STRIBECK_SPEEDS) if falls else (fastest,),
+            EXPONENTS if curved else (1.0,),
+        )
+    )
+    columns = [
+        np.stack([np.ones_like(speed), (speed / fastest) ** p, *([np.exp(-((speed / v_s) ** 2))] if falls else [])], axis=1)
+        for v_s, p in grid
+    ]
+    stacked = np.array(columns)
+    found = (np.linalg.pinv(stacked, rcond=1e-10) @ torque[:, np.newaxis])[..., 0]
+    left = np.sum((np.einsum("gnk,gk->gn", stacked, found) - torque) ** 2, axis=1)
+    possible = np.all(found >= 0.0, axis=1)
+    best = int(np.argmin(np.where(possible, left, np.inf) if possible.any() else left))
+    least = 1e-3 * float(np.abs(torque).max())
+    coulomb, viscous, *excess = np.maximum(found[best], 0.0).tolist()
+    coulomb = max(coulomb, least)
+    v_s, p = map(float, grid[best])
+    higher = coulomb + max(excess[0], 0.1 * coulomb) if falls else 0.0  # which counts as coulomb
+    fall = {"breakaway": higher} | ({"stribeck_speed": v_s} if falls else {})
+    fell = ("breakaway", "stribeck_speed") if falls else ()
+    if curved:
+        law = friction.CurvedViscous(
+            coulomb=coulomb, viscous_torque=max(viscous, least), exponent=p, reference_speed=fastest, **fall
+        )
+        name = "curved viscous, with a fall at low speed" if falls else "curved viscous"
+        return Shape(name, law, ("coulomb", *fell, "viscous_torque", "exponent"))
+    if falls:
+        return Shape(
+            "with a fall at low speed",
+            friction.Stribeck(coulomb=coulomb, viscous=viscous / fastest, **fall),
+            ("coulomb", *fell, "viscous"),
+        )
+    return Shape(
+        "Coulomb and viscous", friction.Coulomb(coulomb=coulomb, viscous=viscous / fastest, **fall), ("coulomb", "viscous")
+    )
+
+
+def beside_speed(table: FrictionTable, shape: Shape, residual: Array) -> Iterator[Shape]:
+    """What else may vary a shape that was found, as far as the table has columns that tell it.
+
+    Args:
+        table: the measurement
+        shape: the shape over the speed, its law as fitted
+        residual: measured less fitted torque [N.m], shape (n,)
+    """
+    if table.temperature is not None and np.ptp(table.temperature) > WARMER:
+        middle = float(np.mean(table.temperature))
+        yield shape.around("over the temperature", friction.Thermal, ("dry_fall", "viscous_fall"), reference_temperature=middle)
+        if (mixed := _mixed(shape.law, table)) is not None:
+            law = mixed.replace(viscosity_fall=0.01, reference_temperature=middle)
+            yield Shape(f"{shape.name}, lubricated over the temperature", law, (*shape.free, "viscosity_fall"))
+    if table.load is not None and np.ptp(np.abs(table.load)) > 0.0 and (mixed := _mixed(shape.law, table)) is not None:
+        law = mixed.replace(load_sensitivity=0.1 / float(np.abs(table.load).max()))
+        yield Shape(f"{shape.name}, over the load", law, (*shape.free, "load_sensitivity"))
+    if table.angle is not None and (waves := harmonics_of(table, residual)):
+        order, amplitude, phase = map(list, zip(*waves, strict=True))
+        free = tuple(f"{name}[{i}]" for name in ("amplitude", "phase") for i in range(len(order)))
+        yield shape.around("over the angle", friction.Cyclic, free, order=order, amplitude=amplitude, phase=phase)
+
+
+def _mixed(law: Any, table: FrictionTable) -> friction.MixedLubrication | None:
+    """The same friction, as of a bearing that load and viscosity act on."""
+    if isinstance(law, friction.Stribeck):
+        return friction.MixedLubrication(
+            coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=law.stribeck_speed, viscous=law.viscous
+        )
+    if isinstance(law, friction.Coulomb):
+        gone = 1e-3 * float(np.abs(table.speed).min())  # at every speed of the table nothing is left of a fall
+        return friction.MixedLubrication(coulomb=law.coulomb, breakaway=0.0, stribeck_speed=gone, viscous=law.viscous)
+    return None
+
+
+def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, float, float]]:
+    """Orders, amplitudes and phases [rad] of friction over the turn that chance does not explain, relative to its mean.
+
+    Whole orders are taken one by one, each time the one that explains most of what those before it leave, as long as chance
+    would not (F test, its probability times the number looked for).
+    """
+    from scipy.stats import f as fisher
+
+    assert table.angle is not None
+    mean = table.torque - residual
+    pairs = {
+        n: mean[:, np.newaxis] * np.stack([np.sin(n * table.angle), np.cos(n * table.angle)], 1) for n in range(1, ORDERS + 1)
+    }
+    taken: list[int] = []
+    waves, left = np.zeros(0), float(np.sum(residual**2))
+    while len(taken) < WAVES:
+        tried = {n: _explained(residual, [pairs[each] for each in (*taken, n)]) for n in pairs if n not in taken}
+        order, (found, still) = min(tried.items(), key=lambda item: item[1][1])
+        freedom = len(residual) - len(found)
+        if freedom < 1 or ORDERS * fisher.sf(0.5 * (left - still) * freedom / max(still, 1e-300), 2, freedom) > SURE:
+            break
+        taken, waves, left = [*taken, order], found, still
+    sine, cosine = waves.reshape(-1, 2).T
+    size, phase = np.hypot(sine, cosine).tolist(), np.arctan2(cosine, sine).tolist()
+    return sorted(zip(map(float, taken), size, phase, strict=True))
+
+
+def _explained(residual: Array, pairs: list[Array]) -> tuple[Array, float]:
+    """What multiplies the columns of all pairs, and the sum of squares they leave."""
+    columns = np.hstack(pairs)
+    found = np.asarray(np.linalg.lstsq(columns, residual, rcond=None)[0], float)
+    return found, float(np.sum((residual - columns @ found) ** 2))
