@@ -31,6 +31,7 @@ _MISFIT = 4.0  # times the usual variance of the pixels of a sector
 _FEW = 0.003  # share of the pixels of a side whose leaving out or not does not matter
 _PASSES = 5
 _MOVED, _WIDENED = 0.15, 0.06  # px, and of the blur: what the next pass would still change is the square of it
+_NEARLY = 0.7  # of that: so far below it no ellipse is tried
 _ROUND = 12.0  # ratio of variances above which points are an ellipse's: 4e-5 of all circles of 70 points reach it
 WIDE_ARC = 0.6  # share of the edge that an ellipse needs
 
@@ -236,6 +237,9 @@ def fit_points(x: Array, y: Array, arc: float) -> tuple[Ellipse, Array, float]:
     fit = geometric(x, y)
     plain = circle(fit.x, fit.y, fit.radius), fit.covariance[:2, :2], fit.rms
     if arc < WIDE_ARC or n < 10:
+        return plain
+    squeezed, sigma = oblong(x, y, plain[0], fit.rms)
+    if abs(squeezed) ** 2 < _NEARLY * 2.0 * _ROUND * sigma**2:  # what an ellipse would gain, to first order
         return plain
     curve = fit_ellipse(x, y, plain[0])
     rest = float(np.sum(curve.distance(x, y) ** 2))

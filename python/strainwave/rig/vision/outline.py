@@ -90,8 +90,10 @@ def _robust(x: Array, y: Array, clear: Mask, radius: float) -> tuple[Ellipse | N
             start = near_curve(x[used], y[used], float(np.mean(used)), start)
         except (np.linalg.LinAlgError, ValueError):
             return nothing
-        distance = np.abs(start.distance(x, y))
+        distance, before = np.abs(start.distance(x, y)), used
         used = clear & (distance <= max(_OUTLIER * scatter(distance[used]), 0.3))
+        if np.array_equal(used, before):
+            break
     return start, used
 
 
