@@ -194,6 +194,8 @@ def _remarks(analyses: Sequence[LoopAnalysis], by: By) -> Iterator[str]:
         yield "one specimen: how far units of this design differ, it cannot tell"
     if by == "position" and len(units) > 1:
         yield f"loops of {len(units)} units are mixed: what differs between positions may be a difference of units"
+    if len({_label(each, by) for each in analyses}) == len(analyses):
+        yield f"no {by} was tested twice: what differs may be what mounting and testing it again would change"
     positions = {each.loop.position for each in analyses}
     if by == "unit" and len(positions) > 1:
         yield f"loops of {len(positions)} positions are mixed: what differs between units may be a difference of positions"

@@ -53,7 +53,9 @@ def separation(falling: Branch, rising: Branch, torque: float, loop: Loop, freed
 def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) -> Width | None:
     """The widest separation at equal torque: hysteresis as document T defines it; None where the branches share no torque.
 
-    Of noisy points the widest is, by about the noise, wider than that of the loop without noise.
+    Of noisy points the widest is, by about the noise, wider than that of the loop without noise. An error of the pulleys'
+    friction moves the branches apart, and with them the torque at which they are widest: at a knee the width changes by twice
+    the error times the compliance of the stiffer branch there, on whose side the widest moves.
     """
     low, high = max(falling.low, rising.low), min(falling.high, rising.high)
     if low >= high:
@@ -65,10 +67,10 @@ def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) ->
     wide = torque[apart >= most - FLAT * abs(most)]
     band = (float(wide.min()), float(wide.max()))
     at = float(torque[int(np.argmax(apart))]) if band[1] - band[0] == 0.0 else 0.5 * (band[0] + band[1])
-    found = separation(falling, rising, at, loop, freedom)
-    assert found is not None
-    width = Result(most, "rad", found.random, found.shared, found.low + most - found.value, found.high + most - found.value)
-    return Width(width, at, band)
+    (_, down, _), (_, up, _) = _at(falling, at), _at(rising, at)
+    (down_before, down_after), (up_before, up_after) = _slopes(falling, at), _slopes(rising, at)
+    stiffer = max(min(down_before, up_after), max(down_after, up_before))
+    return Width(_width(most, down + up, 2.0 * stiffer, loop, freedom), at, band)
 
 
 def widest_in_torque(falling: Branch, rising: Branch) -> tuple[float, float]:
@@ -181,6 +183,15 @@ def _at(branch: Branch, torque: float) -> tuple[float, float, float]:
     slope = float(np.diff(branch.angle[near])[0]) / (high - low)
     variance = weights**2 @ (branch.angle_sigma[near] ** 2 + (slope * branch.torque_sigma[near]) ** 2)
     return float(weights @ branch.angle[near]), float(variance), slope
+
+
+def _slopes(branch: Branch, torque: float) -> tuple[float, float]:
+    """Change of angle per torque just below a torque, and just above it; at an end, both are those of the last stretch."""
+    knots, rows = np.unique(branch.torque, return_index=True)
+    last = np.append(rows[1:] - 1, len(branch.torque) - 1)  # of a level stretch, where the next one begins
+    slopes = (branch.angle[rows[1:]] - branch.angle[last[:-1]]) / np.diff(knots)
+    below, above = (np.clip(np.searchsorted(knots, torque, side) - 1, 0, len(slopes) - 1) for side in ("left", "right"))
+    return float(slopes[below]), float(slopes[above])
 
 
 def _limit(branch: Branch, torque: Array, side: str) -> Array:

@@ -67,7 +67,10 @@ def test_single_loops_are_compared_by_their_stated_errors() -> None:
     found = compare(loops, definition="regression")
     assert found.quantities[0].significant
     assert np.isnan(found.quantities[0].by_repeats)
-    assert found.remarks == ("one specimen: how far units of this design differ, it cannot tell",)
+    assert found.remarks == (
+        "one specimen: how far units of this design differ, it cannot tell",
+        "no position was tested twice: what differs may be what mounting and testing it again would change",
+    )
 
 
 def test_document_ts_positions_spread_by_a_factor() -> None:

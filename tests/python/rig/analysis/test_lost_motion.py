@@ -225,6 +225,20 @@ def test_friction_of_the_rig_widens_by_its_error_on_both_branches() -> None:
     assert found.area.shared == pytest.approx(0.01 * np.abs(np.diff(angle)).sum())
 
 
+@pytest.mark.parametrize("position", TABLE)
+@pytest.mark.parametrize("error", [0.002, -0.002])
+def test_friction_changes_the_widest_as_the_stiffer_branch_has_it(position: float, error: float) -> None:
+    """Pulleys that hold more than is thought shift the torques of both branches; so the width is found once more."""
+    plain = loop_of_table(position, step=0.005, angle_sigma=1e-6, friction_sigma=abs(error))
+    n = len(plain) // 2
+    sense = np.where(np.arange(len(plain)) < n, 1.0, -1.0)
+    shifted = loop(plain.angle, plain.torque + error * sense)
+    here, there = analyse(plain).hysteresis, analyse(shifted).hysteresis
+    assert here is not None
+    assert there is not None
+    assert abs(there.width.value - here.width.value) == pytest.approx(here.width.shared, rel=0.1)
+
+
 def test_lost_motion_and_hysteresis_loss_are_the_catalogues() -> None:
     angle, torque = straight(2.0, 0.5, 1.0, 50)
     at_rated = analyse(loop(angle, torque), rated_torque=1.0)
