@@ -12,7 +12,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.files.bag_table import open_bag
 from strainwave.files.labels import Content, Label, Source, sources_of
+from strainwave.files.matlab_table import open_mat
+from strainwave.files.mdf_table import open_mdf
 from strainwave.files.parquet_table import open_parquet
 from strainwave.files.text_table import open_csv
 from strainwave.messages import one_line, quoted
@@ -52,6 +55,12 @@ FORMATS: dict[str, Callable[[str | Path], OpenTable]] = {
     ".txt": open_csv,
     ".tsv": open_csv,
     ".parquet": open_parquet,
+    ".mat": open_mat,
+    ".mf4": open_mdf,
+    ".mdf": open_mdf,
+    ".bag": open_bag,
+    ".mcap": open_bag,
+    ".db3": open_bag,
 }
 
 
@@ -71,6 +80,8 @@ def open_table(path: str | Path) -> OpenTable:
     Raises:
         ValueError: the suffix is not known, or the file cannot be read
     """
+    if Path(path).is_dir() and Path(path, "metadata.yaml").is_file():  # a bag of the second version
+        return open_bag(path)
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         *others, last = FORMATS

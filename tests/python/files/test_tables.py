@@ -324,10 +324,13 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
         Recording.read(path)
 
 
+KNOWN = ".csv, .txt, .tsv, .parquet, .mat, .mf4, .mdf, .bag, .mcap or .db3"
+
+
 def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.xlsx"
     for read in (Recording.read, Recording.header):
-        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use .csv, .txt, .tsv or .parquet')):
+        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use {KNOWN}')):
             read(path)
 
 

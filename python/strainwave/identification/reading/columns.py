@@ -124,7 +124,9 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         there = listed(label.text for label in table.labels)
         hint = as_option("column", "speed", table.labels[0].name)
         raise ValueError(one_line(f"{table.file}: no name of a column tells what it measures: {there}; say it, as with {hint}"))
-    sources = [Source(column.position, column.name, str(column.position), column.unit or "1") for column in columns]
+    sources = [
+        Source(column.position, column.name, str(column.position), column.unit or column.channel.unit) for column in columns
+    ]
     numbers, remarks = table.measured(sources)
     units = _units_given(table, columns, mapping)
     found, assumed = [], []

@@ -1,0 +1,134 @@
+"""Columns that are in memory already, as formats give them that are read at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.labels import Content, Label, Source
+from strainwave.files.units import measures
+from strainwave.messages import listed, quoted
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ArrayTable:
+    """Columns by their names in the file, all of one length, and what was left out, in words."""
+
+    file: str
+    title: str
+    labels: Sequence[Label]
+    columns: Sequence[Array]
+    left_out: Sequence[str] = ()
+
+    @property
+    def contents(self) -> list[Content]:
+        return ["numbers" for _ in self.labels]
+
+    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+        """The columns wanted."""
+        return {source.name: self.columns[source.position] for source in sources}
+
+    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+        """The columns wanted, nan where nothing is written; and what was left out."""
+        return self.numbers(sources), list(self.left_out)
+
+    def place(self, row: int) -> str:
+        return f"row {row}"
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Channels that were sampled at the same instants.
+
+    Args:
+        time: of the samples [s], shape (n,)
+        columns: by their names, each of shape (n,)
+    """
+
+    time: Array
+    columns: Mapping[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class GridTable:
+    """Channels of several grids in time; the first label is the time, which is that of the grid of what is wanted.
+
+    Channels of several grids are put on the slowest of them, but for temperatures, by linear interpolation where that is allowed.
+    """
+
+    file: str
+    title: str
+    labels: Sequence[Label]
+    grids: Sequence[Grid]
+
+    @property
+    def contents(self) -> list[Content]:
+        return ["numbers" for _ in self.labels]
+
+    def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
+        """The columns wanted, which must be of one grid."""
+        grids = self._grids(sources)
+        if len(grids) > 1:
+            wanted = self._wanted(sources)
+            pair = " and ".join(quoted(next(name for name in grid.columns if name in wanted)) for grid in grids[:2])
+            raise ValueError(f"{self.file}: {pair} were sampled at other instants; read them one by one")
+        return self._on(grids[0], grids[:1], sources)
+
+    def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
+        """The columns wanted on the slowest of their grids; and what was done."""
+        grids = self._grids(sources)
+        if len(grids) == 1:
+            return self._on(grids[0], grids, sources), []
+        slowest = max(self._grids([each for each in sources if not measures(each.unit, "K")]), key=_step)
+        begin, end = max(grid.time[0] for grid in grids), min(grid.time[-1] for grid in grids)
+        rows = slice(*np.searchsorted(slowest.time, [begin, np.nextafter(end, np.inf)]))
+        if not len(slowest.time[rows]):
+            raise ValueError(f"{self.file}: the channels wanted were not sampled at the same time")
+        common = Grid(slowest.time[rows], {name: values[rows] for name, values in slowest.columns.items()})
+        others = [grid for grid in grids if grid is not slowest]
+        wanted = self._wanted(sources)
+        moved = listed(name for grid in others for name in grid.columns if name in wanted)
+        rate = f"{1.0 / _step(slowest):.4g} Hz"
+        remark = f"sampled at other instants, and put on the {rate} of the others by linear interpolation: {moved}"
+        return self._on(common, [common, *others], sources), [remark]
+
+    def place(self, row: int) -> str:
+        return f"sample {row}"
+
+    def _wanted(self, sources: Sequence[Source]) -> list[str]:
+        return [self.labels[source.position].text for source in sources]
+
+    def _grids(self, sources: Sequence[Source]) -> list[Grid]:
+        """The grids of what is wanted; the first one where that is the time alone."""
+        wanted = self._wanted(sources)
+        return [grid for grid in self.grids if any(name in grid.columns for name in wanted)] or [self.grids[0]]
+
+    def _on(self, common: Grid, grids: Sequence[Grid], sources: Sequence[Source]) -> dict[str, Array]:
+        """What is wanted at the instants of a grid."""
+        found = {}
+        for source in sources:
+            name = self.labels[source.position].text
+            grid = next((each for each in grids if name in each.columns), None)
+            if grid is None:
+                found[source.name] = common.time
+            else:
+                values = grid.columns[name]
+                found[source.name] = values if grid.time is common.time else np.interp(common.time, grid.time, values)
+        return found
+
+
+def _step(grid: Grid) -> float:
+    return float(np.median(np.diff(grid.time))) if len(grid.time) > 1 else np.inf
+
+
+def grid_table(file: str, title: str, grids: Sequence[Grid], units: Mapping[str, str]) -> GridTable:
+    """The table of grids; names differ."""
+    if not grids:
+        raise ValueError(f"{file} holds no series of numbers")
+    names = [name for grid in grids for name in grid.columns]
+    return GridTable(file, title, [Label("time", "time", "s"), *(Label(name, name, units.get(name)) for name in names)], grids)

@@ -1,0 +1,68 @@
+"""MDF files of measurement systems in vehicles and test benches, versions 3 and 4, by asammdf."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.array_table import Grid, GridTable, grid_table
+from strainwave.files.labels import unreadable
+from strainwave.messages import one_line
+
+Array = NDArray[np.float64]
+
+
+def open_mdf(path: str | Path) -> GridTable:
+    """The channels of an MDF file that hold numbers, each group of them on a grid of its own."""
+    try:
+        from asammdf import MDF
+        from asammdf.blocks.utils import MdfException
+    except ImportError:
+        raise ImportError(f"{Path(path).name}: MDF files are read by asammdf: pip install strainwave[formats]") from None
+
+    if not Path(path).is_file():
+        raise ValueError(f"{one_line(str(path))} cannot be read: No such file")
+    grids: list[Grid] = []
+    units: dict[str, str] = {}
+    try:
+        with MDF(Path(path)) as opened:
+            for number in range(len(opened.groups)):
+                signals = [signal for signal in _signals(opened, number) if len(signal.samples)]
+                columns: dict[str, Array] = {}
+                for signal in signals:
+                    name = _unique(signal.name, number, {name for grid in grids for name in grid.columns} | columns.keys())
+                    columns[name] = _values(signal)
+                    if signal.unit:
+                        units[name] = str(signal.unit)
+                if columns:
+                    grids.append(Grid(np.asarray(signals[0].timestamps, float), columns))
+    except (OSError, MdfException, ValueError, KeyError, IndexError, TypeError, MemoryError) as error:
+        raise ValueError(unreadable(path, error)) from None
+    return grid_table(one_line(str(path)), "", grids, units)
+
+
+def _signals(opened: Any, number: int) -> list[Any]:
+    """The channels of a group but for its time."""
+    found = []
+    master = opened.masters_db.get(number)
+    for index, channel in enumerate(opened.groups[number].channels):
+        if index != master:
+            signal = opened.get(channel.name, group=number, index=index)
+            if signal.samples.dtype.kind in "fiub" and signal.samples.ndim == 1:
+                found.append(signal)
+    return found
+
+
+def _values(signal: Any) -> Array:
+    """The samples, nan where the file says that they are not valid."""
+    values = np.array(signal.samples, float)
+    if (invalid := signal.invalidation_bits) is not None:
+        values[np.asarray(invalid, bool)] = np.nan
+    return values
+
+
+def _unique(name: str, group: int, taken: set[str]) -> str:
+    return name if name not in taken else f"{name}.{group}"

@@ -1,0 +1,219 @@
+"""MAT, MDF and bags of ROS: what programs write into them is read back."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from strainwave import Recording
+from strainwave.files.labels import Source
+from strainwave.files.tables import open_table
+
+asammdf = pytest.importorskip("asammdf")
+h5py = pytest.importorskip("h5py")
+pytest.importorskip("rosbags")
+
+from rosbags.rosbag1 import Writer as Writer1  # noqa: E402
+from rosbags.rosbag2 import StoragePlugin, Writer  # noqa: E402
+from rosbags.typesys import Stores, get_typestore  # noqa: E402
+from scipy.io import savemat  # noqa: E402
+
+FOLDER = settings(deadline=None, max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
+TIME = np.arange(50) * 0.01
+numbers = arrays(np.float64, (7, 3), elements=st.floats(-1e6, 1e6))
+
+
+def exactly(message: str) -> str:
+    return f"^{re.escape(message)}$"
+
+
+def sources(path: Path, names: Sequence[str]) -> list[Source]:
+    labels = [label.name for label in open_table(path).labels]
+    return [Source(labels.index(name), name, name, "1") for name in names]
+
+
+def read(path: Path, *names: str) -> tuple[list[list[float]], list[str]]:
+    columns, remarks = open_table(path).measured(sources(path, names))
+    return [columns[name].tolist() for name in names], remarks
+
+
+# MAT
+
+
+def save_hdf5(path: Path, variables: dict[str, Any]) -> None:
+    """As MATLAB does for version 7.3: transposed, a structure as a group."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, value in variables.items():
+            if isinstance(value, dict):
+                for key, each in value.items():
+                    file.create_dataset(f"{name}/{key}", data=np.atleast_2d(each).T)
+            else:
+                file[name] = np.atleast_2d(value).T
+    whole = bytearray(path.read_bytes())
+    whole[:116] = b"MATLAB 7.3 MAT-file, written by a test".ljust(116)
+    whole[116:128] = bytes(8) + b"\x00\x02IM"
+    path.write_bytes(whole)
+
+
+@FOLDER
+@given(numbers, st.sampled_from(["4", "5", "compressed", "7.3"]), st.booleans())
+def test_variables_of_a_mat_file_are_read_back(tmp_path: Path, values: Any, version: str, row: bool) -> None:
+    shape = (1, -1) if row else (-1, 1)
+    variables = {"t": values[:, 0].reshape(shape), "q": values[:, 1].reshape(shape), "tau": values[:, 2].reshape(shape)}
+    path = tmp_path / "log.mat"
+    if version == "7.3":
+        save_hdf5(path, variables)
+    else:
+        savemat(path, variables, format=version[:1] if version == "4" else "5", do_compression=version == "compressed")
+    assert np.array_equal(read(path, "t", "q", "tau")[0], values.T)
+
+
+@pytest.mark.parametrize("save", [savemat, save_hdf5])
+def test_structures_matrices_and_what_does_not_fit(tmp_path: Path, save: Any) -> None:
+    path = tmp_path / "log.mat"
+    matrix = np.arange(30.0).reshape(10, 3)
+    save(path, {"data": {"t": np.arange(10.0), "q": matrix}, "kp": 160.18, "short": np.arange(4.0)})
+    assert {label.name for label in open_table(path).labels} == {"data.t", "data.q_1", "data.q_2", "data.q_3"}
+    values, remarks = read(path, "data.t", "data.q_2")
+    assert values == [np.arange(10.0).tolist(), matrix[:, 1].tolist()]
+    assert remarks == ["of another length than 10, and left out: short (4)", "single numbers, not used: kp = 160.18"]
+
+
+def test_a_mat_file_is_a_recording_where_units_are_given(tmp_path: Path) -> None:
+    path = tmp_path / "log.mat"
+    savemat(path, {"t": TIME, "q": np.sin(TIME)})
+    assert Recording.read(path, {"time": "t", "angle": "q"}, {"time": "s", "angle": "rad"}).time.tolist() == TIME.tolist()
+
+
+@pytest.mark.parametrize("content", [b"", b"MATLAB 5.0 MAT-file", b"x" * 500])
+def test_a_damaged_mat_file_is_refused_in_one_line(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "log.mat"
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=rf"^{re.escape(str(path))} (cannot be read: [^\n]+|holds no series of numbers)$"):
+        open_table(path)
+
+
+# MDF
+
+
+def save_mdf(path: Path, *groups: dict[str, tuple[Any, str]], times: Sequence[Any]) -> None:
+    with asammdf.MDF(version="4.10") as file:
+        for time, group in zip(times, groups, strict=True):
+            file.append([asammdf.Signal(values, time, name=name, unit=unit) for name, (values, unit) in group.items()])
+        file.save(path, overwrite=True)
+
+
+@FOLDER
+@given(numbers)
+def test_channels_of_an_mdf_file_are_read_back_with_their_units(tmp_path: Path, values: Any) -> None:
+    path = tmp_path / "log.mf4"
+    save_mdf(path, {"q": (values[:, 0], "deg"), "i": (values[:, 1], "A")}, times=[np.arange(7) * 0.1])
+    recording = Recording.read(path)
+    assert recording.units == {"time": "s", "q": "deg", "i": "A"}
+    assert (recording["q"].tolist(), recording["i"].tolist()) == (values[:, 0].tolist(), values[:, 1].tolist())
+
+
+def test_channels_sampled_at_other_instants_are_put_on_the_slowest(tmp_path: Path) -> None:
+    path = tmp_path / "log.mf4"
+    fast, warm = np.arange(400) * 0.0013, np.array([0.0, 1.0])
+    save_mdf(
+        path,
+        {"current": (3.0 * fast + 1.0, "A")},
+        {"link_angle": (np.sin(TIME), "rad")},
+        {"temperature": (20.0 + warm, "degC")},
+        times=[fast, TIME, warm],
+    )
+    with pytest.raises(ValueError, match=r'"current" and "link_angle" were sampled at other instants; read them one by one$'):
+        Recording.read(path)
+    opened = open_table(path)
+    units = {"time": "s", "current": "A", "link_angle": "rad", "temperature": "degC"}
+    wanted = [Source(i, label.name, label.name, units[label.name]) for i, label in enumerate(opened.labels)]
+    columns, remarks = opened.measured(wanted)
+    assert columns["time"].tolist() == TIME.tolist()
+    assert columns["current"] == pytest.approx(3.0 * TIME + 1.0)  # a straight line is interpolated exactly
+    assert columns["temperature"] == pytest.approx(20.0 + TIME)
+    assert remarks == [
+        "sampled at other instants, and put on the 100 Hz of the others by linear interpolation: current, temperature"
+    ]
+
+
+def test_what_is_no_mdf_file_is_refused_in_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "log.mf4"
+    path.write_bytes(b"MDF     but not really")
+    with pytest.raises(ValueError, match=rf"^{re.escape(str(path))} cannot be read: [^\n]+$"):
+        open_table(path)
+
+
+# Bags
+
+
+def joint_states(store: Any, time: Any, angles: Any) -> list[tuple[int, Any]]:
+    kinds = store.types
+    stamp, header = kinds["builtin_interfaces/msg/Time"], kinds["std_msgs/msg/Header"]
+    extra = {"seq": 0} if "seq" in header.__dataclass_fields__ else {}
+    found = []
+    for at, angle in zip((time * 1e9).astype(int).tolist(), angles.tolist(), strict=True):
+        when = header(stamp=stamp(sec=1_700_000_000 + at // 10**9, nanosec=at % 10**9), frame_id="", **extra)
+        series = [np.array([angle, 2.0 * angle]), np.array([0.5, 0.25]), np.array([])]
+        found.append((at, kinds["sensor_msgs/msg/JointState"](when, ["hip", "knee"], *series)))
+    return found
+
+
+def save_bag(path: Path, version: str, time: Any, angles: Any) -> Path:
+    if version == "rosbag":
+        store = get_typestore(Stores.ROS1_NOETIC)
+        with Writer1(path) as bag:
+            topic = bag.add_connection("/joint_states", "sensor_msgs/msg/JointState", typestore=store)
+            for at, message in joint_states(store, time, angles):
+                bag.write(topic, at, store.serialize_ros1(message, "sensor_msgs/msg/JointState"))
+        return path
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    plugin = StoragePlugin.MCAP if version == "mcap" else StoragePlugin.SQLITE3
+    with Writer(path, version=9, storage_plugin=plugin) as bag:
+        topic = bag.add_connection("/joint_states", "sensor_msgs/msg/JointState", typestore=store)
+        for at, message in joint_states(store, time, angles):
+            bag.write(topic, at, store.serialize_cdr(message, "sensor_msgs/msg/JointState"))
+    return path
+
+
+@pytest.mark.parametrize("version", ["rosbag", "folder", "db3", "mcap"])
+def test_joint_states_of_a_bag_are_read_back(tmp_path: Path, version: str) -> None:
+    path = save_bag(tmp_path / ("run.bag" if version == "rosbag" else "run"), version, TIME, np.sin(TIME))
+    if version in ("mcap", "db3"):
+        (path,) = path.glob(f"*.{version}")
+    assert [label.name for label in open_table(path).labels] == [
+        "time", "hip.position", "knee.position", "hip.velocity", "knee.velocity",
+    ]  # fmt: skip
+    recording = Recording.read(path)
+    assert recording.time == pytest.approx(TIME, abs=2e-9)
+    assert recording["knee.position"].tolist() == (2.0 * np.sin(TIME)).tolist()
+    assert recording.unit("knee.velocity") == "rad/s"
+
+
+def test_what_is_no_bag_is_refused_in_one_line(tmp_path: Path) -> None:
+    for suffix in ("bag", "mcap", "db3"):
+        path = tmp_path / f"run.{suffix}"
+        path.write_bytes(b"no bag")
+        with pytest.raises(ValueError, match=rf"^{re.escape(str(path))} (cannot be read: [^\n]+|holds no series of numbers)$"):
+            open_table(path)
+
+
+@pytest.mark.parametrize(("name", "package"), [("a.mf4", "asammdf"), ("a.mcap", "rosbags"), ("a.mat", "h5py")])
+def test_a_format_whose_package_is_missing_says_what_to_install(
+    tmp_path: Path, name: str, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / name
+    save_hdf5(path, {"t": TIME})
+    for module in [each for each in sys.modules if each.split(".")[0] == package]:
+        monkeypatch.setitem(sys.modules, module, None)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(ImportError, match=rf"{package}: pip install strainwave\[formats\]$"):
+        open_table(path)
