@@ -28,6 +28,8 @@ class TorsionLoop(ComparedByFields):
     tell them apart; for it the zero of the twist is taken as known. A path that never turns back, a single branch, tells
     neither: it is taken to begin with an unloaded gear at the zeros of both axes.
 
+    A drift is what a sensor's zero changes by from begin to end, in proportion to time; without a clock, to the samples.
+
     At the input, with the output locked, the friction of the wave generator is inside the loop: the model's `friction_input` at
     rest, times the ratio.
 
@@ -37,6 +39,10 @@ class TorsionLoop(ComparedByFields):
         history: cyclic, if the same path had been run before; virgin, if the gear had not been loaded before
         torque_zero: where a fit starts to look for the zero of the torque [N.m]
         twist_zero: zero of the twist, if it is known [rad]
+        near_zero: where a fit starts to look for the zero of the twist [rad]; half way between the ends if not given
+        torque_drift: where it starts to look for a drift of the torque from begin to end [N.m]; no drift if None
+        twist_drift: the same of the twist [rad]
+        moments: when each sample was taken, as a share of the duration, shape (n,); in equal steps if not given
         input_ratio: ratio of the gear if it was measured at the input, None if at the output
         samples: how many were measured; more than are left in `twist` where each is the mean of several
     """
@@ -46,6 +52,10 @@ class TorsionLoop(ComparedByFields):
     history: Literal["cyclic", "virgin"] = "cyclic"
     torque_zero: float = 0.0
     twist_zero: float | None = None
+    near_zero: float | None = None
+    torque_drift: float | None = None
+    twist_drift: float | None = None
+    moments: Array | None = None
     input_ratio: float | None = None
     samples: int = 0
     channels = ("torque",)
@@ -66,10 +76,10 @@ class TorsionLoop(ComparedByFields):
             twist, torque = angle / ratio, ratio * input_torque
         else:
             twist, torque = sensible(recording, "twist", "rad"), sensible(recording, "torque", "N.m")
-        twist, torque = thinned(twist, torque)
+        twist, torque, moments = thinned(twist, torque, _moments(recording))
         if ratio is not None:
-            twist, torque = twist[settled := slid(twist)], torque[settled]
-        loop = cls(twist, torque, input_ratio=ratio, samples=len(recording))
+            twist, torque, moments = twist[settled := slid(twist)], torque[settled], moments[settled]
+        loop = cls(twist, torque, moments=moments, input_ratio=ratio, samples=len(recording))
         return replace(loop, history="virgin", twist_zero=0.0) if loop.single_branch else loop
 
     def __post_init__(self) -> None:
@@ -93,8 +103,14 @@ class TorsionLoop(ComparedByFields):
     def nuisances(self) -> tuple[Nuisance, ...]:
         if self.single_branch:
             return ()
-        torque = Nuisance("torque_zero", "N.m", self.torque_zero)
-        return (torque,) if self.twist_zero is not None else (torque, Nuisance("twist_zero", "rad", self.middle))
+        found = [Nuisance("torque_zero", "N.m", self.torque_zero)]
+        if self.twist_zero is None:
+            found.append(Nuisance("twist_zero", "rad", self.centre))
+        if self.torque_drift is not None:
+            found.append(Nuisance("torque_drift", "N.m", self.torque_drift))
+        if self.twist_drift is not None:
+            found.append(Nuisance("twist_drift", "rad", self.twist_drift))
+        return tuple(found)
 
     @cached_property
     def single_branch(self) -> bool:
@@ -106,20 +122,60 @@ class TorsionLoop(ComparedByFields):
         """Twist half way between the ends of the loop [rad]."""
         return 0.5 * float(self.twist.min() + self.twist.max())
 
-    def path(self, twist_zero: float) -> Array:
+    @property
+    def centre(self) -> float:
+        """Where the zero of the twist is, as far as is known before a fit [rad]."""
+        return self.middle if self.near_zero is None else self.near_zero
+
+    @cached_property
+    def unloaded(self) -> float | None:
+        """Twist half way between the branches where the torque passes its zero [rad]; none if it does not, up and down.
+
+        Unlike the middle, it does not move where the gear is twisted farther to one side.
+        """
+        up, down = (_crossings(self.twist, sense * self.torque) for sense in (1.0, -1.0))
+        return 0.5 * float(up.mean() + down.mean()) if len(up) and len(down) else None
+
+    @cached_property
+    def _behind_middle(self) -> Array:
+        """How far each sample is behind the middle of the record, as a share of it: what a drift has then changed."""
+        return (np.linspace(0.0, 1.0, len(self.twist)) if self.moments is None else self.moments) - 0.5
+
+    def without_drift(self) -> TorsionLoop:
+        """The loop less the drift that a fit would start from."""
+        if self.torque_drift is None and self.twist_drift is None:
+            return self
+        twist = self.twist - (self.twist_drift or 0.0) * self._behind_middle
+        torque = self.torque - (self.torque_drift or 0.0) * self._behind_middle
+        return replace(self, twist=twist, torque=torque, torque_drift=None, twist_drift=None)
+
+    def path(self, twist_zero: float, twist_drift: float = 0.0) -> Array:
         """The twist from its zero, where the gear is virgin, with the run before that a cyclic history needs."""
-        path = self.twist - twist_zero
+        path = self.twist - twist_zero - twist_drift * self._behind_middle
         return np.concatenate(([0.0], path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
 
     def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        torque_zero, twist_zero = (0.0, 0.0) if self.single_branch else (*nuisances, self.twist_zero)[:2]
+        unknown: dict[str, float] = dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
+        twist_zero = 0.0 if self.single_branch else unknown.get("twist_zero", self.twist_zero or 0.0)
+        torque_drift, twist_drift = unknown.get("torque_drift", 0.0), unknown.get("twist_drift", 0.0)
         n = len(self.twist)
-        torque, slopes = _core.differentiate_loop(model, self.path(twist_zero), list(numbers))
+        torque, slopes = _core.differentiate_loop(model, self.path(twist_zero, twist_drift), list(numbers))
         *by_numbers, by_shift = slopes[:, -n:]
-        by_zeros = (np.ones(n), -by_shift)[: len(nuisances)]
-        predicted = torque[-n:] + torque_zero + self.friction(model)
-        by_numbers = [slope + self._friction_slope(model, number) for slope, number in zip(by_numbers, numbers, strict=True)]
-        return predicted[np.newaxis], np.stack((*by_numbers, *by_zeros))[:, np.newaxis]
+        if self.input_ratio is not None:
+            by_numbers = [
+                slope + self._friction_slope(model, number) for slope, number in zip(by_numbers, numbers, strict=True)
+            ]
+        by_unknowns = {"torque_zero": np.ones(n), "twist_zero": -by_shift, "torque_drift": self._behind_middle}
+        if "twist_drift" in unknown:
+            by_unknowns["twist_drift"] = self._drift_slope(model, twist_zero, twist_drift)
+        predicted = torque[-n:] + unknown.get("torque_zero", 0.0) + torque_drift * self._behind_middle + self.friction(model)
+        return predicted[np.newaxis], np.stack([*by_numbers, *(by_unknowns[name] for name in unknown)])[:, np.newaxis]
+
+    def _drift_slope(self, model: Gear, twist_zero: float, twist_drift: float) -> Array:
+        """Derivative of the torque by the drift of the twist, by central differences: dual numbers shift all samples alike."""
+        step, n = 1e-6 * float(np.ptp(self.twist)), len(self.twist)
+        ahead, back = (model.trace(self.path(twist_zero, twist_drift + sense * step))[-n:] for sense in (1.0, -1.0))
+        return np.asarray((ahead - back) / (2.0 * step))
 
     def friction(self, model: Gear) -> Array:
         """What friction at rest adds to the torque [N.m], shape (n,): the input's if measured there, none at a held output."""
@@ -151,6 +207,20 @@ class TorsionLoop(ComparedByFields):
     def virgin(self) -> TorsionLoop:
         """The same measurement, taken to be the first loading."""
         return replace(self, history="virgin")
+
+
+def _moments(recording: Recording) -> Array:
+    """When each sample was taken, as a share of the duration."""
+    clock = recording.time if "time" in recording.names else np.arange(float(len(recording)))
+    duration = float(np.ptp(clock))
+    return (clock - clock[0]) / duration if duration > 0.0 else np.linspace(0.0, 1.0, len(clock))
+
+
+def _crossings(twist: Array, torque: Array) -> Array:
+    """Twists at which the torque passes zero upwards [rad]."""
+    at = np.flatnonzero((torque[:-1] < 0.0) & (torque[1:] >= 0.0))
+    share = torque[at] / (torque[at] - torque[at + 1])
+    return np.asarray(twist[at] + share * (twist[at + 1] - twist[at]))
 
 
 def at_input(recording: Recording) -> bool:

@@ -64,7 +64,7 @@ class Elements(Beside):
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         """Torques of elements of unit stiffness."""
-        path, slips = loop.path(loop.middle), half_span(loop) * SLIPS
+        path, slips = loop.path(loop.centre), half_span(loop) * SLIPS
         traces = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip]).trace(path) for slip in slips.tolist()]
         places = tuple(range(len(slips)))
         put = Choice(places, lambda g, weights: g.replace(hysteresis=_neighbours(weights, slips)))
@@ -164,4 +164,4 @@ def _dry(gear: Gear) -> friction.Coulomb | friction.Stribeck | friction.LuGre:
 
 
 def _kept_hysteresis(loop: TorsionLoop, gear: Gear) -> Array:
-    return np.asarray(gear.hysteresis.trace(loop.path(0.0 if loop.single_branch else loop.middle))[-len(loop.twist) :])
+    return np.asarray(gear.hysteresis.trace(loop.path(0.0 if loop.single_branch else loop.centre))[-len(loop.twist) :])

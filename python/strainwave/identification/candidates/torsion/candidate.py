@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ from strainwave.identification.fitting.fit import Fit, fit
 Array = NDArray[np.float64]
 SLIPPING = 0.9  # of half the span: an element that slips later is a spring for all that the loop tells
 ALIKE = 1.1  # ratio of two slip twists; elements that are closer are one
+OFF_CENTRE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
+DRIFTS = ("torque_drift", "twist_drift")
+DRIFTING = 3.0  # standard deviations that a drift must exceed
 STARTS = 500  # samples from which the start of a law is sought whose torques take long
 NEGLIGIBLE = 1e-3  # of the span of the torque: smaller differences in error do not justify another parameter
 
@@ -89,8 +93,10 @@ def starts(
     Raises:
         ValueError: nothing of these kinds fits the loop
     """
-    seen, training = _sparse(loop, training) if beside.dear else (loop, training)
-    middle = 0.0 if loop.single_branch else loop.middle
+    seen = loop.without_drift()
+    if beside.dear:
+        seen, training = _sparse(seen, training)
+    middle = 0.0 if loop.single_branch else loop.centre
     half = float(np.abs(seen.twist - middle).max())
     sought = seen.torque - beside.known(seen, gear)
     zeros = _zero_columns(seen)
@@ -108,12 +114,54 @@ def starts(
 
 def candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> TorsionCandidate:
     """A kind of spring and what stands beside it, fitted from the convex problem's answers."""
-    histories = [loop] if loop.single_branch else [loop, loop.virgin()]
+    readings = _readings(loop, spring)
     most = max(spring.minima, beside.minima)
-    begun = min((starts(each, gear, training, spring, beside, most) for each in histories), key=lambda found: found[0].error)
-    twist_zero = loop.twist_zero if spring.knows_zero or beside.whole_spring else loop.middle
-    found = [finished(each.gear, replace(each.loop, twist_zero=twist_zero), training, spring, beside, gear) for each in begun]
+    begun = min((starts(each, gear, training, spring, beside, most) for each in readings), key=lambda found: found[0].error)
+    if not (spring.knows_zero or beside.whole_spring):
+        begun = [replace(each, loop=replace(each.loop, twist_zero=loop.centre)) for each in begun]
+    found = [finished(each.gear, each.loop, training, spring, beside, gear) for each in begun]
     return min(found, key=lambda each: float(each.fit.rms()[0]))
+
+
+def _readings(loop: TorsionLoop, spring: Kind) -> list[TorsionLoop]:
+    """What a loop does not tell: whether its path had been run before; and which of two guesses is nearer to the zero."""
+    if loop.single_branch:
+        return [loop]
+    away = np.inf if loop.unloaded is None else abs(loop.unloaded - loop.centre)
+    apart = spring.knows_zero and OFF_CENTRE * half_span(loop) < away < half_span(loop)
+    zeros = [loop.near_zero, loop.unloaded] if apart else [loop.near_zero]
+    return [replace(each, near_zero=zero) for each in (loop, loop.virgin()) for zero in zeros]
+
+
+def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
+    """The candidate with a drift of torque or twist, if the loop shows one; else itself.
+
+    A drift counts if it exceeds three standard deviations, and if what is held out is predicted better with it.
+    """
+    if found.loop.single_branch:
+        return found
+    begun = resumed(found)
+    loops = [replace(begun, torque_drift=0.0), replace(begun, twist_drift=0.0)]
+    tried = [finished(found.fit.gear, loop, found.fit.training, found.spring, found.beside, known) for loop in loops]
+    shown = [each for each in tried if each.error < found.error and _drift_shown(each)]
+    return min([found, *shown], key=lambda each: each.error)
+
+
+def drifts(found: TorsionCandidate) -> dict[str, Any]:
+    """What drift was found."""
+    return {e.path: e.value for e in found.fit.estimates if e.path in DRIFTS}
+
+
+def _drift_shown(found: TorsionCandidate) -> bool:
+    sigma = {e.path: e.sigma for e in found.fit.estimates}
+    return all(abs(value) > DRIFTING * sigma[name] for name, value in drifts(found).items())
+
+
+def resumed(found: TorsionCandidate) -> TorsionLoop:
+    """The loop as a fit that goes on from there sees it."""
+    at = {estimate.path: estimate.value for estimate in found.fit.estimates}
+    starts: dict[str, Any] = {name: at[name] for name in ("torque_zero", *DRIFTS) if name in at}
+    return replace(found.loop, near_zero=at.get("twist_zero", found.loop.near_zero), **starts)
 
 
 def finished(
@@ -186,7 +234,8 @@ def _sparse(loop: TorsionLoop, training: NDArray[np.bool_]) -> tuple[TorsionLoop
     """A loop of few samples, of which a start needs no more."""
     step = -(-len(loop.twist) // STARTS)
     few = slice(None, None, step)
-    return replace(loop, twist=loop.twist[few], torque=loop.torque[few]), training[few]
+    moments = None if loop.moments is None else loop.moments[few]
+    return replace(loop, twist=loop.twist[few], torque=loop.torque[few], moments=moments), training[few]
 
 
 def _zero_columns(loop: TorsionLoop) -> Array:

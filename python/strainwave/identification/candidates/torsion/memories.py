@@ -202,6 +202,6 @@ def _alone(gear: Gear, law: Law, factor: float) -> Gear:
 
 def _traced(law: Law, loop: TorsionLoop) -> Array:
     try:
-        return np.asarray(law.trace(loop.path(loop.middle))[-len(loop.twist) :])
+        return np.asarray(law.trace(loop.path(loop.centre))[-len(loop.twist) :])
     except ValueError:  # beyond the bound of its springs
         return np.full(len(loop.twist), np.nan)

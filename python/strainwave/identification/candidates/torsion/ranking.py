@@ -13,7 +13,14 @@ from numpy.typing import NDArray
 from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.torsion.beside import Beside
-from strainwave.identification.candidates.torsion.candidate import TorsionCandidate, candidate, with_fewer
+from strainwave.identification.candidates.torsion.candidate import (
+    TorsionCandidate,
+    candidate,
+    drifts,
+    resumed,
+    with_drift,
+    with_fewer,
+)
 from strainwave.identification.candidates.torsion.folds import BLOCKS, FOLDS, block_of, held_out_blocks
 from strainwave.identification.candidates.torsion.memories import BESIDE_A_SPRING, WHOLE
 from strainwave.identification.candidates.torsion.selection import asked
@@ -23,6 +30,8 @@ from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
+UNNOTICED = 0.01  # of the error of the best
+BEHIND = 2.0  # times the residuals of the best: models that leave more are judged by one fold
 TIMES = 5  # a law is timed; the least counts
 
 
@@ -34,7 +43,8 @@ class Candidate(ComparedByFields):
         name: spring and hysteresis, in words
         fit: to all samples
         parameters: numbers of the gear that were fitted
-        error: rms error on samples held out [N.m]: every one of twenty blocks is predicted by a fit to other blocks
+        error: rms error on samples held out [N.m]: each of twenty blocks is predicted by a fit to other blocks; of models far
+            behind the best, five of them are
         standard_error: of that error, by how the blocks differ [N.m]
         worse: by how much its error exceeds that of the best [N.m], and the standard error of that: (0, 0) of the best
         correlation: samples of its residuals that hang together: 1 of white noise, which leaves nothing to explain
@@ -52,8 +62,8 @@ class Candidate(ComparedByFields):
 
     @property
     def good(self) -> bool:
-        """Whether the loop does not tell it from the best: worse by no more than one standard error."""
-        return self.worse[0] <= self.worse[1]
+        """Whether it is as good as the best: worse by no more than one standard error, or by less than anyone would notice."""
+        return self.worse[0] <= max(self.worse[1], UNNOTICED * (self.error - self.worse[0]))
 
 
 def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False) -> tuple[Candidate, ...]:
@@ -82,13 +92,16 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
     beside = asked(loop, gear, friction_measured)
     for each in beside:
         tried.add(PLAIN, [each])
+    tried.drift()
     tried.add([Backlash(LINEAR), behind_play(tried.best.spring)], [tried.best.beside])
     if not loop.single_branch:
         tried.add([tried.best.spring], BESIDE_A_SPRING)
         tried.add([Negligible()], WHOLE)
         if not tried.best.beside.whole_spring:
             tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.beside])
-    found = [_judged(each) for each in [*tried.candidates, *tried.simpler()]]
+    candidates = [*tried.candidates, *tried.simpler()]
+    near = BEHIND * min(_left(each) for each in candidates)
+    found = [_judged(each, FOLDS if _left(each) < near else 1) for each in candidates]
     return _ordered([each for each in found if each is not None])
 
 
@@ -111,6 +124,15 @@ class _Tried:
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
                 self._found[spring, beside] = found
+
+    def drift(self) -> None:
+        """Starts again with a drift, if the best shows one."""
+        drifting = with_drift(self.best, self.gear)
+        if drifting is not self.best:
+            self.loop, before = replace(self.loop, **drifts(drifting)), [*self._found]
+            self._found.clear()
+            for spring, beside in before:
+                self.add([spring], [beside])
 
     @property
     def candidates(self) -> list[TorsionCandidate]:
@@ -138,22 +160,26 @@ def behind_play(spring: Kind) -> Kind:
     return spring if isinstance(spring, Backlash) else Backlash(spring)
 
 
+def _left(found: TorsionCandidate) -> float:
+    """What a fit to all samples leaves of the torque, rms [N.m]."""
+    return float(found.fit.rms()[0])
+
+
 @dataclass(frozen=True, eq=False)
 class _Judged(ComparedByFields):
-    """A candidate with the mean squared error of each block, by fits that did not see it."""
+    """A candidate with the mean squared error of each block, by fits that did not see it; not-a-number of blocks not tried."""
 
     candidate: TorsionCandidate
     blocks: Array
 
 
-def _judged(found: TorsionCandidate) -> _Judged | None:
+def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
     """Each fold is fitted from where the fit to all ended; none where one of them has no fit."""
     free = [estimate.path for estimate in found.fit.estimates if "." in estimate.path]
-    zeros = {estimate.path: estimate.value for estimate in found.fit.estimates if "." not in estimate.path}
-    loop = replace(found.loop, torque_zero=zeros.get("torque_zero", 0.0))
+    loop = resumed(found)
     n = len(loop.twist)
     squares = np.full(n, np.nan)
-    for fold in range(FOLDS):
+    for fold in range(folds):
         training = held_out_blocks(n, fold)
         try:
             with warnings.catch_warnings(action="ignore", category=PassivityWarning):
@@ -166,24 +192,24 @@ def _judged(found: TorsionCandidate) -> _Judged | None:
 
 
 def _ordered(judged: Sequence[_Judged]) -> tuple[Candidate, ...]:
-    best = min(judged, key=lambda each: each.blocks.mean())
+    best = min((each for each in judged if np.isfinite(each.blocks).all()), key=lambda each: each.blocks.mean())
     found = [_measured(each, best) for each in judged]
     return tuple(sorted(found, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else (c.error, 0.0))))
 
 
 def _measured(judged: _Judged, best: _Judged) -> Candidate:
     """Errors are roots of mean squares, so that their standard errors are those of the squares over twice the root."""
-    made, n = judged.candidate.fit, len(judged.blocks)
-    error = float(np.sqrt(judged.blocks.mean()))
-    more = judged.blocks - best.blocks
-    twice = 2.0 * max(error, np.finfo(float).tiny)
+    made, seen = judged.candidate.fit, np.isfinite(judged.blocks)
+    blocks, of_best = judged.blocks[seen], best.blocks[seen]
+    error = float(np.sqrt(blocks.mean()))
+    twice = 2.0 * max(error, np.finfo(float).tiny) * np.sqrt(len(blocks))
     return Candidate(
         judged.candidate.name,
         made,
         sum("." in estimate.path for estimate in made.estimates),
         error,
-        float(judged.blocks.std(ddof=1) / np.sqrt(n) / twice),
-        (error - float(np.sqrt(best.blocks.mean())), float(more.std(ddof=1) / np.sqrt(n) / twice)),
+        float(blocks.std(ddof=1) / twice),
+        (error - float(np.sqrt(of_best.mean())), float((blocks - of_best).std(ddof=1) / twice)),
         correlation_length(made.residuals[0]),
         _cost(judged.candidate),
     )
@@ -191,7 +217,7 @@ def _measured(judged: _Judged, best: _Judged) -> Candidate:
 
 def _cost(found: TorsionCandidate) -> float:
     """Time of the torque [s per sample], the least of several runs."""
-    path = found.loop.path(found.loop.middle)
+    path = found.loop.path(found.loop.centre)
     gear = found.fit.gear
     least = np.inf
     for _ in range(TIMES):

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave._core import Gear
 from strainwave.identification.candidates.torsion.beside import Beside, Dry, Elements, Friction, Nothing
-from strainwave.identification.candidates.torsion.candidate import NEGLIGIBLE, TorsionCandidate, candidate, with_fewer
+from strainwave.identification.candidates.torsion.candidate import (
+    NEGLIGIBLE,
+    TorsionCandidate,
+    candidate,
+    drifts,
+    with_drift,
+    with_fewer,
+)
 from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
@@ -24,7 +32,7 @@ def fit_loop(
     That is Maxwell-slip hysteresis, in parallel with the spring. Of a single branch it is nothing: the hysteresis of the gear
     is kept. A loop from the input holds the friction of the wave generator too. Where this was measured, it is taken out.
     Where it was not, the loop tells the sum of friction and hysteresis only; one of them is fitted, friction rather than
-    hysteresis, and the other is kept.
+    hysteresis, and the other is kept. A drift of torque or twist is taken along where the loop shows one.
 
     Args:
         loop: measured torque over twist
@@ -40,10 +48,13 @@ def fit_loop(
         ValueError: too few samples for any candidate
     """
     chosen = np.ones(len(loop.twist), bool) if training is None else training
-    candidates = [
-        candidate(loop, gear, chosen, spring, beside) for beside in asked(loop, gear, friction_measured) for spring in SPRINGS
-    ]
+    kinds = [(spring, beside) for beside in asked(loop, gear, friction_measured) for spring in SPRINGS]
+    candidates = [candidate(loop, gear, chosen, *each) for each in kinds]
     best = min(candidates, key=lambda c: c.error)
+    if drift := drifts(with_drift(best, gear)):
+        loop = replace(loop, **drift)
+        candidates = [candidate(loop, gear, chosen, *each) for each in kinds]
+        best = min(candidates, key=lambda c: c.error)
     good = float(np.hypot(1.05 * best.error, NEGLIGIBLE * np.ptp(loop.torque)))
     candidates += simpler(best, good, gear)
     return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
