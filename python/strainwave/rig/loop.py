@@ -39,6 +39,7 @@ class Loop(ComparedByFields):
         temperature: of the gear [K], shape (n,), or None
         position: how far the flexspline was turned in its mount [rad]
         unit: which specimen
+        input_friction: whether friction of the wave generator is in the torque; as at the input, the output held, if None
         remarks: what a reader of the result must know, in words
 
     Raises:
@@ -63,6 +64,7 @@ class Loop(ComparedByFields):
     temperature: Array | None = None
     position: float = 0.0
     unit: str = ""
+    input_friction: bool = False
     remarks: tuple[str, ...] = ()
 
     def __init__(
@@ -82,6 +84,7 @@ class Loop(ComparedByFields):
         temperature: Sequence[float] | Array | None = None,
         position: float = 0.0,
         unit: str = "",
+        input_friction: bool | None = None,
         remarks: Sequence[str] = (),
     ) -> None:
         arguments.one_of("side", side, COLUMNS)
@@ -100,6 +103,7 @@ class Loop(ComparedByFields):
         object.__setattr__(self, "position", arguments.number("position", position, "rad"))
         for key, text in (("side", side), ("name", name), ("unit", unit)):
             object.__setattr__(self, key, arguments.text(key, text))
+        object.__setattr__(self, "input_friction", side == "input" if input_friction is None else bool(input_friction))
         object.__setattr__(self, "remarks", tuple(remarks))
 
     def __len__(self) -> int:

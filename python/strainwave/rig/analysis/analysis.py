@@ -147,7 +147,7 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
     cut, freedom = (segment(loop), inf) if stated else _with_scatter(loop)
     found = _analysis(loop, cut, freedom, rated_torque, stated)
     if gear_set is not None:
-        checks, words = check_catalogue(cut, gear_set, found.width_at_zero, rated_torque)
+        checks, words = check_catalogue(cut, gear_set, found.width_at_zero, rated_torque, freedom)
         found = replace(found, catalogue=checks, remarks=(*found.remarks, *words))
     return found
 
@@ -244,13 +244,13 @@ def _remarks(found: LoopAnalysis) -> Iterator[str]:
         yield from _of_closure(found, found.closure, found.hysteresis)
     yield from (_of_bend(each) for each in found.stiffnesses if each.misfit > BENT and not each.whole)
     yield from _of_catalogue(found)
-    if loop.side == "input":
+    if loop.input_friction:
         yield (
             "measured at the input with the output held: friction of the wave generator is inside the loop, whose widths and "
             "area are those of gear and friction together"
-            if not any("taken out" in each for each in loop.remarks)
-            else "measured at the input with the output held; widths and area are as good as the friction taken out of it"
         )
+    elif loop.side == "input":
+        yield "measured at the input with the output held; widths and area are as good as the friction taken out of it"
 
 
 def _of_closure(found: LoopAnalysis, gap: Result, wide: Width) -> Iterator[str]:

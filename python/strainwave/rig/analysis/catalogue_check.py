@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, inf
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from strainwave.rig.analysis.lost_motion import LOST_MOTION, separation
 from strainwave.rig.analysis.regimes import Branch, Segmented, segment
 from strainwave.rig.analysis.result import Result, inverse, result
 from strainwave.rig.analysis.stiffness import COMPLIANCE, UNIT, shared
-from strainwave.rig.influence.cycle import cycle_to
+from strainwave.rig.influence.cycle import Factors, cycle_to
 from strainwave.rig.loop import Loop, Side
 
 
@@ -68,22 +68,23 @@ def rated_torque_of(gear_set: GearSet, side: Side) -> float | None:
 
 
 def check_catalogue(
-    cut: Segmented, gear_set: GearSet, width_at_zero: Result | None, rated_torque: float | None
+    cut: Segmented, gear_set: GearSet, width_at_zero: Result | None, rated_torque: float | None, freedom: float = inf
 ) -> tuple[tuple[CatalogueCheck, ...], tuple[str, ...]]:
     """Compares a loop with a set, and says what cannot be compared.
 
     K1 is the secant of the loading branch from the middle of the loop to T1, K2 the slope from T1 to T2, K3 from T2 to the
     peak, the mean of both senses: what a first loading would show. The width of the set's own loop is that of its model under
-    the same torques.
+    the same torques. While friction F of the wave generator is in the loop, K1 to K3 are not compared: the gear is at T1 where
+    the loading branch is at T1 + F, and at the input F is as large as T1.
     """
     if cut.falling is None or cut.rising is None or not cut.closed:
         return (), ("the cycle is not complete: it is not compared with the catalogue",)
-    stiffnesses, words = tuple(_stiffnesses(cut, gear_set)), tuple(_words(cut, gear_set))
+    stiffnesses, words = tuple(_stiffnesses(cut, gear_set, freedom)), tuple(_words(cut, gear_set))
     try:
         own = _own_loop(cut, gear_set)
     except ValueError as error:  # its friction holds all of the torque, or it has stages
         return stiffnesses, (*words, f"widths are not compared with those of the set's own loop: {error}")
-    return (*stiffnesses, *_widths(cut, own, width_at_zero, rated_torque)), words
+    return (*stiffnesses, *_widths(cut, own, width_at_zero, rated_torque, freedom)), words
 
 
 def _factor(gear_set: GearSet, side: Side) -> float:
@@ -110,7 +111,7 @@ def published(gear_set: GearSet, side: Side) -> dict[str, float] | None:
     return {name: k / factor**2 for name, k in stiffness.items()} | {name: t / factor for name, t in torque.items()}
 
 
-def _stiffnesses(cut: Segmented, gear_set: GearSet) -> Iterator[CatalogueCheck]:
+def _stiffnesses(cut: Segmented, gear_set: GearSet, freedom: float) -> Iterator[CatalogueCheck]:
     figures = published(gear_set, cut.loop.side)
     if figures is None or cut.falling is None or cut.rising is None:
         return
@@ -119,26 +120,37 @@ def _stiffnesses(cut: Segmented, gear_set: GearSet) -> Iterator[CatalogueCheck]:
     for name, (low, high) in ends.items():
         entry = gear_set.sources.get(f"gear.stiffness.{name.lower()}")
         reached = low < high <= peak
-        measured = _loading(cut.falling, cut.rising, low, high, cut.loop) if reached else None
+        told = reached and not cut.loop.input_friction
+        measured = _loading(cut.falling, cut.rising, low, high, cut.loop, freedom) if told else None
         why = entry.source if entry is not None else ""
-        if not reached:
+        if reached and not told:
+            why = "friction of the wave generator is in the loop and shifts its torques; take it out by a table (--friction)"
+        elif not reached:
             why = f"the loop ends at {peak:.3g} N.m, the figure is for {low:.3g} N.m and beyond"
         yield CatalogueCheck(name, measured, figures[name], UNIT, None if entry is None else entry.spread, why)
 
 
-def _loading(falling: Branch, rising: Branch, low: float, high: float, loop: Loop) -> Result | None:
-    """Slope of the loading branches between two sizes of torque; from zero on, of the middle of the loop."""
-    middle = 0.5 * (_angle(falling, 0.0) + _angle(rising, 0.0))
-    starts = (middle, middle) if low == 0.0 else (_angle(rising, low), _angle(falling, -low))
-    turned = [_angle(rising, high) - starts[0], starts[1] - _angle(falling, -high)]
-    compliance = 0.5 * sum(turned) / (high - low)
+def _loading(falling: Branch, rising: Branch, low: float, high: float, loop: Loop, freedom: float) -> Result | None:
+    """Slope of the loading branches between two sizes of torque; from zero on, of the middle of the loop.
+
+    What pulleys hold more than is thought shifts the torques of the two branches apart, which counts most from zero on.
+    """
+
+    def compliance_of(held: float) -> float:
+        turned = _angle(rising, high + held) - _angle(falling, -high - held)
+        if low > 0.0:  # else the middle of the loop is taken from both, and goes out
+            turned -= _angle(rising, low + held) - _angle(falling, -low - held)
+        return 0.5 * turned / (high - low)
+
+    compliance = compliance_of(0.0)
     if compliance <= 0.0:
         return None
     of_angle = float(np.median(loop.angle_sigma)) / (high - low)  # four readings, halved
     of_torque = compliance * float(np.median(loop.torque_sigma)) / (high - low)  # each turned into angle by the slope
     error = hypot(of_angle, of_torque)
-    of_rig = shared(1.0 / compliance, loop) * compliance**2
-    return inverse(result(compliance, COMPLIANCE, random=error, shared=of_rig), UNIT)
+    of_pulleys = max(abs(compliance_of(sign * loop.friction_sigma) - compliance) for sign in (-1.0, 1.0))
+    of_rig = hypot(shared(1.0 / compliance, loop) * compliance**2, of_pulleys)
+    return inverse(result(compliance, COMPLIANCE, random=error, shared=of_rig, freedom=freedom), UNIT)
 
 
 def _angle(branch: Branch, torque: float) -> float:
@@ -149,12 +161,15 @@ def _own_loop(cut: Segmented, gear_set: GearSet) -> Segmented:
     """What the model of the set would show under the same peaks."""
     assert cut.falling is not None
     assert cut.rising is not None
-    model = cycle_to(gear_set.gear, 0.5 * (cut.rising.high - cut.falling.low), side=cut.loop.side)
-    return segment(Loop(model.angle, model.torque, side=cut.loop.side, name=gear_set.name))
+    loop, peak = cut.loop, 0.5 * (cut.rising.high - cut.falling.low)
+    if loop.side == "output" and loop.input_friction:
+        raise ValueError("the loop was referred to the output with the friction of the wave generator in it")
+    model = cycle_to(gear_set.gear, peak, side=loop.side, factors=Factors(friction=1.0 if loop.input_friction else 0.0))
+    return segment(Loop(model.angle, model.torque, side=loop.side, name=gear_set.name))
 
 
 def _widths(
-    cut: Segmented, own: Segmented, width_at_zero: Result | None, rated_torque: float | None
+    cut: Segmented, own: Segmented, width_at_zero: Result | None, rated_torque: float | None, freedom: float
 ) -> Iterator[CatalogueCheck]:
     """Widths beside those of the set's own loop."""
     peak = float(own.loop.torque.max())
@@ -164,24 +179,21 @@ def _widths(
         yield CatalogueCheck("width at zero torque", width_at_zero, stated.value, "rad", None, why)
     if rated_torque is None:
         return
-    measured, stated = (_separation(each, LOST_MOTION * rated_torque) for each in (cut, own))
+    measured, stated = (_separation(each, LOST_MOTION * rated_torque, freedom) for each in (cut, own))
     if measured is not None and stated is not None:
         yield CatalogueCheck(
             "lost motion", measured, stated.value, "rad", None, "model of the set, width at 4 % of rated torque"
         )
 
 
-def _separation(cut: Segmented, torque: float) -> Result | None:
+def _separation(cut: Segmented, torque: float, freedom: float = inf) -> Result | None:
     if cut.falling is None or cut.rising is None:
         return None
-    return separation(cut.falling, cut.rising, torque, cut.loop)
+    return separation(cut.falling, cut.rising, torque, cut.loop, freedom)
 
 
 def _words(cut: Segmented, gear_set: GearSet) -> Iterator[str]:
     if cut.loop.side == "input":
-        yield (
-            "the catalogue states the gear at the output, and its figures are divided by the ratio and its square; "
-            "friction of the wave generator is in the loop and in no K"
-        )
+        yield ("the catalogue states the gear at the output, and its figures are divided by the ratio and its square")
     if published(gear_set, cut.loop.side) is None:
         yield f"{shortened(gear_set.name)} has no K1, K2 and K3 to compare with"

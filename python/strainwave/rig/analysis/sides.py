@@ -90,6 +90,7 @@ def without_friction(loop: Loop, friction: Value) -> Loop:
         loop,
         torque=torque,
         friction_sigma=float(np.hypot(loop.friction_sigma, friction.sigma)),
+        input_friction=False,
         remarks=(*loop.remarks, f"{remark} ({friction.source})" if friction.source else remark),
     )
 

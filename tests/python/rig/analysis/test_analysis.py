@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.rig import Loop, analyse, table
+from strainwave.rig import Loop, Value, analyse, referred, table, without_friction
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, published
 from strainwave.rig.analysis.result import Result
 from strainwave.rig.influence.cycle import cycle_to
@@ -83,7 +85,41 @@ def test_at_the_input_the_figures_are_those_of_the_input() -> None:
     found = analyse(of_set("csg-20-100", 0.52, side="input"), gear_set=gear_set)
     assert found.rated_torque == pytest.approx(0.52)
     assert next(each for each in found.catalogue if each.name == "K2").stated == pytest.approx(25e3 / 100**2)
-    assert any("friction of the wave generator is in the loop and in no K" in remark for remark in found.remarks)
+    assert any("divided by the ratio and its square" in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize("name", ["csg-20-100", "csg-25-100"])
+def test_at_the_input_friction_is_taken_out_before_the_catalogue_is_compared(name: str) -> None:
+    """With it, the catalogue's own gear would show four times its K1: F is two thirds of T1 over the ratio."""
+    gear_set = sw.GearSet.read(name)
+    rated = gear_set.ratings["rated_torque"].value / 100.0
+    loop = of_set(name, rated, side="input")
+    within = {each.name: each for each in analyse(loop, gear_set=gear_set).catalogue}
+    assert [within[key].measured for key in ("K1", "K2", "K3")] == [None] * 3
+    assert "friction of the wave generator is in the loop" in str(within["K1"])
+    assert (width := within["width at zero torque"]).measured is not None
+    assert width.measured.value == pytest.approx(width.stated, rel=1e-3)
+    held = Value(float(gear_set.gear.friction_input.coulomb))  # type: ignore[attr-defined]
+    for each in analyse(without_friction(loop, held), gear_set=gear_set).catalogue:
+        assert each.measured is not None
+        assert each.measured.value == pytest.approx(each.stated, rel=5e-3)
+    at_output = analyse(referred(loop, 100.0, "output"), gear_set=gear_set)
+    assert [each.measured for each in at_output.catalogue] == [None] * 3
+    assert any("friction of the wave generator is inside the loop" in each for each in at_output.remarks)
+
+
+def test_friction_of_the_pulleys_spreads_k1_as_its_interval_says() -> None:
+    """Branches shifted apart in torque by an error of 0.3 N.m: what K1 then is, against the shared part of its error."""
+    gear_set, plain = sw.GearSet.read("csg-20-100"), of_set("csg-20-100", 52.0)
+    sense = np.where(np.arange(len(plain)) < len(plain) // 2, 1.0, -1.0)
+    shown = []
+    for error in (0.0, 0.3, -0.3):  # T1 is a knee: backwards, the branch is softer
+        loop = replace(plain, torque=plain.torque + error * sense, friction_sigma=0.3)
+        found = next(each.measured for each in analyse(loop, gear_set=gear_set).catalogue if each.name == "K1")
+        assert found is not None
+        shown.append(found)
+    changes = [abs(1.0 / each.value - 1.0 / shown[0].value) for each in shown[1:]]
+    assert max(changes) == pytest.approx(shown[0].shared / shown[0].value**2, rel=0.02)
 
 
 def test_a_set_without_such_figures_says_so() -> None:
