@@ -31,6 +31,7 @@ BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run ti
 DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 USUAL = "one of the models whose drives run in code of their own, for speed"
+PRESLIDING = "what a loop of small motion is fitted by"
 SERIES = "stages become one spring, with which runs are faster"
 PRINTED = "of a gear that a printed table of four stiffnesses is made into"
 AT_REST = "friction whose breakaway a torsion loop from the input can tell"
@@ -86,7 +87,8 @@ ELSEWHERE = {
         "identification/candidates/steady_shapes.py": STEADY_TABLE,
     },
     "MaxwellSlipFriction": {
-        "identification/candidates/friction.py": "bristles that a table of steady friction leaves as they are"
+        "identification/candidates/friction.py": "bristles that a table of steady friction leaves as they are",
+        "identification/candidates/presliding.py": PRESLIDING,
     },
     "DC": {"specialised.hpp": USUAL},
     "OpenLoop": {
@@ -118,6 +120,7 @@ ELSEWHERE = {
         "specialised.hpp": USUAL,
         "identification/candidates/friction.py": STEADY_TABLE,
         "identification/candidates/torsion.py": AT_REST,
+        "identification/candidates/presliding.py": PRESLIDING,
     },
     "Cyclic": {
         "any.hpp": BOUND_TO_ANY,
@@ -155,6 +158,7 @@ ELSEWHERE = {
     "MaxwellSlip": {
         "specialised.hpp": USUAL,
         "identification/candidates/torsion.py": "the hysteresis of a measured torsion loop",
+        "identification/candidates/presliding.py": PRESLIDING,
     },
 }
 

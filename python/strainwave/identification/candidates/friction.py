@@ -231,14 +231,18 @@ def _squares(candidate: FrictionCandidate) -> Array:
 
 
 def _chance(simplest: FrictionCandidate, candidate: FrictionCandidate) -> float:
+    more = candidate.parameters - simplest.parameters
+    return by_chance(simplest.fit.residuals[0], candidate.fit.residuals[0], more, candidate.parameters) if more > 0 else 1.0
+
+
+def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:
+    """Probability that `more` unknowns shrink white residuals as much by chance (F test), of `unknowns` in all."""
     from scipy.stats import f as fisher
 
-    more, n = candidate.parameters - simplest.parameters, len(candidate.held_out)
-    freedom = n - candidate.parameters
-    if more <= 0 or freedom <= 0:
+    freedom, rest, gain = len(left) - unknowns, float(np.sum(left**2)), float(np.sum(before**2) - np.sum(left**2))
+    if freedom <= 0:
         return 1.0
-    left, before = (float(np.sum(each.fit.residuals**2)) for each in (candidate, simplest))
-    return float(fisher.sf(max(before - left, 0.0) / more * freedom / left, more, freedom)) if left > 0.0 else 0.0
+    return float(fisher.sf(max(gain, 0.0) / more * freedom / rest, more, freedom)) if rest > 0.0 else 0.0
 
 
 def _written(candidate: FrictionCandidate, gear: Gear, known: Plain) -> Fit:
