@@ -58,7 +58,7 @@ class Grid:
 class GridTable:
     """Channels of several grids in time; the first label is the time, which is that of the grid of what is wanted.
 
-    Channels of several grids are put on the slowest of them, but for temperatures, by linear interpolation where that is allowed.
+    Channels of several grids are put on the slowest of them, but for temperatures, by linear interpolation; see `measured`.
     """
 
     file: str

@@ -68,7 +68,11 @@ _CHARACTERS = str.maketrans(
 _WORDS = {
     "Nm": "N*m", "NM": "N*m", "Ncm": "N*cm", "Nmm": "N*mm", "mNm": "mN*m", "kNm": "kN*m", "Nms": "N*m*s", "kgm": "kg*m",
     "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "RPM": "rpm", "ohm": "Ohm", "sec": "s", "msec": "ms",
+    "Grad": "deg", "tr": "rev", "Umdr": "rev", "Upm": "rpm", "UPM": "rpm",
 }  # fmt: skip
+
+# What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.
+_COUNTED = re.compile(r"(?:counts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII)
 
 # German data sheets count revolutions as U, but only per time; alone, U is a voltage there.
 _REVOLUTIONS = re.compile(r"^U(?=/(?:min|s)$|\*(?:min|s)-1$)")
@@ -105,6 +109,8 @@ def convert(values: Values, unit: str, to: str) -> Values:
 
     if np.isnan(arguments.numbers("values", values)).any():
         raise ValueError("values must be numbers, and nan is none")
+    if any(isinstance(each, str) and _COUNTED.fullmatch(each) for each in (unit, to)):
+        return _convert_counted(values, unit, to)
     source, target = _parse(unit), _parse(to)
     if source == target:
         return values
@@ -117,6 +123,23 @@ def convert(values: Values, unit: str, to: str) -> Values:
         raise ValueError(f"the ratio of {quoted(unit)} to {quoted(to)} is too large a number") from None
     _check_finite(values, converted, unit, to)
     return converted
+
+
+def _convert_counted(values: Values, unit: str, to: str) -> Values:
+    """Express counts of an encoder as revolutions, or the other way round."""
+    (per_unit, unit), (per_to, to) = _revolutions(unit), _revolutions(to)
+    if (per_unit, unit) == (per_to, to):
+        return values
+    with np.errstate(over="ignore"):
+        turned: Values = convert(values, unit, to) * (per_to / per_unit)
+    _check_finite(values, turned, unit, to)
+    return turned
+
+
+def _revolutions(unit: str) -> tuple[int, str]:
+    """How many counts make up one of the unit beside it."""
+    counted = _COUNTED.fullmatch(unit)
+    return (int(counted[1]), f"rev{counted[2] or ''}") if counted else (1, unit)
 
 
 def _turning(unit: pint.Unit, other: pint.Unit) -> pint.Unit:
@@ -164,9 +187,13 @@ def check(unit: str) -> str:
     Raises:
         ValueError: the unit is not known, or ambiguous like `N.m/rad.s` (write `N.m/(rad.s)`).
 
-    >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)")
-    ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad')
+    An encoder's counts are a unit with the counts of one revolution behind them: `counts/16384`, `inc/4096`.
+
+    >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)"), check("inc/4096")
+    ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad', 'counts/4096')
     """
+    if isinstance(unit, str) and (counted := _COUNTED.fullmatch(unit)):
+        return f"counts/{counted[1]}{counted[2] or ''}"
     standard = _spelling(_parse(unit))
     if len(standard) > _LONGEST:
         raise ValueError(f"unit {quoted(unit)} has more than {_LONGEST} characters in standard spelling")
@@ -218,6 +245,8 @@ def _parsed(unit: str) -> pint.Unit:
         parsed = registry.parse_units(_expression(unit), as_delta=False)
         scale = registry.convert(1.0, parsed, registry.get_base_units(parsed)[1])  # refuses degC in a product
     except (pint.PintError, tokenize.TokenError, ValueError, TypeError, AssertionError):
+        if _COUNTED.fullmatch(f"{unit.strip()}/1"):
+            raise ValueError(f"unit {quoted(unit)} needs the counts of one revolution; write it like counts/16384") from None
         raise ValueError(f"unit {quoted(unit)} is not known; write it like N.m, rad/s, deg") from None
     except OverflowError:
         scale = math.inf

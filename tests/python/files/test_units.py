@@ -52,6 +52,13 @@ def exactly(message: str) -> str:
         (1.0, "H", "V.s/A", 1.0),
         (20.0, "°C", "K", 293.15),
         (250.0, "ms", "s", 0.25),
+        (4096.0, "counts/16384", "deg", 90.0),
+        (90.0, "Grad", "inc/4096", 1024.0),
+        (2500.0, "inc/10000/s", "rad/s", math.pi / 2),
+        (2.0, "counts/10", "counts/100", 20.0),
+        (1.0, "tr/min", "rpm", 1.0),
+        (1.0, "Upm", "rad/s", math.pi / 30),
+        (1.0, "Grad/s", "rad/s", math.pi / 180),
     ],
 )
 def test_conversions_follow_the_definitions(value: float, unit: str, to: str, expected: float) -> None:
@@ -203,3 +210,21 @@ def test_arrays_keep_their_shape_and_stay_as_they_are() -> None:
     radians = convert(angles, "deg", "rad")
     np.testing.assert_allclose(radians, math.pi * np.array([[0.0, 0.5], [1.0, 2.0]]), rtol=1e-15)
     assert angles[1, 1] == 360.0
+
+
+def test_counts_need_the_counts_of_a_revolution() -> None:
+    with pytest.raises(
+        ValueError, match=exactly('unit "counts" needs the counts of one revolution; write it like counts/16384')
+    ):
+        check("counts")
+    with pytest.raises(ValueError, match=exactly('cannot convert "rev" to "N.m"')):
+        convert(1.0, "counts/16384", "N.m")
+
+
+@untimed
+@given(st.integers(1, 10**12 - 1), st.sampled_from(["", "/s"]), finite)
+def test_counts_are_parts_of_a_revolution(counts: int, over: str, value: float) -> None:
+    unit = f"counts/{counts}{over}"
+    assert check(unit) == unit
+    assert convert(value, unit, unit) == value
+    assert convert(value, unit, f"rev{over}") == pytest.approx(value / counts, rel=1e-14)

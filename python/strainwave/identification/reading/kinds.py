@@ -202,6 +202,8 @@ def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
     elif "angle" in found:
         turns = np.ptp(found["angle"].si) / (2.0 * np.pi)
         why = f"it holds {effort} over {found['angle'].name}, which runs on for {turns:.3g} turns"
+    elif "speed" in mapping.constants:
+        why = f"it holds {effort} at {mapping.constants['speed']:.4g} rad/s, as was said: a record at constant speed"
     else:
         why = f"it holds {effort} and nothing that moves: the output was locked, or the speed was constant and is not stated"
     return Found("effort", found, side, (why,))

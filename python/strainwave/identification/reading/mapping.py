@@ -1,12 +1,51 @@
-"""What a person says of a file: which column is which, in which unit, and what the file does not hold."""
+"""What a person says of files: which column is which, in which unit, and what the file does not hold; also in a TOML file.
+
+side = "output"
+[columns]
+joint_torque = "Moment"     # the name in the file
+output_speed = 3            # or the number of the column, from 1
+[units]
+joint_torque = "N.m"
+output_angle = "counts/16384"
+[sign]
+joint_torque = -1
+[constants]
+rate = 500                  # in SI units, or with a unit: "0.5 kHz"
+
+["two_loads/*.csv"]         # what holds for these files only
+constants.load_inertia = 0.85
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import math
+import tomllib
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, fields
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, get_args
 
-from strainwave.identification.reading.channels import Kind
+from strainwave.files.labels import unreadable
+from strainwave.files.units import check as check_unit
+from strainwave.files.units import convert
+from strainwave.identification.reading.channels import ALIASES, CHANNELS, Kind
 from strainwave.identification.reading.names import Side
+from strainwave.messages import listed, one_line, quoted, shortened
+
+# Numbers that belong to a recording, with their units.
+CONSTANTS = {
+    "rate": "Hz",  # of rows without time
+    "ratio": "1",  # of the gear
+    "torque_constant": "N.m/A",
+    "resistance": "Ohm",
+    "motor_inertia": "kg.m2",
+    "load_inertia": "kg.m2",
+    "load_torque": "N.m",  # at the output, constant
+    "speed": "rad/s",  # of a record at one speed that holds none
+    "temperature": "K",
+}
+WILD = "*?[."  # a section with one of these in its name is a pattern of file names
 
 
 @dataclass(frozen=True)
@@ -16,17 +55,151 @@ class FileMapping:
     Args:
         columns: for each channel the name or the number of its column in the file
         units: unit of each channel whose header states none
-        signs: 1 or -1 for each channel that counts the other way
-        constants: numbers that belong to the recording: `rate` [Hz] of rows without time, `ratio`, `torque_constant` …
+        sign: 1 or -1 for each channel that counts the other way
+        constants: numbers that belong to the recording, of `CONSTANTS`, in SI units
         kind: what the file is, where it cannot be told
         side: where a friction table was measured, or the channels of a log whose names say no side
         joint: number or name of the joint to take of several
+
+    Raises:
+        ValueError: a name, a unit or a value is none that is known
+
+    >>> FileMapping(columns={"speed": "3"}, units={"speed": "U/min"})
+    FileMapping(columns={'speed': '3'}, units={'speed': 'U/min'}, sign={}, constants={}, kind=None, side=None, joint=None)
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
-    signs: Mapping[str, int] = field(default_factory=dict)
+    sign: Mapping[str, int] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)
     kind: Kind | None = None
     side: Side | None = None
     joint: str | None = None
+
+    def __post_init__(self) -> None:
+        channels = {**CHANNELS, **ALIASES}
+        for what, names in (("column", self.columns), ("sign", self.sign)):
+            for name in names:
+                _check_known(f"--{what} {name}", name, channels, "channels")
+        for name in self.constants:
+            _check_known(f"--constant {name}", name, CONSTANTS, "constants")
+        for unit in self.units.values():
+            check_unit(unit)
+        for name, sign in self.sign.items():
+            if sign not in (1, -1):
+                raise ValueError(f"sign of {name} = {shortened(sign)} must be 1 or -1")
+        for name, value, choices in (("kind", self.kind, get_args(Kind)), ("side", self.side, get_args(Side))):
+            if value is not None:
+                _check_known(f"{name} = {shortened(value)}", value, choices, f"{name}s")
+
+    def updated(self, other: FileMapping) -> FileMapping:
+        """This with what another says too; where both say something, the other holds."""
+        both: dict[str, Any] = {}
+        for each in fields(self):
+            mine, its = getattr(self, each.name), getattr(other, each.name)
+            both[each.name] = {**mine, **its} if isinstance(mine, Mapping) else (mine if its is None else its)
+        return FileMapping(**both)
+
+
+@dataclass(frozen=True)
+class MappingFile:
+    """What a person says of several files: of all, and of those whose path fits a pattern."""
+
+    general: FileMapping
+    patterns: Mapping[str, FileMapping]
+
+    @staticmethod
+    def read(path: str | Path) -> MappingFile:
+        """Reads a TOML file.
+
+        Raises:
+            ValueError: it cannot be read, or says what is not known; says where
+
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = Path(folder, "columns.toml")
+        ...     _ = path.write_text('columns.speed = 3\\n["loads/*.csv"]\\nconstants.ratio = 80\\n')
+        ...     said = MappingFile.read(path)
+        >>> said.of("loads/heavy.csv").constants, said.of("other.csv").columns
+        ({'ratio': 80.0}, {'speed': '3'})
+        """
+        try:
+            whole = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        except (OSError, UnicodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+            raise ValueError(unreadable(path, error)) from None
+        try:
+            patterns = {name: each for name, each in whole.items() if isinstance(each, dict) and set(name) & set(WILD)}
+            general = _mapping("", {name: each for name, each in whole.items() if name not in patterns})
+            return MappingFile(general, {name: _mapping(f'["{name}"] ', each) for name, each in patterns.items()})
+        except ValueError as error:
+            raise ValueError(one_line(f"{path}: {error}")) from None
+
+    def of(self, path: str | Path) -> FileMapping:
+        """What holds for a file: what is said of all, and of each pattern it fits, in the order of the file."""
+        found = self.general
+        for pattern, said in self.patterns.items():
+            if Path(path).match(pattern):
+                found = found.updated(said)
+        return found
+
+
+_READ: dict[str, Any] = {
+    "columns": lambda place, value: str(value) if _is_whole(value) else _text(place, value),
+    "units": lambda place, value: _text(place, value),
+    "sign": lambda place, value: value,
+    "constants": lambda place, value: _constant(place, value),
+}
+
+
+def _mapping(place: str, said: Mapping[str, Any]) -> FileMapping:
+    """What a section says."""
+    known = [each.name for each in fields(FileMapping)]
+    found: dict[str, Any] = {}
+    for name, value in said.items():
+        _check_known(f"{place}{name}", name, known, "keys")
+        if name not in _READ:
+            found[name] = str(value) if _is_whole(value) else _text(f"{place}{name}", value)
+        elif not isinstance(value, dict):
+            raise ValueError(f"{place}{name} = {shortened(value)} must be a table, with a line for each channel or constant")
+        else:
+            found[name] = {key: _READ[name](f"{place}{name}.{key}", each) for key, each in value.items()}
+    try:
+        return FileMapping(**found)
+    except ValueError as error:
+        told = str(error)
+        for option, key in (("--column ", "columns."), ("--constant ", "constants."), ("--sign ", "sign.")):
+            told = told.replace(option, key)
+        raise ValueError(f"{place}{told}") from None
+
+
+def _constant(place: str, value: object) -> float:
+    """A number in SI units, or a text with a unit."""
+    name = place.rpartition(".")[2]
+    _check_known(place, name, CONSTANTS, "constants")
+    if isinstance(value, str):
+        number, _, unit = value.strip().partition(" ")
+        try:
+            return convert(float(number), unit or CONSTANTS[name], CONSTANTS[name])
+        except ValueError as error:
+            reason = error if unit else f"it is no number in {CONSTANTS[name]}"
+            raise ValueError(f"{place} = {quoted(value)}: {reason}") from None
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError(f"{place} = {shortened(value)} must be a number in {CONSTANTS[name]}, or a text with number and unit")
+    return float(value)
+
+
+def _text(place: str, value: object) -> str:
+    if not isinstance(value, str) or not value:
+        raise ValueError(f"{place} = {shortened(value)} must be a text")
+    return value
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _check_known(place: str, name: str, known: Collection[str], what: str) -> None:
+    if name not in known:
+        near = get_close_matches(str(name), list(known), 1)
+        meant = f"did you mean {near[0]}? The" if near else "the"
+        raise ValueError(one_line(f"{place} is not known; {meant} {what} are {listed(known)}"))

@@ -79,7 +79,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     except UndecidedError as undecided:
         raise ValueError(one_line(f"{table.file}: {undecided}")) from None
     remarks += found.remarks
-    series = {name: said.signs.get(name, 1) * column.si for name, column in found.columns.items()}
+    series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
     if found.kind in ("log", "encoders", "effort"):
         try:
             when = _clock(series, said, found.kind)

@@ -1,0 +1,96 @@
+"""What a person says of files in TOML."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strainwave.identification.reading.channels import CHANNELS
+from strainwave.identification.reading.mapping import FileMapping, MappingFile
+
+TEXT = """
+side = "output"
+[columns]
+joint_torque = "Moment"
+output_speed = 3
+[units]
+joint_torque = "mNm"
+[sign]
+joint_torque = -1
+[constants]
+rate = "0.5 kHz"
+ratio = 80
+["two_loads/*.csv"]
+joint = 2
+constants.load_inertia = 0.85
+columns.joint_torque = "Last"
+"""
+
+
+def said(folder: Path, text: str) -> MappingFile:
+    path = folder / "columns.toml"
+    path.write_text(text)
+    return MappingFile.read(path)
+
+
+def test_what_is_said_of_all_files_and_of_some(tmp_path: Path) -> None:
+    file = said(tmp_path, TEXT.replace("0.5 kHz", "500 Hz"))
+    general = FileMapping(
+        columns={"joint_torque": "Moment", "output_speed": "3"},
+        units={"joint_torque": "mNm"},
+        sign={"joint_torque": -1},
+        constants={"rate": 500.0, "ratio": 80.0},
+        side="output",
+    )
+    assert file.of("log.csv") == general
+    special = file.of(Path("/data/two_loads/heavy.csv"))
+    assert special.columns == {"joint_torque": "Last", "output_speed": "3"}
+    assert special.constants == {"rate": 500.0, "ratio": 80.0, "load_inertia": 0.85}
+    assert (special.joint, special.side) == ("2", "output")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("column.torque = 1", "column is not known; did you mean columns? The keys are columns, units, sign, "),
+        ('columns.tork = "a"', "columns.tork is not known; did you mean torque? The channels are time, command, "),
+        ("columns.torque = 1.5", "columns.torque = 1.5 must be a text"),
+        ("columns = 3", "columns = 3 must be a table, with a line for each channel or constant"),
+        ('units.torque = "furlong"', 'unit "furlong" is not known; write it like N.m, rad/s, deg'),
+        ("sign.torque = 2", "sign of torque = 2 must be 1 or -1"),
+        ("constants.ratoi = 80", "constants.ratoi is not known; did you mean ratio? The constants are rate, ratio, "),
+        ('constants.rate = "fast"', 'constants.rate = "fast": it is no number in Hz'),
+        ('constants.speed = "3 Nm"', 'constants.speed = "3 Nm": cannot convert "Nm" to "rad/s"'),
+        ("constants.rate = true", "constants.rate = True must be a number in Hz, or a text with number and unit"),
+        ("constants.rate = nan", "constants.rate = nan must be a number in Hz, or a text with number and unit"),
+        ('side = "middle"', "side = 'middle' is not known; the sides are input, output"),
+        ('kind = "torsoin"', "kind = 'torsoin' is not known; did you mean torsion? The kinds are "),
+        ('["*.csv"]\ncolums.a = 1', '["*.csv"] colums is not known; did you mean columns? '),
+        ("side = ", "cannot be read: Invalid value"),
+    ],
+)  # fmt: skip
+def test_what_is_not_known_is_refused_with_its_place(tmp_path: Path, text: str, message: str) -> None:
+    separator = " " if message.startswith("cannot be read") else ": "
+    begin = f"{tmp_path / 'columns.toml'}{separator}{message}"
+    with pytest.raises(ValueError, match=f"^{re.escape(begin)}"):
+        said(tmp_path, text)
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"columns\.toml cannot be read: No such file or directory$"):
+        MappingFile.read(tmp_path / "columns.toml")
+
+
+names = st.dictionaries(st.sampled_from(sorted(CHANNELS)), st.text(min_size=1, max_size=5), max_size=3)
+mappings = st.builds(FileMapping, columns=names, side=st.sampled_from([None, "input", "output"]))
+
+
+@given(mappings, mappings, mappings)
+def test_updates_are_associative_and_nothing_said_changes_nothing(
+    one: FileMapping, two: FileMapping, three: FileMapping
+) -> None:
+    assert one.updated(two).updated(three) == one.updated(two.updated(three))
+    assert one.updated(FileMapping()) == one == FileMapping().updated(one)
