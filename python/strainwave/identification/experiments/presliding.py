@@ -1,0 +1,163 @@
+"""Small motion at rest: torque over a few turns' hundredth parts to and fro, and ramps of torque until a shaft breaks away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording, check_recording
+from strainwave.identification.experiments.branches import monotone, noise, thinned, turning_points
+from strainwave.identification.experiments.experiment import sensible
+
+Array = NDArray[np.float64]
+
+SURE = 6.0  # standard deviations of the angle's noise, that a shaft must leave its place by
+FEWEST = 8  # samples of a ramp
+MOST = 20_000  # samples of a loop that are compared
+TRIES = 50  # of the line that a shaft follows while it sticks
+LATER = 4.0  # times as far: the second mark by which the beginning of the motion is found
+
+
+@dataclass(frozen=True, eq=False)
+class PreslidingLoop(ComparedByFields):
+    """Torque over a slow motion to and fro that is too small, or turns too often, to be steady sliding.
+
+    Args:
+        angle: angle of the shaft [rad], shape (n,), monotone between its turning points
+        torque: torque that moves it [N.m], shape (n,)
+        samples: how many were measured; more than are left where each is the mean of several
+    """
+
+    angle: Array
+    torque: Array
+    samples: int = 0
+
+    @classmethod
+    def of(cls, recording: Recording) -> PreslidingLoop:
+        """From columns angle and torque, in the order in which they were measured.
+
+        Raises:
+            ValueError: no such columns, or a path that does not turn back twice
+        """
+        check_recording("recording", recording)
+        angle, torque = sensible(recording, "angle", "rad"), sensible(recording, "torque", "N.m")
+        taken, held = thinned(angle, torque, samples=MOST)
+        return cls.along(taken, held, len(angle))
+
+    @classmethod
+    def along(cls, angle: Array, torque: Array, samples: int = 0) -> PreslidingLoop:
+        """Along a path as measured, with what its noise takes back left out."""
+        turns = turning_points(angle)
+        if len(turns) < 2:
+            raise ValueError(
+                f"the angle turns back {len(turns)} times; a presliding loop must go to and fro at least once, best with "
+                "several amplitudes, so that its torque over the way since the last reversal is seen"
+            )
+        return cls(monotone(angle), torque, samples or len(angle))
+
+    @cached_property
+    def turns(self) -> list[int]:
+        """Samples at which the path turns back."""
+        return turning_points(self.angle)
+
+
+@dataclass(frozen=True)
+class Breakaway:
+    """One ramp of torque, and where it broke the shaft away.
+
+    Attributes:
+        time: when [s]
+        torque: torque at that time, of its sign [N.m]
+        rate: how fast its size rose [N.m/s]
+        bent: how far the shaft had moved before, elastically [rad]
+    """
+
+    time: float
+    torque: float
+    rate: float
+    bent: float
+
+
+def breakaways(recording: Recording, *, motion: float | None = None) -> list[Breakaway]:
+    """Where ramps of torque break a shaft away.
+
+    A ramp is a stretch over which the size of the torque rises from small values. The shaft has broken away where its angle
+    leaves the line that it followed along the ramp before; as it then accelerates from rest, the times t1 and t2 at which it is
+    off by `motion` and by four times as much tell when it began, 2 t1 - t2 (a parabola).
+
+    Args:
+        recording: columns time, torque and angle; the angle may have any zero
+        motion: how far off counts as motion [rad]; six standard deviations of the angle's noise, or two of its steps, if not
+            given
+
+    Returns:
+        one entry for each ramp that broke the shaft away, in the order of time
+
+    Raises:
+        ValueError: no ramp broke the shaft away
+    """
+    check_recording("recording", recording)
+    time, torque, angle = recording.time, sensible(recording, "torque", "N.m"), sensible(recording, "angle", "rad")
+    threshold = _resolution(angle) if motion is None else arguments.number("motion", motion, "rad", "()", low=0.0)
+    found = [each for ramp in _ramps(torque) if (each := _broken(time[ramp], torque[ramp], angle[ramp], threshold)) is not None]
+    if not found:
+        raise ValueError(
+            "no ramp of torque is followed by a motion: raise the torque slowly from zero until the shaft turns, let it come "
+            "to rest, and repeat; columns are time, torque and angle"
+        )
+    return found
+
+
+def _resolution(angle: Array) -> float:
+    steps = np.abs(np.diff(angle))
+    smallest = float(steps[steps > 0.0].min(initial=np.inf))
+    quantised = np.mean(steps == 0.0) > 0.2  # an encoder that stands still repeats itself
+    return max(SURE * noise(angle), 2.0 * smallest if quantised and np.isfinite(smallest) else 0.0, 1e-12)
+
+
+def _ramps(torque: Array) -> list[slice]:
+    """Stretches of one sign, each from where its size was least to its end."""
+    size, level = np.abs(torque), 0.1 * float(np.abs(torque).max())
+    high = np.concatenate([[False], size > level, [False]])
+    edges = np.flatnonzero(np.diff(high.astype(int)))
+    ramps = []
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        before = first
+        while before > 0 and size[before - 1] < size[before]:
+            before -= 1
+        if last - before >= FEWEST:
+            ramps.append(slice(before, last))
+    return ramps
+
+
+def _broken(time: Array, torque: Array, angle: Array, threshold: float) -> Breakaway | None:
+    way = np.sign(torque[len(torque) // 2])
+    off = way * (angle - angle[0])
+    top = int(np.argmax(np.maximum.accumulate(way * torque)))
+    near = np.arange(len(off)) <= top
+    for _ in range(TRIES):  # the line that the shaft follows while it sticks, from what is not off it
+        if near.sum() < FEWEST // 2:
+            return None
+        line = np.polynomial.Polynomial.fit(way * torque[near], off[near], 1, domain=[])
+        away = off - line(way * torque)
+        marks = [np.flatnonzero(_stays(away > k * threshold)) for k in (1.0, LATER)]
+        if len(marks[0]) == 0 or len(marks[1]) == 0:
+            return None
+        before, near = near, near & (np.arange(len(off)) < marks[0][0])
+        if np.array_equal(before, near):
+            break
+    first, second = (float(time[mark[0]]) for mark in marks)
+    begun = max(2.0 * first - second, float(time[0]))
+    rising = time <= first
+    rate, level = np.polynomial.polynomial.polyfit(time[rising] - begun, way * torque[rising], 1)[::-1]
+    return Breakaway(begun, float(way * level), float(rate), float(line(level) - line(way * torque[0])))
+
+
+def _stays(beyond: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """True from where it is true to the end."""
+    return np.logical_and.accumulate(beyond[::-1])[::-1]
