@@ -12,7 +12,7 @@ from strainwave.files.recording import Recording
 from strainwave.report import figures
 from strainwave.report import influence_figures as plots
 from strainwave.report.influence_claims import ARCMIN, Entry, counts, entries, life, over_size, steps_and_falls
-from strainwave.report.influence_trends import chance, change_of, told_of
+from strainwave.report.influence_trends import bent_words, chance, change_of, told_of
 from strainwave.report.page import render
 from strainwave.report.position_control import numbers
 from strainwave.report.provenance import Provenance
@@ -158,7 +158,7 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
     return {
         "quantity": QUANTITIES[trend.quantity][0],
         "factor": FACTORS[trend.factor].words,
-        "words": change_of(trend) if isfinite(trend.slope.value) else told_of(trend),
+        "words": f"{change_of(trend)}{bent_words(trend)}" if isfinite(trend.slope.value) else told_of(trend),
         "p": chance(trend.slope.p).removeprefix("= "),
         "corrected": chance(trend.corrected).removeprefix("= "),
         "shuffled": chance(trend.shuffled).removeprefix("= "),

@@ -67,7 +67,16 @@ def told_of(trend: Trend) -> str:
     others = [chance(p).removeprefix("= ") for p in (trend.corrected, trend.shuffled)]
     tests = f"p {chance(trend.slope.p)}; {others[0]} for all tests together; {others[1]} by shuffling; {trend.points} loops"
     doubt = f"; changed along with {_factors(trend.together_with)}, whose effect it may be" if trend.together_with else ""
-    return f"{found} ({tests}){doubt}."
+    return f"{found} ({tests}){doubt}{bent_words(trend)}."
+
+
+def bent_words(trend: Trend) -> str:
+    """What repeated conditions say against the law, if they do."""
+    if not trend.bent:
+        return ""
+    return (
+        f"; loops at equal conditions scatter less than they lie from the law (p {chance(trend.misfit)}): it has another shape"
+    )
 
 
 def chance(p: float) -> str:

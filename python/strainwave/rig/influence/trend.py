@@ -56,6 +56,8 @@ class Trend:
         slope: the coefficient with its t-test
         shuffled: probability by shuffling the residuals (Freedman and Lane 1983), which needs no normal distribution
         corrected: the t-test's probability times as many as Holm's method asks for, over all tests of the series
+        misfit: probability that scatter of repeated conditions alone makes the points lie as far from the laws of all factors,
+            times as many as Holm's method asks for, over all quantities; not a number where no condition was repeated
         together_with: factors that were varied along with this one, so that the effect may be theirs
         points: how many measurements
     """
@@ -66,6 +68,7 @@ class Trend:
     slope: Slope
     shuffled: float
     corrected: float
+    misfit: float
     together_with: tuple[str, ...]
     points: int
 
@@ -73,6 +76,11 @@ class Trend:
     def significant(self) -> bool:
         """Whether there is an effect, at 5 % for all tests of the series together."""
         return self.corrected < LEVEL
+
+    @property
+    def bent(self) -> bool:
+        """Whether repeated conditions show that the law has not the shape of what was measured."""
+        return self.misfit < LEVEL
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -109,6 +117,42 @@ def regress(columns: Array, values: Array) -> list[Slope]:
     inverse = np.linalg.inv(triangle)
     sigmas = np.sqrt(variance * np.sum(inverse**2, axis=1)) / size
     return [_slope(float(value), float(sigma), n - m) for value, sigma in zip(solution / size, sigmas, strict=True)]
+
+
+def lack_of_fit(columns: Array, values: Array) -> float:
+    """Probability that pure error alone makes values lie as far from a regression.
+
+    Rows with the same columns are repeats: their scatter is pure error, of as many degrees of freedom as there are rows more
+    than different ones. What the residuals have beyond it, of the degrees of freedom that are left, is compared by Fisher's F.
+
+    Args:
+        columns: of the regression, shape (n, m)
+        values: shape (n,)
+
+    Returns:
+        Not a number where no row is repeated, or no different row is left beyond the coefficients.
+
+    Source:
+        DraperSmith1998, section 2.1
+
+    >>> x = np.repeat([0.0, 1.0, 2.0], 2)
+    >>> bent = x**2 + np.tile([0.1, -0.1], 3)
+    >>> round(lack_of_fit(np.column_stack((np.ones(6), x)), bent), 4)  # F(1, 3) = (4/3) / (0.06 / 3)
+    0.0038
+    """
+    from scipy.special import fdtrc
+
+    n = len(values)
+    different, of = np.unique(columns, axis=0, return_inverse=True)
+    of = of.ravel()
+    means = np.bincount(of, weights=values) / np.bincount(of)
+    pure, left = n - len(different), len(different) - int(np.linalg.matrix_rank(columns))
+    error = float(np.sum((values - means[of]) ** 2))
+    if pure < 1 or left < 1 or error == 0.0:
+        return float("nan")
+    residual = values - columns @ np.linalg.lstsq(columns, values)[0]
+    beyond = max(float(residual @ residual) - error, 0.0)
+    return float(fdtrc(left, pure, (beyond / left) / (error / pure)))
 
 
 def _untold(freedom: int) -> Slope:
@@ -230,7 +274,12 @@ def trends(design: Design, quantities: Mapping[str, Array]) -> list[Trend]:
     """
     found = [trend for name, values in quantities.items() for trend in _of_quantity(design, name, values)]
     corrected = holm([each.slope.p for each in found])
-    return [replace(each, corrected=value) for each, value in zip(found, corrected, strict=True)]
+    told = {each.quantity: each.misfit for each in found if not np.isnan(each.misfit)}
+    misfits = dict(zip(told, holm(list(told.values())), strict=True))
+    return [
+        replace(each, corrected=value, misfit=misfits.get(each.quantity, each.misfit))
+        for each, value in zip(found, corrected, strict=True)
+    ]
 
 
 def _of_quantity(design: Design, name: str, values: Array) -> list[Trend]:
@@ -240,11 +289,12 @@ def _of_quantity(design: Design, name: str, values: Array) -> list[Trend]:
         design = replace(design, laws=dict.fromkeys(design.laws, "linear"))
     factors = list(design.columns)
     levels = design.levels()
-    slopes = regress(np.column_stack((levels, *[design.taken(each) for each in factors])), fitted)[levels.shape[1] :]
+    columns = np.column_stack((levels, *[design.taken(each) for each in factors]))
+    slopes, misfit = regress(columns, fitted)[levels.shape[1] :], lack_of_fit(columns, fitted)
     found = []
     for factor, slope in zip(factors, slopes, strict=True):
         told = bool(np.isfinite(slope.value))
         p = shuffled(design.others(factor), design.taken(factor), fitted) if told else 1.0
         together = design.together(factor)
-        found.append(Trend(factor, name, design.laws[factor], slope, p, slope.p, together, len(values)))
+        found.append(Trend(factor, name, design.laws[factor], slope, p, slope.p, misfit, together, len(values)))
     return found

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy import stats
-from strainwave.rig.influence.trend import Design, holm, regress, shuffled, trends
+from strainwave.rig.influence.trend import Design, holm, lack_of_fit, regress, shuffled, trends
 
 Array = NDArray[np.float64]
 
@@ -47,6 +47,40 @@ def test_exact_laws_are_found_side_by_side() -> None:
     assert by_warmth.slope.value == pytest.approx(-0.01, rel=1e-9)
     assert by_torque.significant
     assert by_warmth.significant
+
+
+def test_lack_of_fit_is_the_ratio_of_two_variances() -> None:
+    """Against analysis of variance by hand: groups of unequal size, a straight line."""
+    random = np.random.default_rng(8)
+    x = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 3.0, 3.0, 3.0, 3.0])
+    y = 0.3 * x**2 + 0.2 * random.normal(size=10)
+    groups = [y[x == each] for each in (0.0, 1.0, 2.0, 3.0)]
+    pure = sum(float(np.sum((group - group.mean()) ** 2)) for group in groups)
+    line = np.polyfit(x, y, 1)
+    beyond = float(np.sum((y - np.polyval(line, x)) ** 2)) - pure
+    expected = stats.f.sf((beyond / 2) / (pure / 6), 2, 6)
+    assert lack_of_fit(np.column_stack((np.ones(10), x)), y) == pytest.approx(expected, rel=1e-9)
+
+
+def test_lack_of_fit_alarms_as_seldom_as_it_says() -> None:
+    """Under a true line, every twentieth test falls below 5 %, within four standard deviations of 400 tests."""
+    random, x = np.random.default_rng(9), np.repeat(np.arange(5.0), 3)
+    columns = np.column_stack((np.ones(15), x))
+    found = np.array([lack_of_fit(columns, 2.0 * x + random.normal(size=15)) for _ in range(400)])
+    assert abs(np.mean(found < 0.05) - 0.05) < 4.0 * np.sqrt(0.05 * 0.95 / 400)
+
+
+def test_a_law_of_another_shape_is_told_only_where_conditions_were_repeated() -> None:
+    random = np.random.default_rng(10)
+    torque = np.repeat([0.05, 0.1, 0.2, 0.4, 0.8], 3)
+    area = np.minimum(torque, 0.2) * np.exp(0.01 * random.normal(size=15))
+    (saturates,) = trends(design(torque_max=torque), {"area": area})
+    assert saturates.bent
+    (right,) = trends(design(torque_max=torque), {"area": torque**1.5 * np.exp(0.01 * random.normal(size=15))})
+    assert not right.bent
+    (unknown,) = trends(design(torque_max=torque[::3]), {"area": area[::3]})
+    assert np.isnan(unknown.misfit)
+    assert not unknown.bent
 
 
 def test_specimens_have_levels_of_their_own() -> None:
