@@ -90,6 +90,7 @@ ELSEWHERE = {
         "identification/candidates/friction.py": "bristles that a table of steady friction leaves as they are",
         "identification/candidates/presliding.py": PRESLIDING,
     },
+    "PositionDependent": {"identification/candidates/position.py": "the law that document P's procedure finds"},
     "DC": {"specialised.hpp": USUAL},
     "OpenLoop": {
         "specialised.hpp": USUAL,

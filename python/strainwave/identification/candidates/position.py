@@ -1,0 +1,241 @@
+"""Document P's procedure: friction over the motor's angle, an average that bends over many turns and what repeats with each.
+
+Friction of sliding at constant speed is f = s1 q^2 + s2 q + s3 + b |v| + sum_k (a_k cos k q + b_k sin k q), k up to 10
+(document P, equations of f_aver, f_peri and f_visc). P prints neither a_k and b_k nor B; a constant a_0 / 2 or B is the same
+as s3 (E-P9).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording, check_recording
+from strainwave.friction import PositionDependent
+from strainwave.identification.experiments.experiment import sensible
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.fitting.covariance import covariance_of
+from strainwave.identification.fitting.estimate import Estimate
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * np.pi
+ORDERS = 10  # of document P, and of the law
+FEWEST = 4  # samples for each period of the highest order
+APART = 3.0  # standard deviations, beyond which two numbers contradict each other
+
+
+@dataclass(frozen=True, eq=False)
+class PositionFit(ComparedByFields):
+    """Friction over the angle, as document P describes it.
+
+    Attributes:
+        law: the friction found, valid over the angles measured
+        estimates: its numbers, as `quadratic` and `cosine[0]`, by least squares over all samples
+        residual: measured less fitted friction [N.m], shape (n,)
+        integrated: the same law by P's integrals over whole turns, None where fewer than three whole turns were measured
+    """
+
+    law: PositionDependent
+    estimates: tuple[Estimate, ...]
+    residual: Array
+    integrated: PositionDependent | None
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One way to read a table of friction over speed beside a law over the angle.
+
+    Attributes:
+        name: total friction, or its viscous part
+        coulomb: its torque at speed 0 [N.m]: of the viscous part, what it adds to Coulomb's
+        viscous: its rise with the speed [N.m.s/rad]
+        total: what the drive's friction would be with it at each speed of the table [N.m], where the law's average is least
+        contradicts: what it excludes, in words; empty if it fits
+    """
+
+    name: str
+    coulomb: Estimate
+    viscous: Estimate
+    total: Array
+    contradicts: tuple[str, ...]
+
+
+def fit_position(recordings: Recording | Sequence[Recording], orders: int = ORDERS) -> PositionFit:
+    """Friction over the angle from runs at constant speed.
+
+    Least squares over all samples, so that turns need not be whole; and, where three whole turns of a run were measured, P's
+    own way beside it: the means of whole turns give the parabola, the integrals of what it leaves give a_k and b_k. The mean of
+    a parabola over a turn exceeds its middle by s1 pi^2 / 3, which is taken off.
+
+    Args:
+        recordings: runs at constant speed with columns angle and torque of the motor, and speed where there are several
+            speeds; a motion towards negative angles may be among them
+        orders: harmonics of the turn, up to 10
+
+    Raises:
+        ValueError: less than a turn, or too few samples for the orders
+    """
+    orders = arguments.whole("orders", orders, low=0, high=ORDERS)
+    runs = [_run(each) for each in ([recordings] if isinstance(recordings, Recording) else recordings)]
+    if not runs:
+        raise ValueError("recordings must hold at least one run at constant speed")
+    angle, level, speed = map(np.concatenate, zip(*runs, strict=True))
+    start, end = float(angle.min()), float(angle.max())
+    if end - start < TURN:
+        raise ValueError(f"the runs cover {(end - start) / TURN:.2f} turns; friction over the turn needs at least a whole one")
+    if len(angle) < max(FEWEST * orders * (end - start) / TURN, 2 * orders + 5):
+        raise ValueError(
+            f"{len(angle)} samples over {(end - start) / TURN:.1f} turns cannot tell {orders} orders; record more, or ask for "
+            "fewer"
+        )
+    several = len(np.unique(np.round(speed / max(float(speed.max()), 1e-300), 2))) > 1
+    middle, half = 0.5 * (start + end), 0.5 * (end - start)
+    u, k = (angle - middle) / half, np.arange(1, orders + 1)
+    columns = [
+        u**2,
+        u,
+        np.ones_like(u),
+        *np.cos(np.outer(k, angle)),
+        *np.sin(np.outer(k, angle)),
+        *([speed] if several else []),
+    ]
+    jacobian = np.stack(columns, axis=1)
+    found = np.linalg.lstsq(jacobian, level, rcond=None)[0]
+    residual = level - jacobian @ found
+    covariance, freedom = covariance_of(jacobian, residual[np.newaxis])
+    back = np.eye(len(found))  # from the parabola in u to that in q
+    back[:3, :3] = [
+        [half**-2, 0.0, 0.0],
+        [-2.0 * middle / half**2, 1.0 / half, 0.0],
+        [(middle / half) ** 2, -middle / half, 1.0],
+    ]
+    numbers, sigma = back @ found, np.sqrt(np.diag(back @ covariance @ back.T))
+    names = ["quadratic", "linear", "constant", *(f"{n}[{i}]" for n in ("cosine", "sine") for i in range(orders))]
+    units = ["N.m/rad2", "N.m/rad", *(2 * orders + 1) * ["N.m"]]
+    if several:
+        names, units = [*names, "viscous"], [*units, "N.m.s/rad"]
+    estimates = tuple(
+        Estimate(name, unit, 0.0, float(value), float(off), False, freedom)
+        for name, unit, value, off in zip(names, units, numbers, sigma, strict=True)
+    )
+    law = _law(numbers, orders, start, end, viscous=float(numbers[-1]) if several else 0.0)
+    whole = [integrated for run in runs if (integrated := _integrated(run[0], run[1], orders)) is not None]
+    beside = _law(np.mean(whole, axis=0), orders, start, end) if whole and not several else None
+    return PositionFit(law, estimates, residual, beside)
+
+
+def _law(numbers: Array, orders: int, start: float, end: float, viscous: float = 0.0) -> PositionDependent:
+    quadratic, linear, constant, *waves = numbers.tolist()
+    return PositionDependent(
+        quadratic=quadratic,
+        linear=linear,
+        constant=constant,
+        cosine=waves[:orders],
+        sine=waves[orders : 2 * orders],
+        viscous=max(viscous, 0.0),
+        domain_start=start,
+        domain_end=end,
+    )
+
+
+def _run(recording: Recording) -> tuple[Array, Array, Array]:
+    """Angle, size of the friction and size of the speed of a run one way."""
+    check_recording("recordings", recording)
+    angle, torque = sensible(recording, "angle", "rad"), sensible(recording, "torque", "N.m")
+    if np.any(np.abs(np.diff(angle)) > np.pi):  # an encoder that begins anew with every turn
+        angle = np.unwrap(angle)
+    way = float(np.sign(angle[-1] - angle[0]))
+    if way == 0.0:
+        raise ValueError("the angle ends where it began: friction over the angle needs a run one way, at constant speed")
+    speed = np.abs(recording.values("speed", "rad/s")) if "speed" in recording.names else np.zeros_like(angle)
+    level = way * torque if np.mean(torque) * way > 0.0 or np.any(torque < 0.0) else torque
+    return angle, level, speed
+
+
+def _integrated(angle: Array, level: Array, orders: int) -> Array | None:
+    """P's integrals over the whole turns of a run: s1, s2, s3, a_k, b_k."""
+    order = np.argsort(angle, kind="stable")
+    angle, level = angle[order], level[order]
+    first, turns = float(angle[0]), int((angle[-1] - angle[0]) // TURN)
+    if turns < 3:
+        return None
+    centres, means = [], []
+    for turn in range(turns):
+        q, f = _between(angle, level, first + turn * TURN, first + (turn + 1) * TURN)
+        centres.append(first + (turn + 0.5) * TURN)
+        means.append(np.trapezoid(f, q) / TURN)
+    quadratic, linear, constant = np.polyfit(centres, means, 2)
+    constant -= quadratic * np.pi**2 / 3.0
+    q, f = _between(angle, level, first, first + turns * TURN)
+    left = f - np.polyval([quadratic, linear, constant], q)
+    k = np.arange(1, orders + 1)[:, np.newaxis]
+    waves = np.concatenate([np.cos(k * q), np.sin(k * q)])
+    return np.concatenate([[quadratic, linear, constant], 2.0 / (turns * TURN) * np.trapezoid(left * waves, q, axis=1)])
+
+
+def _between(angle: Array, level: Array, start: float, end: float) -> tuple[Array, Array]:
+    """The samples of a stretch, and both its ends."""
+    inside = (angle > start) & (angle < end)
+    ends = np.interp([start, end], angle, level)
+    return np.concatenate([[start], angle[inside], [end]]), np.concatenate([ends[:1], level[inside], ends[1:]])
+
+
+def readings(table: FrictionTable, law: PositionDependent) -> tuple[Reading, Reading]:
+    """Both readings of a table of friction over speed beside a law over the angle, as document P's Table 2 beside its law.
+
+    Its text does not say whether the table is all the friction, or its viscous part b v + B. Both are fitted by a line; each
+    says what it contradicts in the law (E-P6, E-P7, E-P11). Nothing is averaged.
+
+    Args:
+        table: friction over speed
+        law: friction over the angle; its `constant` and `viscous` are compared
+
+    >>> import numpy as np
+    >>> speed, torque = np.array([0.1, 0.5, 1.0, 2.0, 5.0]), np.array([0.012, 0.028, 0.045, 0.078, 0.165])
+    >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, viscous=0.0004, domain_start=0.0,
+    ...                         domain_end=240.82)
+    >>> total, part = readings(FrictionTable(speed, torque), law)
+    >>> print(total.contradicts[0])
+    it says 0.012 N·m in all at 0.1 rad/s, but the law has at least 0.0492 N·m at any angle
+    >>> print(part.contradicts[0])
+    its slope of 0.0308 N·m·s/rad is 77.1 times the law's 0.0004
+    """
+    speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
+    jacobian = np.stack([np.ones_like(speed), speed], axis=1)
+    found = np.linalg.lstsq(jacobian, torque, rcond=None)[0]
+    covariance, freedom = covariance_of(jacobian, (torque - jacobian @ found)[np.newaxis])
+    sigma = np.sqrt(np.diag(covariance))
+    offset, slope = (
+        Estimate(name, unit, 0.0, float(value), float(off), False, freedom)
+        for name, unit, value, off in zip(("coulomb", "viscous"), ("N.m", "N.m.s/rad"), found, sigma, strict=True)
+    )
+    least = float(
+        np.min(law.replace(outside="clamp").steady(1e-300, angle=np.linspace(law.domain_start, law.domain_end, 4097)))
+    )
+    of_slope = []
+    if abs(slope.value - law.viscous) > APART * slope.sigma:
+        times = f"is {slope.value / law.viscous:.3g} times" if law.viscous > 0.0 else "stands against"
+        of_slope.append(f"its slope of {slope.value:.3g} N·m·s/rad {times} the law's {law.viscous:g}")
+    slowest = int(np.argmin(speed))
+    of_level = []
+    if torque[slowest] < least - APART * sigma[0]:
+        of_level.append(
+            f"it says {torque[slowest]:.3g} N·m in all at {speed[slowest]:.3g} rad/s, but the law has at least {least:.3g} N·m "
+            "at any angle"
+        )
+    of_offset = []
+    if offset.value > APART * offset.sigma:
+        of_offset.append(
+            f"its offset of {offset.value:.3g} N·m is no viscous friction: one that reverses is Coulomb friction, and adds to "
+            f"the law's {law.constant:.3g} N·m"
+        )
+    return (
+        Reading("total friction", offset, slope, torque, (*of_level, *of_slope)),
+        Reading("its viscous part", offset, slope, least + torque, (*of_slope, *of_offset)),
+    )
