@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cycloidal-loops"
@@ -47,6 +48,24 @@ def test_a_measured_loop_is_predicted_where_it_was_held_out(name: str, record_pr
     without = fit_without_hysteresis(loop) / span
     assert held_out < 0.05
     assert held_out < 0.4 * without  # the memory is what explains the loop
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_all_models_are_ranked_on_a_measured_loop(name: str) -> None:
+    """The friction of the motor is inside these loops; nothing of it is known, so all of it counts as hysteresis."""
+    loop = measured(name)
+    span = float(np.ptp(loop.torque))
+    ranked = rank_loop(loop, sw.Gear())
+    print(f"\n{name}")
+    for each in ranked:
+        told = f"{100 * each.error / span:.2f} ± {100 * each.standard_error / span:.2f} %, {each.parameters} numbers"
+        print(f"{'*' if each.good else ' '} {each.name}: {told}, correlation {each.correlation:.1f}")
+    best = ranked[0]
+    assert best.good
+    assert best.error / span < 0.03
+    assert best.error <= min(each.error for each in ranked if each.parameters <= best.parameters)
+    elastic = min(each.error for each in ranked if each.name.endswith("without hysteresis"))
+    assert best.error < 0.4 * elastic
 
 
 def fit_without_hysteresis(loop: TorsionLoop) -> float:

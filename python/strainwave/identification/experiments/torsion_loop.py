@@ -16,6 +16,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.branches import monotone, slid, thinned, turning_points
 from strainwave.identification.experiments.experiment import Nuisance, sensible
+from strainwave.identification.experiments.stages import series_compliance
 
 Array = NDArray[np.float64]
 
@@ -67,7 +68,11 @@ class TorsionLoop(ComparedByFields):
 
         What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque. A long
         recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a reversal
-        is left out: there friction turns over while its bristles bend, over a distance that no loop tells.
+        is left out: there friction turns over while its bristles bend, over a distance that no loop tells. Where the gear has
+        stages, what they give way under the torque is taken out of the twist: the rest is that of the spring.
+
+        Raises:
+            ValueError: a loop at the input of a gear with stages
         """
         check_recording("recording", recording)
         ratio = arguments.gear(gear).kinematics.ratio if at_input(recording) else None
@@ -76,6 +81,14 @@ class TorsionLoop(ComparedByFields):
             twist, torque = angle / ratio, ratio * input_torque
         else:
             twist, torque = sensible(recording, "twist", "rad"), sensible(recording, "torque", "N.m")
+        give = series_compliance(gear)
+        if give > 0.0 and ratio is not None:
+            raise ValueError(
+                "a torsion loop at the input does not tell which torque the stages of the gear transmit, as the friction of the "
+                "input is inside; measure it at the output, or fit a gear without stages: gear.replace(structure="
+                "structure.Lumped())"
+            )
+        twist = twist - give * torque
         twist, torque, moments = thinned(twist, torque, _moments(recording))
         if ratio is not None:
             twist, torque, moments = twist[settled := slid(twist)], torque[settled], moments[settled]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -119,7 +120,7 @@ class _Tried:
                 if (spring, beside) in self._found:
                     continue
                 try:
-                    with warnings.catch_warnings(action="ignore", category=PassivityWarning):  # a fit tries what it likes
+                    with _trying():
                         found = candidate(self.loop, self.gear, self.training, spring, beside)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
@@ -151,13 +152,21 @@ class _Tried:
             return
         found = min(elastic, key=lambda each: each.error)
         while len(found.beside.elements(found.fit.gear)) > 1:
-            found = with_fewer(found, self.gear)
+            with _trying():
+                found = with_fewer(found, self.gear)
             yield found
 
 
 def behind_play(spring: Kind) -> Kind:
     """The kind of spring with play before it."""
     return spring if isinstance(spring, Backlash) else Backlash(spring)
+
+
+@contextmanager
+def _trying() -> Iterator[None]:
+    """A fit tries what it likes, and SciPy divides by a singular value of 0 where a number has no effect."""
+    with warnings.catch_warnings(action="ignore", category=PassivityWarning), np.errstate(divide="ignore", invalid="ignore"):
+        yield
 
 
 def _left(found: TorsionCandidate) -> float:
@@ -182,7 +191,7 @@ def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
     for fold in range(folds):
         training = held_out_blocks(n, fold)
         try:
-            with warnings.catch_warnings(action="ignore", category=PassivityWarning):
+            with _trying():
                 part = fit(found.fit.gear, loop, free, training=training)
         except (ValueError, FloatingPointError):
             return None
