@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strainwave.rig import Loop, cycles, segment
-from strainwave.rig.analysis.regimes import NAMES
+from strainwave.rig import Loop, cycles
+from strainwave.rig.analysis.regimes import NAMES, segment
 
 from tests.python.rig.loops import PEAK, loop_of_table, parallelogram, straight
 

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.rig import Loop, Masses, Rig, Scene, Step, Value, analyse, load_by_steps, printed_gear, simulate_test
+from strainwave.rig import Loop, Masses, Rig, Scene, Step, Value, analyse, printed_gear, simulate_test
 from strainwave.rig.reading.measurement import read_test
+from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.printed import PEAK, TABLE_2
 
 Array = NDArray[np.float64]
