@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
     from strainwave.files.recording import Recording
     from strainwave.identification.fitting.fit import Fit, fit
+    from strainwave.identification.orders.ripple import Ripple, ripple
     from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
     from strainwave.identification.twin import Twin, twin
     from strainwave.simulation import scenario
@@ -75,6 +76,7 @@ _LAZY = {
     "RatingWarning": "files.ratings",
     "Quantity": "files.entries",
     "Recording": "files.recording",
+    "Ripple": "identification.orders.ripple",
     "Run": "simulation.run",
     "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
@@ -94,6 +96,7 @@ _LAZY = {
     "order_spectrum": "analysis.orders",
     "orders": "analysis.orders",
     "rig": "rig",
+    "ripple": "identification.orders.ripple",
     "save": "files.gear_set",
     "scenario": "simulation.scenario",
     "settling_time": "analysis.settling",
@@ -126,6 +129,7 @@ __all__ = [
     "RatingCheck",
     "RatingWarning",
     "Recording",
+    "Ripple",
     "Run",
     "ScenarioFile",
     "Seen",
@@ -155,6 +159,7 @@ __all__ = [
     "order_spectrum",
     "orders",
     "rig",
+    "ripple",
     "save",
     "scenario",
     "sensor",

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-NARROWEST = 12  # lines of a block at the lowest frequencies
-WIDENING = 0.15  # of the frequency: blocks grow with it, as noise is steep at low frequencies and flat at high ones
-WIDEST = 0.02  # of all lines
+NARROWEST = 40  # lines of a block at the lowest frequencies
+WIDENING = 0.5  # of the frequency: blocks grow with it, as noise is steep at low frequencies and flat at high ones
+WIDEST = 0.1  # of all lines
 EDGE = 0.05  # of the series, on which the taper rises at each end
 
 
@@ -74,6 +74,12 @@ def floor_of(power: Array, count: int) -> Floor:
     least = max(float(level.max()) * 1e-12, 1e-300)
     place = (np.array(edges[:-1]) + 0.5 * np.diff(edges) + 0.5) / count
     return Floor(place, np.maximum(level, least), np.diff(edges).astype(float))
+
+
+def floor_under(series: Array, weight: Array) -> Floor:
+    """The floor of a series that was multiplied by a weight, which is 1 or less."""
+    power = np.abs(np.fft.rfft(series)[1:]) ** 2 / float(weight @ weight)
+    return floor_of(power, len(series))
 
 
 def taper(count: int) -> Array:

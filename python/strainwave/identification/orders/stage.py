@@ -33,7 +33,7 @@ HIGHEST = 0.4  # of the sampling rate, up to which lines are compared
 ROUNDS = 4  # of weights and fit
 BLOCKS = 200  # of the record, over which scores are summed for the covariance
 TRANSIENT = 4  # terms of the ends of the record
-LEAST_GAIN = 20.0  # of the logarithm of the likelihood, that makes the output stage worth its two parameters
+LEAST_GAIN = 30.0  # of the logarithm of the likelihood, that makes the output stage worth its two parameters
 STIFFNESS_SPREAD = 0.10  # by which the stiffness that ripple meets may differ from that of the whole motion (assumed)
 DAMPING_SPREAD = 0.30  # the same of the damping (assumed)
 TRIED = 2.0 * pi * HIGHEST * np.geomspace(0.004, 1.0, 12)  # natural frequencies from which it is sought [rad per sample]
@@ -61,6 +61,7 @@ class Regressed:
     Attributes:
         values: coefficients, first of the orders, then of the loads, shape (n,)
         covariance: of them, shape (n, n)
+        freedom: degrees of freedom that the covariance rests on
         stage: the output stage, None where it was not seen
         spread: standard deviations of the logarithms of its frequency and damping
         residual: what is left below the highest line that is compared, shape (samples,)
@@ -68,6 +69,7 @@ class Regressed:
 
     values: Array
     covariance: Array
+    freedom: int
     stage: Stage | None
     spread: tuple[float, float]
     residual: Array
@@ -201,7 +203,8 @@ class _Lines:
         inverse = np.asarray(np.linalg.pinv((jacobian / size).T @ (jacobian / size), rcond=1e-12)) / np.outer(size, size)
         left = self.left(found.stage, found.values)
         scores = self._scores(jacobian, _stacked(left * weight))
-        covariance = inverse @ (scores.T @ scores) @ inverse
+        freedom = max(len(scores) - jacobian.shape[1], 1)
+        covariance = inverse @ (scores.T @ scores) @ inverse * len(scores) / freedom
         spread = (float("nan"), float("nan"))
         if found.stage is not None:
             spread = (float(np.sqrt(covariance[-2, -2])), float(np.sqrt(covariance[-1, -1])))
@@ -210,7 +213,7 @@ class _Lines:
         whole = np.zeros(self.count // 2 + 1, complex)
         whole[1 : len(left) + 1] = left * np.sqrt(self.count)
         residual = np.fft.irfft(whole, self.count)
-        return Regressed(found.values[:kept], covariance[:kept, :kept], found.stage, spread, residual)
+        return Regressed(found.values[:kept], covariance[:kept, :kept], freedom, found.stage, spread, residual)
 
     def _slope(self, found: _Fitted, which: int, weight: Array) -> Array:
         """How the model changes with the logarithm of the stage's frequency or damping."""

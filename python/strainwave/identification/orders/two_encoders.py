@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, hypot, inf, pi, tau
+from math import hypot, inf, pi, tau
 from typing import Literal
 
 import numpy as np
@@ -191,7 +191,15 @@ def transmission_error(
     values, covariance = found.values, found.covariance
     tested = len(chosen)
     listed_orders = tuple(
-        _order(order, shaft, values[2 * k : 2 * k + 2], covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2], tested, false_alarm)
+        _order(
+            order,
+            shaft,
+            values[2 * k : 2 * k + 2],
+            covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2],
+            found.freedom,
+            tested,
+            false_alarm,
+        )
         for k, (order, shaft) in enumerate(chosen)
     )
     first = 2 * tested
@@ -360,14 +368,14 @@ def _regressed(
     return problem.regress(dynamic=dynamic), every
 
 
-def _order(order: float, shaft: Shaft, pair: Array, covariance: Array, tested: int, allowed: float) -> ErrorOrder:
+def _order(order: float, shaft: Shaft, pair: Array, covariance: Array, freedom: int, tested: int, allowed: float) -> ErrorOrder:
     sine, cosine = pair.tolist()
     amplitude, phase = hypot(sine, cosine), float(np.arctan2(cosine, sine))
     along = np.array([np.cos(phase), np.sin(phase)])
     across = np.array([-along[1], along[0]])
     sigmas = [float(np.sqrt(max(each @ covariance @ each, 0.0))) for each in (along, across)]
     inverse = np.asarray(np.linalg.pinv(covariance))
-    alarm = min(1.0, tested * exp(-0.5 * float(pair @ inverse @ pair)))
+    alarm = min(1.0, tested * (1.0 + float(pair @ inverse @ pair) / freedom) ** (-0.5 * freedom))  # tail of F(2, freedom)
     turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
     return ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
 
