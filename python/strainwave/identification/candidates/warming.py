@@ -1,0 +1,105 @@
+"""How friction falls while a drive warms up, from a long log of an axis that moves to and fro."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.files.recording import Recording, check_recording
+from strainwave.identification.experiments.experiment import sensible
+from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, student
+
+Array = NDArray[np.float64]
+
+SLOWEST = 0.05  # of the largest speed: below, an axis may stick
+BLOCKS = (10, 30, 100)  # samples that may err together
+FEWEST = 10  # blocks that tell a variance
+WARMER = 2.0  # K
+
+
+@dataclass(frozen=True)
+class Warming:
+    """Friction of an axis over its temperature, F = F0 + F' (T - T0).
+
+    Attributes:
+        friction: its friction F0 at the reference temperature, in the unit of the effort
+        slope: how it changes with the temperature F' [unit of the effort per K]
+        fall: its relative fall with the temperature -F' / F0 [1/K], as `friction.Thermal.dry_fall`
+        reference_temperature: T0, mean of the samples in motion [K]
+        samples: how many were in motion
+        together: length of the blocks of samples that the intervals rest on
+    """
+
+    friction: Estimate
+    slope: Estimate
+    fall: Estimate
+    reference_temperature: float
+    samples: int
+    together: int
+
+
+def friction_over_temperature(recording: Recording, effort: str = "current", *, slowest: float | None = None) -> Warming:
+    """The part of an effort that turns round with the motion, and how it changes while the axis warms up.
+
+    Least squares of the effort by a constant and its drift with the temperature (weight, offset), by sgn(v) and sgn(v) times
+    T - T0. What else moves the axis, as its inertia, counts as noise. Such noise hangs together over a movement and longer: the
+    variance is that of sums over blocks of neighbouring samples (Liang, Zeger 1986), the largest of several lengths of block.
+
+    A log of one warm-up cannot tell temperature from what else changes in the same time, as wear-in or another task.
+
+    Args:
+        recording: columns speed, temperature and the effort, in the order of time
+        effort: column of a current or a torque
+        slowest: speed from which on the axis surely moves [rad/s]; a twentieth of the largest if not given
+
+    Raises:
+        ValueError: a temperature that hardly changes, a motion of one direction only, or too few samples
+    """
+    check_recording("recording", recording)
+    speed, temperature = sensible(recording, "speed", "rad/s"), recording.values("temperature", "K")
+    force, unit = recording[effort], recording.unit(effort)
+    least = SLOWEST * float(np.abs(speed).max()) if slowest is None else arguments.number("slowest", slowest, "rad/s", low=0.0)
+    moving = np.abs(speed) > least
+    if moving.sum() < FEWEST * BLOCKS[0] or not (np.any(speed[moving] > 0.0) and np.any(speed[moving] < 0.0)):
+        raise ValueError(
+            f"only {moving.sum()} samples move faster than {least:.3g} rad/s, or all of them one way: friction is what turns "
+            "round with the motion, so record more of a motion to and fro"
+        )
+    force, way, temperature = force[moving], np.sign(speed[moving]), temperature[moving]
+    if np.ptp(temperature) < WARMER:
+        raise ValueError(
+            f"the temperature changes by {np.ptp(temperature):.2g} K only; record a warm-up of {WARMER:g} K or more"
+        )
+    middle = float(np.mean(temperature))
+    warmer = temperature - middle
+    jacobian = np.stack([np.ones_like(way), warmer, way, way * warmer], axis=1)
+    found = np.linalg.lstsq(jacobian, force, rcond=None)[0]
+    scores = jacobian * (force - jacobian @ found)[:, np.newaxis]
+    inverse = np.linalg.inv(jacobian.T @ jacobian)
+    covariances = [(length, _clustered(scores, inverse, length)) for length in BLOCKS if len(force) // length >= FEWEST]
+    length, covariance = max(covariances, key=lambda each: each[1][3, 3])
+    freedom = len(force) / length - len(found)
+    wider = student(ONE_SIGMA, freedom)
+    level, slope = float(found[2]), float(found[3])
+    of_fall = np.array([slope / level**2, -1.0 / level])
+    sigmas = [np.sqrt(covariance[2, 2]), np.sqrt(covariance[3, 3]), np.sqrt(of_fall @ covariance[2:, 2:] @ of_fall)]
+    told: Sequence[tuple[str, str, float]] = (
+        ("friction", unit, level), ("slope", f"{unit}/K", slope), ("dry_fall", "1/K", -slope / level)
+    )  # fmt: skip
+    of_level, of_slope, of_both = (
+        Estimate(name, of, 0.0, value, wider * float(sigma), False, freedom)
+        for (name, of, value), sigma in zip(told, sigmas, strict=True)
+    )
+    return Warming(of_level, of_slope, of_both, middle, int(moving.sum()), length)
+
+
+def _clustered(scores: Array, inverse: Array, length: int) -> Array:
+    """Covariance where samples of one block may err together, and blocks err alone."""
+    sums = np.add.reduceat(scores, np.arange(0, len(scores), length), axis=0)
+    blocks = len(sums)
+    covariance: Array = blocks / (blocks - 1.0) * inverse @ (sums.T @ sums) @ inverse
+    return covariance
