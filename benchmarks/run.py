@@ -12,6 +12,7 @@ stick_slip   the same drive with friction that really sticks: error and time of 
 scaling      time over steps, members and Maxwell elements
 files        ever more members run to files: time, memory and files
 overhead     what a call, storing, derivatives and sampling cost, and a process that imports the package or shows its help
+loop_fit     a torsion loop fitted, beside SciPy with finite differences; and the convex fit
 marker_angle the angle of a target from pictures of its markers: error, bias, stated uncertainty, time of a picture
 peak         operations a second, beside the most that the processor does
 
@@ -29,6 +30,7 @@ from collections.abc import Callable, Sequence
 import actuator
 import ensemble
 import files
+import loop_fit
 import marker_angle
 import overhead
 import peak
@@ -47,6 +49,7 @@ PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "scaling": lambda console, peers, quick: scaling.run(console),
     "files": lambda console, peers, quick: files.run(console),
     "overhead": lambda console, peers, quick: overhead.run(console),
+    "loop_fit": lambda console, peers, quick: loop_fit.run(console),
     "marker_angle": lambda console, peers, quick: marker_angle.run(console, quick),
     "peak": lambda console, peers, quick: peak.run(console),
 }
