@@ -39,11 +39,10 @@ def at(found: Warming, temperature: float) -> float:
 def test_its_friction_falls_as_it_warms_up_and_the_interval_holds_what_is_told(joint: sw.Recording) -> None:
     found = friction_over_temperature(joint)
     low, high = found.slope.interval(0.95)
-    print(
-        f"\n{found.samples} samples, {found.together} together: {1e3 * found.slope.value:.1f} mA/K, 95 % from "
-        f"{1e3 * low:.1f} to {1e3 * high:.1f}; {at(found, COLD):.3f} A at {COLD:g}, {at(found, WARM):.3f} A at {WARM:g} degrees; "
-        f"{100.0 * found.fall.value:.2f} +- {100.0 * found.fall.sigma:.2f} percent a kelvin"
-    )
+    print(f"\n{found.samples} samples in motion, {found.together} of them together")
+    print(f"slope {1e3 * found.slope.value:.1f} mA/K, 95 % from {1e3 * low:.1f} to {1e3 * high:.1f}")
+    print(f"{at(found, COLD):.3f} A at {COLD:g} degrees, {at(found, WARM):.3f} A at {WARM:g}")
+    print(f"fall {100.0 * found.fall.value:.2f} +- {100.0 * found.fall.sigma:.2f} percent a kelvin")
     assert high < 0.0  # it does fall
     assert low < (TOLD[1] - TOLD[0]) / (WARM - COLD) < high
 

@@ -47,8 +47,8 @@ class FrictionCandidate(ComparedByFields):
         held_out: torque at each speed as predicted without the measurements near it [N.m], shape (n,)
         error: rms of measured less `held_out` [N.m]
         error_sigma: standard error of `error` [N.m]
-        whiteness: probability that residuals in the order of the speed are as alike as these by chance (Ljung, Box 1978)
-        information: Akaike's criterion, corrected for few samples (Hurvich, Tsai 1989) [1]; the least is best
+        whiteness: probability that residuals in the order of the speed are as alike as these by chance (LjungBox1978)
+        information: Akaike's criterion, corrected for few samples (HurvichTsai1989) [1]; the least is best
         chance: probability that the first candidate's residuals shrink as much by chance (F test); of the first, 1
     """
 
@@ -210,7 +210,7 @@ def _falls(candidate: FrictionCandidate) -> bool:
 
 
 def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, FrictionCandidate]:
-    """The simplest within one standard error of the best (Breiman et al. 1984), compared sample by sample.
+    """The simplest within one standard error of the best (Breiman1984), compared sample by sample.
 
     Also one that chance may have made worse than the best (F test): of many laws tried some look better than they are.
     """
@@ -284,7 +284,7 @@ def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandid
 
 
 def whiteness(residual: Array) -> float:
-    """Probability that white noise has autocorrelations as large as these (Ljung, Box 1978), over up to ten lags.
+    """Probability that white noise has autocorrelations as large as these (LjungBox1978), over up to ten lags.
 
     >>> whiteness(np.random.default_rng(1).normal(size=200)) > 0.01, whiteness(np.sin(np.arange(200.0) / 9.0)) < 1e-9
     (True, True)

@@ -236,7 +236,7 @@ def _elements_start(loop: PreslidingLoop, begun: NDArray[np.bool_], count: int) 
         k, level = groups.pop(int(np.argmax([level for _, level in groups])))
         groups += [[0.7 * k, 0.4 * level], [0.3 * k, 0.6 * level]]
     groups.sort(key=lambda group: group[1] / group[0])
-    while len(groups) > count:  # those whose merging changes least: of near reaches, or of small torque (Ward 1963)
+    while len(groups) > count:  # those whose merging changes least: of near reaches, or of small torque (Ward1963)
         k, level = np.array(groups).T
         change = level[1:] * level[:-1] / (level[1:] + level[:-1]) * np.diff(np.log(level / k)) ** 2
         nearest = int(np.argmin(change))

@@ -61,7 +61,7 @@ def over_speed(table: FrictionTable) -> Iterator[Shape]:
 
 
 def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
-    """A shape at the best of a grid over its speeds and exponents, the rest by linear least squares (Golub, Pereyra 1973)."""
+    """A shape at the best of a grid over its speeds and exponents, the rest by linear least squares (GolubPereyra1973)."""
     speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
     fastest = float(speed.max())
     grid = list(

@@ -47,7 +47,7 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
 
     Least squares of the effort by a constant and its drift with the temperature (weight, offset), by sgn(v) and sgn(v) times
     T - T0. What else moves the axis, as its inertia, counts as noise. Such noise hangs together over a movement and longer: the
-    variance is that of sums over blocks of neighbouring samples (Liang, Zeger 1986), the largest of several lengths of block.
+    variance is that of sums over blocks of neighbouring samples (LiangZeger1986), the largest of several lengths of block.
 
     A log of one warm-up cannot tell temperature from what else changes in the same time, as wear-in or another task.
 
