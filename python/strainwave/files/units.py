@@ -38,6 +38,7 @@ _DEFINITIONS = (
     "radian = [angle] = rad",
     "minute = 60 second = min",
     "hour = 3600 second = h",
+    "nanosecond = 1e-9 second = ns",  # of time stamps; no other unit has this prefix, as nm is meant for N.m
     "hertz = 1 / second = Hz",
     f"degree = {math.pi / 180!r} radian = deg",
     f"arcminute = {math.pi / 10_800!r} radian = arcmin",

@@ -23,6 +23,8 @@ EXACT = 1e-3  # of a step: what scatters less is taken as it is
 AGAIN = 0.5  # of a step: a row with the values of the row before it and a stamp so near is a repetition
 RESTART = 10.0  # steps: a clock that goes back by more has begun anew
 COARSE = 0.05  # of the rows: where more share the stamp of the row before, stamps are coarser than the samples
+LARGEST = 1e12  # s: what lies beyond is no time
+MOST = 1e12  # ticks from the first row to the last: more are none of a clock
 LATE = 1e6  # s: stamps that begin later count from some epoch, and are counted from the first row instead
 
 
@@ -61,7 +63,7 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None) -> Clock:
         repeated: whether a row holds the same values as the row before it, shape (n,); no row if not given
 
     Raises:
-        ValueError: the stamps do not run forward
+        ValueError: the stamps do not run forward, or are no times
 
     >>> crooked = clock(np.array([0.0, 0.0101, 0.0199, 0.0401, 0.0499, 0.06]))
     >>> crooked.time.round(3).tolist()
@@ -71,6 +73,8 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None) -> Clock:
     1 row is missing: a gap of 0.02 s after 0.0199 s
     time stamps scatter by 0.0802 ms about a clock of 100.1 Hz, which is taken
     """
+    if (largest := float(np.abs(stamps).max())) > LARGEST:
+        raise ValueError(f"its time reaches {largest:g} s, which no log lasts; give its unit, with --unit time=UNIT")
     whole = _longest_stretch(stamps)
     rows, remarks = whole.rows, [*whole.remarks]
     step = _step(stamps[rows])
@@ -115,6 +119,8 @@ def _step(stamps: Array) -> float:
 
 def _regular(stamps: Array, step: float) -> Clock | None:
     """The time of a regular clock, if the stamps lie about one."""
+    if np.ptp(stamps) > MOST * step:
+        return None
     same = np.diff(stamps) == 0.0
     if same.mean() > COARSE:
         return _of_coarse_stamps(stamps, step)

@@ -3,54 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Label, Source, places_of
+from strainwave.files.labels import Source, places_of
 from strainwave.files.tables import OpenTable
 from strainwave.files.units import convert, measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
+from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import UNITS, meaning
+from strainwave.identification.reading.missing_units import missing_units
+from strainwave.identification.reading.names import meaning
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Column:
-    """A column that seems to be a channel.
-
-    Args:
-        position: where it stands in the file, from 0
-        label: what the file calls it
-        channel: what it measures
-        which: what else its name says, as the number of a joint
-        robot: whether its name is that of a robot's joint channel
-        said: whether a person said what it is
-        unit: its unit in the file; None where none is stated
-        values: in SI units, once they are read
-    """
-
-    position: int
-    label: Label
-    channel: Channel
-    which: str = ""
-    robot: bool = False
-    said: bool = False
-    unit: str | None = None
-    values: Array | None = None
-
-    @property
-    def si(self) -> Array:
-        assert self.values is not None
-        return self.values
-
-    @property
-    def name(self) -> str:
-        return self.label.name
 
 
 def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
@@ -59,13 +27,15 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
     taken = {column.position for column in said}
     told = []
     for position, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
-        found = meaning(label) if content != "other" and position not in taken else None
-        if found is None or (content == "dates") != (content == "dates" and found.quantity == "time"):
+        if content == "other" or position in taken:
+            continue
+        found = meaning(label._replace(unit=None) if label.name in mapping.units else label)
+        if found is None or (content == "dates" and found.quantity != "time"):
             continue
         sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
         channel = Channel(found.quantity, found.side if sided else None, found.commanded)
         if not any(column.channel == channel for column in said):
-            unit = "s" if content == "dates" else found.unit
+            unit = "s" if content == "dates" else found.unit or label.unit
             told.append(Column(position, label, channel, found.which, found.robot, unit=unit))
     return said + _of_one_joint(table, told, mapping)
 
@@ -128,55 +98,44 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         Source(column.position, column.name, str(column.position), column.unit or column.channel.unit) for column in columns
     ]
     numbers, remarks = table.measured(sources)
-    units = _units_given(table, columns, mapping)
-    found, assumed = [], []
-    for column in columns:
-        values = numbers[str(column.position)]
-        unit = units.get(column.position) or column.unit
-        if unit is None:
-            unit = _assumed(table, column, values)
-            assumed.append(f"{column.name} in {unit}")
-        found.append(replace(column, unit=unit, values=_in_si(table, column, values, unit)))
+    raw = {column.position: numbers[str(column.position)] for column in columns}
+    known, told = _with_units(table, columns, mapping)
+    try:
+        assumed = missing_units(known, raw)
+    except ValueError as error:
+        raise ValueError(one_line(f"{table.file} {error}")) from None
     if assumed:
-        remarks.append(f"no unit is stated, taken are {', '.join(assumed)}; --unit NAME=UNIT says another one")
+        taken = ", ".join(f"{c.name} in {' '.join(assumed[c.position]).strip()}" for c in known if c.position in assumed)
+        told.append(f"no unit is stated: {taken}; --unit NAME=UNIT says another one")
+    found = []
+    for column in known:
+        unit = column.unit or assumed[column.position].unit
+        found.append(replace(column, unit=unit, values=_in_si(table, column, raw[column.position], unit)))
+    remarks = [*remarks, *told]
     return _whole_rows(table, found, remarks)
 
 
-def _units_given(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> dict[int, str]:
-    """The units that a person gave, by the place of the column: for a channel, a quantity, or by the name in the file."""
-    found: dict[int, str] = {}
+def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
+    """The columns with the units that a person gave, for a channel, a quantity, or by the name in the file."""
+    found, remarks = list(columns), []
     for name, unit in mapping.units.items():
         channel = CHANNELS.get(ALIASES.get(name, name))
-        places = [column.position for column in columns if column.name == name or _is_called(column, channel)]
+        places = [place for place, column in enumerate(columns) if column.name == name or _is_called(column, channel)]
         if not places:
             there = listed(column.name for column in columns)
             raise ValueError(one_line(f"{table.file}: a unit is given for {quoted(name)}, which is not read; read are {there}"))
-        found |= dict.fromkeys(places, unit)
-    return found
+        for place in places:
+            stated = found[place].unit
+            if stated is not None and stated != unit:
+                remarks.append(f"{found[place].name} is stated in {stated}, and taken in {unit}, as was said")
+            found[place] = replace(found[place], unit=unit)
+    return found, remarks
 
 
 def _is_called(column: Column, channel: Channel | None) -> bool:
     if channel is None or (channel.quantity, channel.commanded) != (column.channel.quantity, column.channel.commanded):
         return False
     return channel.side is None or column.channel.side in (None, channel.side)
-
-
-def _assumed(table: OpenTable, column: Column, values: Array) -> str:
-    """The unit of numbers that come without one: SI, but for temperatures that are no kelvins, and time as its steps tell."""
-    quantity = column.channel.quantity
-    if quantity == "temperature":
-        return "degC" if np.nanmedian(values) < 200.0 else "K"
-    if quantity != "time":
-        return UNITS[quantity]
-    late = float(np.nanmax(np.abs(values)))
-    for least, unit in ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s")):  # since 1970
-        if late > least:
-            return unit
-    if len(values) > 1 and np.nanmedian(np.abs(np.diff(values))) < 0.2:
-        return "s"
-    hint = as_option("unit", "time", "ms")
-    place = f"{table.file} column {quoted(column.name)}"
-    raise ValueError(one_line(f"{place} has no unit, and its steps do not tell it; give it: {hint}"))
 
 
 def _in_si(table: OpenTable, column: Column, values: Array, unit: str) -> Array:
@@ -190,7 +149,7 @@ def _in_si(table: OpenTable, column: Column, values: Array, unit: str) -> Array:
     except ValueError as error:
         what = "command" if column.channel.commanded else column.channel.quantity
         place = f"{table.file} column {quoted(column.name)}"
-        remedy = f"correct its unit, or say what it is with {as_option('column', 'NAME', column.name)}"
+        remedy = f"give its unit, with {as_option('unit', column.name, column.channel.unit)}"
         raise ValueError(one_line(f"{place} cannot be a {what}: {error}; {remedy}")) from None
     return found
 
@@ -204,6 +163,6 @@ def _whole_rows(table: OpenTable, columns: Sequence[Column], remarks: list[str])
         empty = listed(column.name for column in columns if not np.isfinite(column.si).any()) or "no single column"
         raise ValueError(one_line(f"{table.file}: no row holds a number in each of its columns; all are missing in {empty}"))
     lost = int((~whole).sum())
-    rows = "1 row" if lost == 1 else f"{lost} rows"
-    remarks.append(f"{rows} without a number in each column are left out, the first at {table.place(int(np.argmin(whole)))}")
+    rows = "1 row without a number in each column is" if lost == 1 else f"{lost} rows without a number in each column are"
+    remarks.append(f"{rows} left out, the first at {table.place(int(np.argmin(whole)))}")
     return [replace(column, values=column.si[whole]) for column in columns], remarks

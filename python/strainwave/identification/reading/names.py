@@ -86,7 +86,7 @@ class Meaning(NamedTuple):
     """What a column seems to hold.
 
     Args:
-        quantity: what is measured
+        quantity: what is measured, in a unit that measures it
         side: of which shaft, where the name says so
         commanded: whether it is a reference and no measurement
         which: what else the name says, as the number of a joint; empty where nothing
@@ -110,22 +110,19 @@ def meaning(label: Label) -> Meaning | None:
     >>> meaning(Label("joint3_pos_deg", "joint3_pos_deg", None))
     Meaning(quantity='angle', side='output', commanded=False, which='3', unit='deg', robot=False)
     """
+    if label.unit is None and (alone := _of_unit_alone(label.name)):
+        return alone
     name, unit = (label.name, label.unit) if label.unit else _without_unit(label.name)
     words = words_of(name)
     if any(word in OTHERS for word in words):
         return None
     quantity, at = _quantity(words, unit)
-    if quantity is None and unit is None:  # the name may be nothing but a unit, as in rpm,Nm
-        quantity = next((each for each, standard in UNITS.items() if measures(name, standard)), None)
-        unit = name if quantity else None
     if quantity is None and any(word in COMMANDED for word in words):
         quantity = "angle"
-    if quantity is None:
+    if quantity is None or (unit is not None and not measures(unit, UNITS[quantity])):
         return None
     words = [BEHIND.get(word, word) if place > at else word for place, word in enumerate(words)]
     sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
-    if unit == name:
-        return Meaning(quantity, unit=unit)
     return Meaning(
         quantity,
         sides[-1] if sides else None,
@@ -134,6 +131,14 @@ def meaning(label: Label) -> Meaning | None:
         unit or next((_UNIT_NAMES[word] for word in words if word in _UNIT_NAMES), None),
         at >= 0 and words[at] in ROBOT,
     )
+
+
+def _of_unit_alone(name: str) -> Meaning | None:
+    """What a column holds whose name is nothing but a unit, as in `rpm,Nm`."""
+    if len(name) < 2 or name.casefold() in _VOCABULARY - _UNIT_NAMES.keys():
+        return None
+    quantity = next((each for each, standard in UNITS.items() if measures(name, standard)), None)
+    return Meaning(quantity, unit=name) if quantity else None
 
 
 def words_of(name: str) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,12 +13,14 @@ from strainwave.files.recording import Recording
 from strainwave.files.tables import OpenTable, open_table
 from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.clock import Clock, clock, regular
-from strainwave.identification.reading.columns import Column, chosen, read
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.columns import chosen, read
 from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.sides import UndecidedError
-from strainwave.messages import listed, one_line
+from strainwave.identification.reading.wraps import unwrapped
+from strainwave.messages import listed, one_line, quoted
 
 Array = NDArray[np.float64]
 
@@ -77,9 +79,11 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     try:
         found = kind_of(columns, said)
     except UndecidedError as undecided:
-        raise ValueError(one_line(f"{table.file}: {undecided}")) from None
+        unused = "".join(f"; {remark}" for remark in _unused(table, columns))
+        raise ValueError(one_line(f"{table.file}: {undecided}{unused}")) from None
     remarks += found.remarks
     series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
+    remarks += _unwrap(table, series, found.columns)
     if found.kind in ("log", "encoders", "effort"):
         try:
             when = _clock(series, said, found.kind)
@@ -88,7 +92,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         if when is not None:
             remarks += when.remarks
             series = {"time": when.time} | {name: values[when.rows] for name, values in series.items() if name != "time"}
-    remarks += _unused(table, found.columns)
+    remarks += _unused(table, found.columns.values())
     return Recognised(
         Path(path),
         found.kind,
@@ -100,6 +104,18 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         dict(said.constants),
         Recording(series, {name: _unit(name, found.columns) for name in series}, table.title),
     )
+
+
+def _unwrap(table: OpenTable, series: dict[str, Array], columns: Mapping[str, Column]) -> Iterator[str]:
+    """Lets angles run on that begin anew with each revolution; says which."""
+    for name, column in columns.items():
+        if column.channel.quantity == "angle":
+            try:
+                series[name], wraps = unwrapped(series[name])
+            except ValueError as error:
+                raise ValueError(one_line(f"{table.file} column {quoted(column.name)} {error}")) from None
+            if wraps:
+                yield f"{column.name} begins anew with each revolution, {wraps} times: it is taken to run on"
 
 
 def _unit(name: str, columns: Mapping[str, Column]) -> str:
@@ -124,7 +140,7 @@ def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock 
     return None
 
 
-def _unused(table: OpenTable, columns: Mapping[str, Column]) -> Sequence[str]:
-    used = {column.position for column in columns.values()}
-    names = [label.name for place, label in enumerate(table.labels) if place not in used and label.name]
+def _unused(table: OpenTable, columns: Iterable[Column]) -> Sequence[str]:
+    used = {column.position for column in columns}
+    names = [label.text for place, label in enumerate(table.labels) if place not in used and label.name]
     return [f"columns not used: {listed(names)}"] if names else []

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.reading.columns import Column
+from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import Side
 
 Array = NDArray[np.float64]

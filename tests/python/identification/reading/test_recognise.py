@@ -156,3 +156,48 @@ def test_what_is_no_measurement_is_refused(tmp_path: Path) -> None:
         recognise(write(tmp_path / "a.csv", "foo,bar", [1.0, 2.0], [1.0, 2.0]))
     with pytest.raises(ValueError, match=r"it holds time, position, which is no measurement that is known"):
         recognise(write(tmp_path / "b.csv", "time [s],position [rad]", TIME, SWING))
+
+
+def test_an_angle_that_begins_anew_with_each_revolution_runs_on(tmp_path: Path) -> None:
+    turning = 100.0 * np.sin(3.0 * TIME) + 5.0 * TIME
+    header = "time [s],motor_angle [deg],current [A]"
+    found = recognise(write(tmp_path / "log.csv", header, TIME, np.degrees(turning) % 360.0, SWING))
+    assert np.diff(found.recording["input_angle"]) == pytest.approx(np.diff(turning), abs=1e-6)
+    assert "motor_angle begins anew with each revolution" in told(found)
+
+
+def test_rows_that_lack_a_number_and_a_torn_end_are_left_out_and_told(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        "time [s];q [rad];tau [N.m];mode\n" + "".join(f"{i / 100:.2f};{i};2,5;on\n" for i in range(5)).replace(".", ",")
+    )
+    with path.open("a") as file:
+        file.write("0,05;;2,5;on\n0,06;6;2,5;on\n0,07;7;2")
+    found = recognise(path)
+    assert found.recording["output_angle"].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 6.0]
+    words = told(found)
+    assert 'its last row, line 9, ends too early and is left out: "0,07;7;2"' in words
+    assert "1 row without a number in each column is left out, the first at line 7" in words
+    assert "columns not used: mode" in words
+
+
+def test_a_torn_row_in_the_middle_is_refused_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("time [s],q [rad],tau [N.m]\n0,1,2\n0.1,1\n0.2,1,2\n")
+    with pytest.raises(ValueError, match=r"line 3: the number of cells is 2; the header has 3$"):
+        recognise(path)
+
+
+def test_a_file_without_a_header_is_read_by_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "log.txt"
+    np.savetxt(path, np.column_stack([TIME, SWING, SWING]))
+    columns = {"time": "1", "input_angle": "2", "current": "3"}
+    found = recognise(path, FileMapping(columns=columns, units={"time": "s", "input_angle": "rad", "current": "A"}))
+    assert found.columns == {"time": "column_1", "input_angle": "column_2", "current": "column_3"}
+    np.savetxt(path, np.column_stack([TIME, SWING, SWING]), header="t [s] theta_m [rad] i [A]")
+    assert recognise(path).columns == {"time": "t", "input_angle": "theta_m", "current": "i"}
+
+
+def test_signs_are_turned_where_that_is_said(tmp_path: Path) -> None:
+    path = write(tmp_path / "log.csv", "t [s],q [rad],tau [N.m]", TIME, SWING, SWING)
+    assert recognise(path, FileMapping(sign={"joint_torque": -1})).recording["joint_torque"] == pytest.approx(-SWING)

@@ -1,0 +1,151 @@
+"""Units that a file does not state, from its numbers: steps of an encoder, an angle and its speed, the range of a joint."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.units import convert
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.names import UNITS
+from strainwave.messages import as_option, quoted
+
+Array = NDArray[np.float64]
+
+ANGLES = ("rad", "deg", "rev")
+SPEEDS = ("rad/s", "deg/s", "rpm")
+LIKE = 0.15  # relative: an angle's slope and a speed that differ by less are in units that fit
+FINEST = 40  # bits of an encoder
+COARSEST = 6
+MULTIPLES = 0.95  # of the steps of an encoder that are whole multiples of the smallest
+EQUAL = 1e-3  # relative: a step and a part of a revolution
+JOINT = 4.0 * np.pi  # rad: a joint that is written in radians does not get further, two turns to each side
+EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # what time since 1970 exceeds, in each unit
+SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
+
+
+class Assumed(NamedTuple):
+    """A unit that is not stated, and what tells it, if anything does."""
+
+    unit: str
+    why: str
+
+
+def missing_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[int, Assumed]:
+    """The units of the columns that state none, by their places.
+
+    Args:
+        columns: all, with the units that are stated or given
+        raw: their numbers as they stand in the file, by their places
+
+    Raises:
+        ValueError: numbers may be in any unit
+    """
+    found = {column.position: _alone(column, raw[column.position]) for column in columns if column.unit is None}
+    units = {column.position: column.unit or found[column.position].unit for column in columns}
+    time = next((column for column in columns if column.channel.quantity == "time"), None)
+    sure = {place for place in units if place not in found or found[place].why}
+    if time is None:
+        return found
+    for angle, speed in _pairs(columns):
+        if angle.position in sure and speed.position in sure:
+            continue
+        slope = _slope(raw[angle.position], raw[speed.position], convert(raw[time.position], units[time.position], "s"))
+        for angle_unit, speed_unit in _fitting(slope, units, angle, speed, sure):
+            for column, unit in ((angle, angle_unit), (speed, speed_unit)):
+                if column.position in found and not found[column.position].why:
+                    found[column.position] = Assumed(unit, f"as it fits {speed.name if column is angle else angle.name}")
+                    units[column.position] = unit
+                    sure.add(column.position)
+            break
+    return found
+
+
+def _alone(column: Column, values: Array) -> Assumed:
+    """What the numbers of a column tell by themselves."""
+    there = values[np.isfinite(values)]
+    if not there.size:
+        return Assumed(UNITS[column.channel.quantity], "")
+    match column.channel.quantity:
+        case "time":
+            return _of_time(column, there)
+        case "temperature":
+            return Assumed("degC", "as no gear is so cold") if np.median(there) < 200.0 else Assumed("K", "")
+        case "angle":
+            return _of_angle(column, there)
+        case quantity:
+            return Assumed(UNITS[quantity], "")
+
+
+def _of_time(column: Column, values: Array) -> Assumed:
+    late = float(np.abs(values).max())
+    for least, unit in EPOCHS:
+        if late > least:
+            return Assumed(unit, "since 1970")
+    if len(values) > 1 and np.median(np.abs(np.diff(values))) < SLOWEST:
+        return Assumed("s", "")
+    hint = as_option("unit", "time", "ms")
+    raise ValueError(f"column {quoted(column.name)} has no unit, and its steps do not tell it; give it: {hint}")
+
+
+def _of_angle(column: Column, values: Array) -> Assumed:
+    """Radians, unless the steps of an encoder or the range of a joint tell otherwise."""
+    step = smallest_step(values)
+    for unit, turn in (("deg", 360.0), ("rad", 2.0 * np.pi), ("rev", 1.0)):
+        if step and COARSEST <= (bits := round(np.log2(turn / step))) <= FINEST and abs(turn / step / 2.0**bits - 1.0) < EQUAL:
+            return Assumed(unit, f"as its steps are those of an encoder of {bits} bits")
+    if step and np.array_equal(values, np.round(values)) and np.ptp(values) > 1000.0:
+        name = "command" if column.channel.commanded else column.name
+        hint = as_option("unit", name, "counts/16384")
+        raise ValueError(f"column {quoted(column.name)} seems to hold counts of an encoder; say how many are a turn: {hint}")
+    if (column.robot or column.channel.side == "output") and np.abs(values).max() > JOINT:
+        return Assumed("deg", f"as a joint does not reach {np.abs(values).max():.4g} rad")
+    return Assumed("rad", "")
+
+
+def smallest_step(values: Array) -> float | None:
+    """The step of which all steps of a series are whole multiples; None where there is none.
+
+    >>> smallest_step(np.array([0.0, 0.5, 0.5, 2.0, 1.5, 3.0, 3.5]))
+    0.5
+    """
+    steps = np.abs(np.diff(values[:100_000]))
+    steps = steps[steps > 1e-12 * max(float(np.abs(values).max()), 1e-300)]
+    if steps.size < 5:
+        return None
+    near = steps[steps < 20.0 * steps.min()]
+    least = float(np.mean(near / np.round(near / steps.min())))
+    near = steps[steps < 20.0 * least] / least
+    off = np.abs(near - np.round(near))
+    return least if np.mean(off < 0.02) > MULTIPLES and len(near) >= 5 else None
+
+
+def _pairs(columns: Sequence[Column]) -> list[tuple[Column, Column]]:
+    """Angles and speeds of one shaft."""
+    kinds = [[c for c in columns if c.channel.quantity == name and not c.channel.commanded] for name in ("angle", "speed")]
+    return [(angle, speed) for angle in kinds[0] for speed in kinds[1] if angle.channel.side == speed.channel.side]
+
+
+def _slope(angle: Array, speed: Array, time: Array) -> float:
+    """How much of the speed there is for each unit of the angle's slope, by least squares; 0 where nothing moves."""
+    apart = max(2, len(time) // 5000)
+    forward = np.flatnonzero(np.isfinite(angle[apart:] + angle[:-apart] + speed[apart:]) & (time[apart:] > time[:-apart]))
+    rate = (angle[apart:] - angle[:-apart])[forward] / (time[apart:] - time[:-apart])[forward]
+    middle = speed[forward + apart // 2]
+    square = float(rate @ rate)
+    related = square > 0.0 and middle @ middle > 0.0 and (rate @ middle) ** 2 > 0.5 * square * (middle @ middle)
+    return float(rate @ middle) / square if related else 0.0
+
+
+def _fitting(slope: float, units: Mapping[int, str], angle: Column, speed: Column, sure: set[int]) -> list[tuple[str, str]]:
+    """Pairs of units that make the slope of the angle the speed; those in radians first."""
+    pairs = []
+    for one in (units[angle.position],) if angle.position in sure else ANGLES:
+        for other in (units[speed.position],) if speed.position in sure else SPEEDS:
+            expected = convert(1.0, f"{one}/s", other)
+            if abs(slope / expected - 1.0) < LIKE:
+                pairs.append((one, other))
+    return pairs

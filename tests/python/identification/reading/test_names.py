@@ -1,0 +1,80 @@
+"""Names of columns in the spellings of people, programs and robots."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strainwave.files.labels import label_of
+from strainwave.identification.reading.names import QUANTITIES, SIDES, UNITS, Meaning, meaning, words_of
+
+NAMES = {
+    "Drehzahl [1/min]": Meaning("speed", unit="1/min"),
+    "Reibmoment (mNm)": Meaning("torque", unit="mNm"),
+    "vitesse moteur [tr/min]": Meaning("speed", "input", unit="tr/min"),
+    "Abtriebswinkel (°)": Meaning("angle", "output", unit="°"),
+    "Gelenkwinkel_2_Grad": Meaning("angle", "output", which="2", unit="Grad"),
+    "Lagesollwert": Meaning("angle", commanded=True),
+    "température moteur [°C]": Meaning("temperature", "input", unit="°C"),
+    "motor_torque_output_side_Nm": Meaning("torque", "output", unit="Nm"),
+    "shoulder_pan_joint.position": Meaning("angle", "output", which="shoulder_pan"),
+    "joint3_vel_deg_s": Meaning("speed", "output", which="3", unit="deg/s"),
+    "actual_qd_0": Meaning("speed", which="0", robot=True),
+    "target_q_5": Meaning("angle", commanded=True, which="5", robot=True),
+    "theta_m": Meaning("angle", "input"),
+    "tau_l [N.m]": Meaning("torque", "output", unit="N.m", robot=True),
+    "i_q": Meaning("current"),
+    "iq_ref": Meaning("current", commanded=True),
+    "Temperature_T0": Meaning("temperature", which="0"),
+    "T [N.m]": Meaning("torque", unit="N.m"),
+    "T [degC]": Meaning("temperature", unit="degC"),
+    "ω [rad/s]": Meaning("speed", unit="rad/s"),
+    "rpm": Meaning("speed", unit="rpm"),
+    "mNm": Meaning("torque", unit="mNm"),
+    "setpoint": Meaning("angle", commanded=True),
+    "Sensor X [N.m]": Meaning("torque", which="x", unit="N.m"),
+}
+NO_NAMES = (
+    "kp",
+    "cycle",
+    "Num",
+    "position_error",
+    "ddq",
+    "pulses_N",
+    "Tool_current",
+    "status",
+    "",
+    "42",
+    "x [m]",
+    "friction coefficient [1]",
+)
+
+
+@pytest.mark.parametrize("text", NAMES)
+def test_a_name_says_what_is_measured(text: str) -> None:
+    assert meaning(label_of(text)) == NAMES[text]
+
+
+@pytest.mark.parametrize("text", NO_NAMES)
+def test_what_measures_nothing_known_is_nothing(text: str) -> None:
+    assert meaning(label_of(text)) is None
+
+
+words = st.sampled_from([(quantity, word) for quantity, all_of_it in QUANTITIES.items() for word in all_of_it if len(word) > 2])
+sides = st.sampled_from([(side, word) for side, all_of_it in SIDES.items() for word in all_of_it if len(word) > 2])
+
+
+@given(words, sides, st.sampled_from(["_", " ", "."]), st.booleans(), st.sampled_from([str.lower, str.upper, str.title]))
+def test_side_and_quantity_are_found_in_any_order_and_case(
+    quantity: tuple[str, str], side: tuple[str, str], between: str, first: bool, case: object
+) -> None:
+    both = (side[1], quantity[1]) if first else (quantity[1], side[1])
+    found = meaning(label_of(f"{case(between.join(both))} [{UNITS[quantity[0]]}]"))  # type: ignore[operator, index]
+    assert found is not None
+    assert (found.quantity, found.side) == (quantity[0], side[0])
+
+
+@given(st.text(max_size=300))
+def test_any_text_is_taken_apart(text: str) -> None:
+    assert all(word for word in words_of(text))
+    meaning(label_of(text))
