@@ -17,6 +17,8 @@ Law = Literal["power", "exponential", "linear"]
 LEVEL = 0.05  # of significance, of all tests of a series together
 SHUFFLES = 1999
 SEED = 20240229  # of the shuffles: the same series gives the same numbers
+NEAR = 0.02  # of the span of a column: rows that differ by less are repeats
+ROUNDING = 1e-12  # of the values: residuals that are no more than that are none
 TOGETHER = 0.95  # share of a factor's variance that others explain, beyond which its effect is not its own
 
 
@@ -122,15 +124,16 @@ def regress(columns: Array, values: Array) -> list[Slope]:
 def lack_of_fit(columns: Array, values: Array) -> float:
     """Probability that pure error alone makes values lie as far from a regression.
 
-    Rows with the same columns are repeats: their scatter is pure error, of as many degrees of freedom as there are rows more
-    than different ones. What the residuals have beyond it, of the degrees of freedom that are left, is compared by Fisher's F.
+    Rows whose columns differ by less than a fiftieth of their spans are repeats, as loops at nearly one temperature: the
+    scatter of their residuals is pure error, of as many degrees of freedom as there are rows more than different ones. What
+    the residuals have beyond it, of the degrees of freedom that are left, is compared by Fisher's F.
 
     Args:
         columns: of the regression, shape (n, m)
         values: shape (n,)
 
     Returns:
-        Not a number where no row is repeated, or no different row is left beyond the coefficients.
+        Not a number where no row is repeated, no different row is left beyond the coefficients, or the law is exact.
 
     Source:
         DraperSmith1998, section 2.1
@@ -142,17 +145,18 @@ def lack_of_fit(columns: Array, values: Array) -> float:
     """
     from scipy.special import fdtrc
 
-    n = len(values)
-    different, of = np.unique(columns, axis=0, return_inverse=True)
+    spans = np.ptp(columns, axis=0)
+    cells = np.round((columns - columns.min(axis=0)) / np.where(spans > 0.0, NEAR * spans, 1.0))
+    different, of = np.unique(cells, axis=0, return_inverse=True)
     of = of.ravel()
-    means = np.bincount(of, weights=values) / np.bincount(of)
-    pure, left = n - len(different), len(different) - int(np.linalg.matrix_rank(columns))
-    error = float(np.sum((values - means[of]) ** 2))
-    if pure < 1 or left < 1 or error == 0.0:
-        return float("nan")
     residual = values - columns @ np.linalg.lstsq(columns, values)[0]
-    beyond = max(float(residual @ residual) - error, 0.0)
-    return float(fdtrc(left, pure, (beyond / left) / (error / pure)))
+    means = np.bincount(of, weights=residual) / np.bincount(of)
+    pure, left = len(values) - len(different), len(different) - int(np.linalg.matrix_rank(columns))
+    error = float(np.sum((residual - means[of]) ** 2))
+    if pure < 1 or left < 1 or float(residual @ residual) <= ROUNDING**2 * float(values @ values):
+        return float("nan")
+    beyond = float(np.sum(means[of] ** 2))
+    return float(fdtrc(left, pure, (beyond / left) / (error / pure))) if error > 0.0 else 0.0
 
 
 def _untold(freedom: int) -> Slope:

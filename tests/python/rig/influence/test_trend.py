@@ -65,9 +65,18 @@ def test_lack_of_fit_is_the_ratio_of_two_variances() -> None:
 def test_lack_of_fit_alarms_as_seldom_as_it_says() -> None:
     """Under a true line, every twentieth test falls below 5 %, within four standard deviations of 400 tests."""
     random, x = np.random.default_rng(9), np.repeat(np.arange(5.0), 3)
-    columns = np.column_stack((np.ones(15), x))
-    found = np.array([lack_of_fit(columns, 2.0 * x + random.normal(size=15)) for _ in range(400)])
-    assert abs(np.mean(found < 0.05) - 0.05) < 4.0 * np.sqrt(0.05 * 0.95 / 400)
+    for near in (0.0, 0.02):  # repeats that are not quite at one place
+        found = []
+        for _ in range(400):
+            here = x + near * random.uniform(-1.0, 1.0, 15)
+            found.append(lack_of_fit(np.column_stack((np.ones(15), here)), 2.0 * here + random.normal(size=15)))
+        assert np.all(np.isfinite(found))
+        assert abs(np.mean(np.array(found) < 0.05) - 0.05) < 4.0 * np.sqrt(0.05 * 0.95 / 400)
+
+
+def test_an_exact_law_lacks_no_fit() -> None:
+    x = np.repeat(np.arange(5.0), 3)
+    assert np.isnan(lack_of_fit(np.column_stack((np.ones(15), x)), 0.1 + x / 3.0))
 
 
 def test_a_law_of_another_shape_is_told_only_where_conditions_were_repeated() -> None:
