@@ -15,7 +15,7 @@ from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channe
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import missing_units
-from strainwave.identification.reading.names import meaning
+from strainwave.identification.reading.names import meaning, words_of
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
@@ -66,9 +66,14 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
     several = [group for group in groups.values() if len(group) > 1]
     joints = list(dict.fromkeys(column.which for group in several for column in group if column.which))
     if mapping.joint is not None:
-        if mapping.joint not in (known := joints or [column.which for column in columns if column.which]):
+        known = joints or [column.which for column in columns if column.which]
+        number = ".".join(str(int(word)) for word in words_of(mapping.joint) if word.isdigit())  # J3 is joint 3
+        joint = mapping.joint if mapping.joint in known else number
+        if joint not in known:
             raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(known)}"))
-        return [column for column in columns if column.which in ("", mapping.joint) or column.which not in known]
+        return [column for column in columns if column.which in ("", joint) or column.which not in known]
+    if len(several) == 1 and _are_two_encoders(columns, several[0]):
+        return list(columns)
     taken = []
     for group in groups.values():
         plain = [column for column in group if not column.which] if len(group) > 1 else group
@@ -78,13 +83,20 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
     return taken
 
 
+def _are_two_encoders(columns: Sequence[Column], group: Sequence[Column]) -> bool:
+    """Whether two angles are those of input and output: nothing else is measured beside them but time."""
+    others = {column.channel.quantity for column in columns} - {"time", "temperature"}
+    return len(group) == 2 and others == {"angle"}
+
+
 def _choice(group: Sequence[Column], joints: Sequence[str]) -> str:
     names = listed(column.name for column in group)
     channel = group[0].channel
     name = "command" if channel.commanded else "_".join(filter(None, (channel.side, channel.quantity)))
     option = as_option("column", {"output_torque": "joint_torque"}.get(name, name), group[0].name)
     if len({column.which for column in group}) == len(group) and len(joints) > 1:
-        return f"it holds {len(joints)} joints, as {names}; say which with --joint {joints[0]}, or name columns, as {option}"
+        which = f"it holds {len(joints)} joints ({listed(joints)}), as {names}"
+        return f"{which}; say which with --joint {joints[0]}, or name columns, as {option}"
     return f"each of {names} may be the {name}; say which, as with {option}"
 
 

@@ -13,25 +13,18 @@ from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
 from strainwave.files.tables import open_table
 from strainwave.files.units import convert, measures
+from strainwave.identification.reading.channels import CHANNELS
+from strainwave.identification.reading.names import COMMANDED, QUANTITY_OF
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Kind = Literal["friction", "torsion", "log"]
 Units = tuple[str, ...]
 
-# What each kind may hold, each column with the units that are wanted of it, and the choices of columns that make it one.
-COLUMNS: dict[Kind, dict[str, Units]] = {
-    "friction": {"speed": ("rad/s",), "torque": ("N.m",), "temperature": ("K",)},
-    "torsion": {"twist": ("rad",), "torque": ("N.m",), "input_angle": ("rad",), "input_torque": ("N.m",)},
-    "log": {
-        "time": ("s",),
-        "command": ("V", "rad"),
-        "position": ("rad",),
-        "input_angle": ("rad",),
-        "input_speed": ("rad/s",),
-        "output_angle": ("rad",),
-        "output_speed": ("rad/s",),
-        "current": ("A",),
-    },
+# What a twin takes of each kind, and the choices of columns that make it one.
+TAKEN: dict[Kind, tuple[str, ...]] = {
+    "friction": ("speed", "torque", "temperature"),
+    "torsion": ("twist", "torque", "input_angle", "input_torque"),
+    "log": ("time", "command", "position", "input_angle", "input_speed", "output_angle", "output_speed", "current"),
 }
 NEEDED: dict[Kind, tuple[tuple[str, ...], ...]] = {
     "friction": (("speed", "torque"),),
@@ -39,8 +32,12 @@ NEEDED: dict[Kind, tuple[tuple[str, ...], ...]] = {
     "log": (("time", "command"),),
 }
 ALIASES = {"position": "input_angle"}  # of a drive log: the encoder that closes the loop sits on the motor
-SYMBOLS = {"t": "time", "omega": "speed", "tau": "torque"}  # that many files have instead of a name
-OTHER_WORDS = {"command": ("reference", "setpoint", "target")}  # by which a column is offered, but not taken
+SYMBOLS = {symbol: QUANTITY_OF[symbol] for symbol in ("t", "omega", "tau")}  # that many files have instead of a name
+OTHER_WORDS = {"command": COMMANDED}  # by which a column is offered, but not taken
+COLUMNS: dict[Kind, dict[str, Units]] = {  # each column with the units that are wanted of it
+    kind: {name: ("V", "rad") if name == "command" else (CHANNELS[ALIASES.get(name, name)].unit,) for name in names}
+    for kind, names in TAKEN.items()
+}
 NOT_FITTED = ("temperature",)  # read, so that whoever has the recording has them too
 
 

@@ -73,7 +73,7 @@ def _alone(column: Column, values: Array) -> Assumed:
         case "time":
             return _of_time(column, there)
         case "temperature":
-            return Assumed("degC", "as no gear is so cold") if np.median(there) < 200.0 else Assumed("K", "")
+            return Assumed("degC", "as it would be too cold in K") if np.median(there) < 200.0 else Assumed("K", "")
         case "angle":
             return _of_angle(column, there)
         case quantity:

@@ -73,10 +73,10 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
 BEHIND = {"m": "motor", "l": "link", "d": "desired", "r": "reference", "a": "actual"}  # an index behind a symbol, as in q_m
 ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts")  # what robots call their joints' channels
 
-_QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTITIES.items() for word in words}
+QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTITIES.items() for word in words}
 _SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for word in words}
 _VOCABULARY = {
-    word for word in (*_QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS) if len(word) > 2 and word not in ("par", "the")
+    word for word in (*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS) if len(word) > 2 and word not in ("par", "the")
 }
 _GREEK = str.maketrans({"ω": "omega", "τ": "tau", "θ": "theta", "φ": "phi"})
 _UNIT_NAMES = {"rpm": "rpm"}  # words that say quantity and unit
@@ -189,12 +189,12 @@ def _without_unit(name: str) -> tuple[str, str | None]:
 
 def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]:
     """What the words name, and the place of the word that says so; where none does, what the unit measures, and -1."""
-    places = [place for place, word in enumerate(words) if word in _QUANTITY_OF]
+    places = [place for place, word in enumerate(words) if word in QUANTITY_OF]
     beside = {*_SIDE_OF, *COMMANDED, *NEUTRAL}
     places = [place for place in places if len(words[place]) > 1] or [
         place for place in places[:1] if all(word in beside for word in words[:place])
     ]  # a letter behind another word is an index
-    named = [(_QUANTITY_OF[words[place]], place) for place in places]
+    named = [(QUANTITY_OF[words[place]], place) for place in places]
     twist = [each for each in named if each[0] == "twist"]
     torque = [each for each in named if each[0] == "torque"]
     found = (twist if not torque else []) or named[::-1]
@@ -213,5 +213,5 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
 
 def _which(words: list[str]) -> str:
     numbers = [str(int(word)) for word in words if word.isdigit()]
-    known = {*_QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, "dot"}
+    known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, "dot"}
     return ".".join(numbers) or "_".join(word for word in words if word not in known)

@@ -90,7 +90,11 @@ def test_a_log(tmp_path: Path, header: str, names: tuple[str, ...]) -> None:
 
 
 def test_two_angles_without_torque_are_those_of_two_encoders(tmp_path: Path) -> None:
-    for header in ("motor [deg],link [deg]", "time [s],motor_encoder [deg],output_encoder [deg]"):
+    for header in (
+        "motor [deg],link [deg]",
+        "time [s],motor_encoder [deg],output_encoder [deg]",
+        "encoder_1 [deg],encoder_2 [deg]",
+    ):
         series = [TIME, 80.0 * SWING, SWING][-len(header.split(",")) :]
         found = recognise(write(tmp_path / "encoders.csv", header, *series))
         assert found.kind == "encoders"
@@ -124,9 +128,10 @@ def test_crooked_rows_are_left_out_and_told(tmp_path: Path) -> None:
 def test_several_joints_are_asked_for(tmp_path: Path) -> None:
     header = "time [s],q1 [rad],q2 [rad],tau1 [N.m],tau2 [N.m]"
     path = write(tmp_path / "arm.csv", header, TIME, SWING, 2.0 * SWING, SWING, 3.0 * SWING)
-    with pytest.raises(ValueError, match=r"it holds 2 joints, as q1, q2; say which with --joint 1, or name columns"):
+    with pytest.raises(ValueError, match=r"it holds 2 joints \(1, 2\), as q1, q2; say which with --joint 1, or name columns"):
         recognise(path)
     second = recognise(path, FileMapping(joint="2"))
+    assert recognise(path, FileMapping(joint="J2")).columns == second.columns
     assert second.columns == {"time": "time", "output_angle": "q2", "joint_torque": "tau2"}
     assert recognise(path, FileMapping(columns={"output_angle": "q1", "joint_torque": "5"})).columns["joint_torque"] == "tau2"
     with pytest.raises(ValueError, match=r'has no joint "3"; it has 1, 2$'):
