@@ -161,7 +161,7 @@ def _torque_high(found: Influence) -> tuple[str, str]:
     verdict = CONFIRMED if _rises(high) else CONTRADICTED
     law = found.amplitude[SPECIMEN]["high_stiffness"][-1]
     return verdict, (
-        f"From {share_words(study.USUAL)} of {nm(found.torque)} on, the unloading slope goes from {stiff(high[0])} to "
+        f"From {percent(study.USUAL)} of {nm(found.torque)} on, the unloading slope goes from {stiff(high[0])} to "
         f"{stiff(high[-1])}, its power of the torque falling from {number(float(local.max()), 2)} to "
         f"{number(float(local[-1]), 2)}, while in the smallest loop, where nothing slips, it is "
         f"{stiff(sweep['high_stiffness'][0])}, and document T’s row, one torque, tells one slope only ({stiff(law)})."
@@ -175,7 +175,7 @@ def _torque_low(found: Influence) -> tuple[str, str]:
     parts = [_rises(low), ratio < FAR_BELOW]
     verdict = CONFIRMED if all(parts) else IN_PART if any(parts) else CONTRADICTED
     return verdict, (
-        f"From {share_words(study.USUAL)} to all of {nm(found.torque)} the loading slope goes from {stiff(low[0])} to "
+        f"From {percent(study.USUAL)} to all of {nm(found.torque)} the loading slope goes from {stiff(low[0])} to "
         f"{stiff(low[-1])}, which is {number(ratio, 2)} of the unloading slope there; document T’s gear has "
         f"{number(other, 2)}."
     )
@@ -190,7 +190,7 @@ def _torque_area(found: Influence) -> tuple[str, str]:
     begin = f"nothing is lost up to {nm(still)}, then " if still > 0.0 else ""
     return CONFIRMED if _rises(usual(sweep, "area")) else CONTRADICTED, (
         f"Over the torque {begin}the area grows with a power of up to {number(float(_steepest(sweep)), 3)}, and of "
-        f"{number(slope.value, 3)} ± {number(slope.half_width, 2)} from {share_words(study.USUAL)} of {nm(found.torque)} on; "
+        f"{number(slope.value, 3)} ± {number(slope.half_width, 2)} from {percent(study.USUAL)} of {nm(found.torque)} on; "
         f"document T’s gear loses nothing up to {nm(other)} and no more than {quantity(float(tested['area'].max()), 'J', 4)} "
         "once its soft range is used up."
     )
@@ -419,11 +419,6 @@ def stiff(value: float) -> str:
 def nm(value: float) -> str:
     """A torque with its unit."""
     return quantity(float(value), "N.m")
-
-
-def share_words(share: float) -> str:
-    """A share as a factor."""
-    return number(share, 2)
 
 
 def counts(found: list[Entry]) -> Iterator[tuple[str, int]]:

@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 
 ARCMIN = 180.0 * 60.0 / np.pi
 LARGE = 0.02  # rad: wider loops are drawn in degrees, narrower in minutes of arc
+SMOOTH = 100  # points of the line of a law
 MARKS = (("measured", "o"), ("model", "s"), ("held-out", "^"), ("earlier", "D"), ("ink", "v"), ("muted", "P"))
 
 
@@ -167,18 +168,20 @@ def _trend(trends: Sequence[Trend], factor: str, name: str) -> Trend:
     return next(each for each in trends if (each.factor, each.quantity) == (factor, name))
 
 
-def _moved(trend: Trend, values: Array) -> Array:
-    """What a trend does to a quantity as its factor moves from the middle of `values`: added, or to its logarithm."""
-    taken = np.log(values) if trend.law == "power" else values
+def _moved(trend: Trend, to: Array, about: Array) -> Array:
+    """What a trend does to a quantity as its factor moves away from the middle of `about`: added, or to its logarithm."""
+    there, middle = (np.log(to), np.log(about).mean()) if trend.law == "power" else (to, about.mean())
     slope = trend.slope.value if np.isfinite(trend.slope.value) else 0.0
-    return np.asarray(slope * (taken - taken.mean()))
+    return np.asarray(slope * (there - middle))
 
 
 def _alone(series: Series, trends: Sequence[Trend], factor: str, name: str) -> Array:
     """A quantity as it would be with the other factors at their means."""
     values = series.quantities[name]
     others = [_trend(trends, other, name) for other in series.varied if other != factor]
-    effect = sum((_moved(each, series.factors[each.factor]) for each in others), np.zeros(len(values)))
+    effect = sum(
+        (_moved(each, series.factors[each.factor], series.factors[each.factor]) for each in others), np.zeros(len(values))
+    )
     linear = any(each.law == "linear" for each in others)
     return values - effect if linear else values * np.exp(-effect)
 
@@ -191,6 +194,7 @@ def _line(axes: Axes, trend: Trend, x: Array, shown: Array, values: Array) -> No
     """The trend through the middle of the points."""
     if not np.isfinite(trend.slope.value):
         return
-    order, effect = np.argsort(x), _moved(trend, x)
+    reach = np.linspace(x.min(), x.max(), SMOOTH)
+    effect = _moved(trend, reach, x)
     line = values.mean() + effect if trend.law == "linear" else np.exp(np.log(values).mean() + effect)
-    axes.plot(shown[order], line[order], color=LIGHT["ink"], linestyle="-" if trend.significant else ":")
+    axes.plot(reach + (shown[0] - x[0]), line, color=LIGHT["ink"], linestyle="-" if trend.significant else ":")

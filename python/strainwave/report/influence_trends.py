@@ -74,9 +74,8 @@ def bent_words(trend: Trend) -> str:
     """What repeated conditions say against the law, if they do."""
     if not trend.bent:
         return ""
-    return (
-        f"; loops at equal conditions scatter less than they lie from the law (p {chance(trend.misfit)}): it has another shape"
-    )
+    scattered = f"loops at equal conditions scatter less than they lie from this law (p {chance(trend.misfit)})"
+    return f"; {scattered}: the law is not that of the measurements"
 
 
 def chance(p: float) -> str:

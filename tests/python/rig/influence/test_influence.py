@@ -11,7 +11,7 @@ from markupsafe import escape
 from strainwave.files.gear_set import GearSet
 from strainwave.report import influence_claims as claims
 from strainwave.report.influence import influence_report, summary, tables
-from strainwave.report.influence_trends import CONFIRMED, CONTRADICTED, IN_PART, SPEAKS, UNDECIDABLE
+from strainwave.report.influence_trends import CONFIRMED, CONTRADICTED, IN_PART, SPEAKS, UNDECIDABLE, told_of
 from strainwave.rig.influence.cycle import cycle_to
 from strainwave.rig.influence.influence import (
     OWN,
@@ -24,7 +24,7 @@ from strainwave.rig.influence.influence import (
     over_torque,
     rates_of,
 )
-from strainwave.rig.influence.series import Series
+from strainwave.rig.influence.series import Series, analyse_series
 
 
 @pytest.fixture(scope="module")
@@ -245,3 +245,11 @@ def test_the_tables_hold_the_sweeps(found: Influence) -> None:
     assert list(held) == ["torque-level", "torque-level-document-t", "modulus", "temperature", "preload"]
     assert held["torque-level"].unit("area") == "J"
     assert held["preload"]["preload"].tolist() == [0.5, 0.7, 0.85, 1.0, 1.15, 1.3, 1.5, 2.0]
+
+
+def test_a_law_of_the_wrong_shape_is_told() -> None:
+    torque = np.repeat([0.05, 0.1, 0.2, 0.4, 0.8], 3)
+    area = np.minimum(torque, 0.2) * (1.0 + 0.01 * np.tile([-1.0, 0.0, 1.0], 5))
+    series = Series({"torque_max": torque}, {"area": area}, name="saturates")
+    (trend,) = analyse_series(series)
+    assert "the law is not that of the measurements" in told_of(trend)
