@@ -117,7 +117,7 @@ def _spectra(
     floor = floor_under(weighted, moving.weight) if floor is None else floor
     weighed = floor.weighed(weighted)
     orders = order_spectrum_of(weighed, moving.weight, floor, moving.angle, moving.speed, moving.sense, lowest, highest)
-    slowest = max(lowest * float(np.median(np.abs(moving.speed))) / tau, LOWEST / len(left))
+    slowest = max(lowest * float(np.quantile(np.abs(moving.speed), 0.95)) / tau, LOWEST / len(left))
     return floor, orders, time_spectrum_of(weighted, moving.weight, floor, slowest)
 
 
@@ -125,44 +125,46 @@ def _strongest(moving: Moving, orders: Spectrum, times: Spectrum, tested: float)
     """The line of the spectra that noise makes with the least probability."""
     if not len(orders.place):
         return None
-    of_order, of_time = int(np.argmax(orders.evidence)), int(np.argmax(times.evidence))
-    alarm_order = float(orders.false_alarm(orders.evidence[of_order], tested))
-    alarm_time = float(times.false_alarm(times.evidence[of_time], tested))
-    in_order, in_time = float(orders.evidence[of_order]), float(times.evidence[of_time])
+    (order, in_order), (frequency, in_time) = _peak(orders), _peak(times)
+    alarm_order, alarm_time = float(orders.false_alarm(in_order, tested)), float(times.false_alarm(in_time, tested))
     swift = np.abs(moving.speed[moving.weight > 0.5])
     swift = swift if len(swift) else np.abs(moving.speed)
-    low, middle, high = (float(each) for each in np.quantile(swift, [0.02, 0.5, 0.98]))
-    step = 1.0 / len(moving.angle)
-    if (alarm_order, -in_order) <= (alarm_time, -in_time):
-        order = _peak(orders, of_order)
-        near = (times.place >= order * low / tau - 2.0 * step) & (times.place <= order * high / tau + 2.0 * step)
-        other = float(times.evidence[near].max()) if near.any() else 0.0
-        kind: Kind = "order" if in_order - other > max(DECIDED, DECIDED_SHARE * in_order) else "either"
-        frequency, evidence, alarm = order * middle / tau, in_order, alarm_order
-        if kind == "either" and near.any():
-            frequency = float(times.place[near][int(np.argmax(times.evidence[near]))])
+    low, middle, high = (max(float(each), 1e-300) for each in np.quantile(swift, [0.02, 0.5, 0.98]))
+    step = 2.0 / len(moving.angle)
+    of_angle = (alarm_order, -in_order) <= (alarm_time, -in_time)
+    evidence, alarm = (in_order, alarm_order) if of_angle else (in_time, alarm_time)
+    if of_angle:
+        passed = (times.place >= order * low / tau - step) & (times.place <= order * high / tau + step)
+        frequency, other = _peak(times, passed)
     else:
-        frequency = _peak(times, of_time)
-        order = tau * frequency / middle if middle > 0.0 else np.inf
-        lines = (tau * (frequency - 2.0 * step) / max(high, 1e-300), tau * (frequency + 2.0 * step) / max(low, 1e-300))
-        near = (orders.place >= lines[0]) & (orders.place <= lines[1])
-        other = float(orders.evidence[near].max()) if near.any() else 0.0
-        kind = "time" if in_time - other > max(DECIDED, DECIDED_SHARE * in_time) else "either"
-        evidence, alarm = in_time, alarm_time
-        if kind == "either" and near.any():
-            order = float(orders.place[near][int(np.argmax(orders.evidence[near]))])
+        passed = (orders.place >= tau * (frequency - step) / high) & (orders.place <= tau * (frequency + step) / low)
+        order, other = _peak(orders, passed)
+    kind: Kind = "order" if of_angle else "time"
+    if evidence - other <= max(DECIDED, DECIDED_SHARE * evidence):
+        kind = "either"
+    elif of_angle:
+        frequency = order * middle / tau
+    else:
+        order = tau * frequency / middle
     sigma = 1.0 / (np.sqrt(2.0 * evidence) * max(spread_of(moving.angle, moving.weight), 1e-300))
     return Line(kind, order, float(sigma), frequency, evidence, alarm, complex("nan"), complex("nan"), 0.0)
 
 
-def _peak(spectrum: Spectrum, at: int) -> float:
-    """The place of a peak, between lines, by the parabola through three."""
-    if not 0 < at < len(spectrum.place) - 1:
-        return float(spectrum.place[at])
-    left, middle, right = spectrum.evidence[at - 1 : at + 2].tolist()
-    bend = left - 2.0 * middle + right
-    shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
-    return float(spectrum.place[at] + np.clip(shift, -0.5, 0.5) * (spectrum.place[1] - spectrum.place[0]))
+def _peak(spectrum: Spectrum, among: NDArray[np.bool_] | None = None) -> tuple[float, float]:
+    """Place and evidence of the highest peak, between lines, by the parabola through three; nothing where there are none."""
+    evidence = spectrum.evidence if among is None else np.where(among, spectrum.evidence, 0.0)
+    if not len(evidence) or float(evidence.max()) == 0.0:
+        return 0.0, 0.0
+    at = int(np.argmax(evidence))
+    place, height = float(spectrum.place[at]), float(evidence[at])
+    if not 0 < at < len(evidence) - 1:
+        return place, height
+    left, right = float(spectrum.evidence[at - 1]), float(spectrum.evidence[at + 1])
+    bend = left - 2.0 * height + right
+    if bend >= 0.0 or max(left, right) > height:
+        return place, height
+    shift = 0.5 * (left - right) / bend
+    return place + shift * float(spectrum.place[1] - spectrum.place[0]), height - 0.25 * (left - right) * shift
 
 
 def waves(moving: Moving, line: Line) -> list[Array]:

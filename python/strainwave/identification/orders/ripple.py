@@ -207,7 +207,8 @@ def _masked(told: Moving, record: Evenly) -> Moving:
 def _range(told: Moving, side: Side, size: float | None, highest: float | None) -> tuple[float, float]:
     """Orders between which is looked."""
     revolutions = float(np.ptp(told.angle)) / tau
-    usual = float(np.quantile(np.abs(told.speed[told.weight > 0.0]), 0.5)) if (told.weight > 0.0).any() else 0.0
+    swift = np.abs(told.speed[told.weight > 0.5])
+    usual = float(np.median(swift)) if len(swift) else 0.0
     sampled = SAMPLED * np.pi / usual if usual > 0.0 else np.inf
     lowest = max(LOWEST / revolutions, LEAST_ORDER * (1.0 if side == "input" else size or SMALLEST_RATIO))
     if highest is not None:
@@ -221,17 +222,17 @@ def _check_sampled(told: Moving, record: Evenly, side: Side, size: float | None,
     """Refuses a record in which no order of a gear can be seen."""
     revolutions = float(np.ptp(told.angle)) / tau
     gear = 2.0 if side == "input" else 2.0 * (size or SMALLEST_RATIO)
-    name = "order 2 of the input" + ("" if side == "input" else f", {gear:g} per revolution of the output")
+    name = "order 2 of the wave generator" + ("" if side == "input" else f", {gear:g} per revolution of the output")
+    name += "" if side == "input" or size else " in a gear of ratio 30, and higher in others"
     if top < gear:
-        often = f"{1.0 / record.step:.3g} samples per second" if record.timed else "samples so far apart"
-        known = "" if side == "input" or size else ", of the smallest usual ratio, 30"
+        often = f"{1.0 / record.step:.3g} samples per second" if record.timed else "these samples"
         raise ValueError(
-            f"{often} show orders up to {top:.3g} per revolution of {angle} at the speeds of this record; {name}{known}, lies "
-            "above; record faster, or turn slower"
+            f"{often} show orders up to {top:.3g} per revolution of {angle} at the speeds of this record; the main line of a "
+            f"gear is {name}; record faster, or turn slower"
         )
     if revolutions * gear < PERIODS:
         raise ValueError(
-            f"{angle} turns {revolutions:.3g} revolutions: {revolutions * gear:.2g} periods of {name}; orders need "
+            f"{angle} turns {revolutions:.3g} revolutions: {revolutions * gear:.2g} periods of {name}; lines need "
             f"{PERIODS:g} or more; turn further"
         )
 

@@ -4,7 +4,7 @@ A line of order n is cos(n theta(t)). With the series y and the covariance C of 
 
 .. math:: S(n) = \sum_t (C^{-1} y)_t \, e^{-j n \theta_t}, \qquad I(n) = \sum_t \frac{1}{P(n \omega_t)}
 
-is the matched filter for it (Kay1998, section 4.4): the square of S over I is exponentially distributed where there is noise
+is the matched filter for it (Kay1998, generalised matched filters): the square of S over I is exponentially distributed where there is noise
 alone, whose power P is that of the frequency at which the order passes; 2 S / I is the amplitude of the line. So a slow
 stretch, where the order passes in low and noisy frequencies, counts for less than a fast one. To divide by C costs one Fourier
 transform, S another one: the products are summed into narrow bins of the angle. Forward and backward are summed apart, since
@@ -112,27 +112,25 @@ def order_spectrum_of(
 
 def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float) -> Spectrum:
     """The spectrum over time, of the same kind, from the lowest frequency [cycles per sample] to half the sampling rate."""
-    count = len(series)
-    place: Array = np.fft.rfftfreq(count).astype(np.float64)
+    length = _good(FINER * len(series))
+    place: Array = np.fft.rfftfreq(length).astype(np.float64)
     kept = (place >= lowest) & (place < 0.5)
     place = place[kept]
-    filtered = np.abs(np.fft.rfft(series)[kept])
+    filtered = np.abs(np.fft.rfft(series * weight, length)[kept])
     level = floor.at(place)
     squared = float(weight @ weight)
-    return _levelled(
-        Spectrum(place, filtered**2 / (squared * level), 2.0 * filtered / squared, np.sqrt(2.0 * level / squared), 1, 0.0),
-        finer=1,
-    )
+    evidence, amplitude = filtered**2 / (squared * level), 2.0 * filtered / squared
+    return _levelled(Spectrum(place, evidence, amplitude, np.sqrt(2.0 * level / squared), 1, 0.0))
 
 
-def _levelled(spectrum: Spectrum, finer: int = FINER) -> Spectrum:
+def _levelled(spectrum: Spectrum) -> Spectrum:
     """With the median of the lines around each where it belongs: the noise over angle may differ from that over time."""
     from scipy.ndimage import median_filter
     from scipy.stats import chi2
 
-    independent = len(spectrum.evidence) / finer
+    independent = len(spectrum.evidence) / FINER
     around = min(AROUND, max(1.0, independent))
-    width = max(3, int(around * finer)) | 1
+    width = max(3, int(around * FINER)) | 1
     thinned = max(1, width // 201)
     median = median_filter(spectrum.evidence[::thinned], (width // thinned) | 1, mode="reflect")
     level = np.repeat(median, thinned)[: len(spectrum.evidence)] / (0.5 * float(chi2.ppf(0.5, 2 * spectrum.parts)))

@@ -106,6 +106,7 @@ def _outliers(left: Array, weight: Array) -> NDArray[np.bool_]:
     from scipy.ndimage import median_filter
 
     off = left - median_filter(left, 5, mode="nearest")
-    bulk = 1.4826 * float(np.median(np.abs(off[weight > 0.0])))
-    found: NDArray[np.bool_] = np.abs(off) > OUTLIER * bulk if bulk > 0.0 else np.zeros(len(left), dtype=bool)
+    swift = weight > 0.5  # elsewhere friction turns over
+    bulk = 1.4826 * float(np.median(np.abs(off[swift]))) if swift.any() else 0.0
+    found: NDArray[np.bool_] = swift & (np.abs(off) > OUTLIER * bulk) if bulk > 0.0 else np.zeros(len(left), dtype=bool)
     return found

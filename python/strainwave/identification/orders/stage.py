@@ -12,8 +12,8 @@ so that the transmission error, which two encoders measure, is
 
 with omega_0 the natural frequency of the output with the input held. Slow against it, F = H = 1. An order that passes it is
 amplified, and above it the output stands still and the transmission error shows no kinematic error at all. Everything but
-omega_0 and zeta is linear. Both sides are compared in the frequency domain, each line weighed by the noise around it, which is
-told from what is left; what the ends of the record add is a transient of the stage (PintelonSchoukens2012, section 6.3.2).
+omega_0 and zeta is linear, so that only these two are sought (GolubPereyra1973). Both sides are compared in the frequency domain, each line weighed by the noise around it, which is
+told from what is left; what the ends of the record add is a transient of the stage (PintelonSchoukens2012).
 """
 
 from __future__ import annotations
@@ -226,7 +226,7 @@ class _Lines:
     def _considered(self, linear: Array, slopes: Array, size: Array) -> Array:
         """What it adds that a gear is no linear spring: ripple meets another stiffness and damping than the whole motion.
 
-        They are not estimated but considered, each with its spread (Schmidt's consider covariance: Jazwinski1970, section 8.4).
+        They are not estimated but considered, each with its spread (Schmidt's consider covariance: Jazwinski1970).
         """
         moved = np.linalg.lstsq(linear, slopes, rcond=1e-9)[0] * np.array([0.5 * STIFFNESS_SPREAD, DAMPING_SPREAD])
         added: Array = (moved / size[:, None]) @ (moved / size[:, None]).T

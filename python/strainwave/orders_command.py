@@ -1,0 +1,99 @@
+"""The command `strainwave orders`: kinematic error from two encoders, ripple from torque or current."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from strainwave.identification.orders.measured import OrdersFound
+
+
+def orders(
+    paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Recordings of a drive, each by itself.")],
+    ratio: Annotated[
+        float | None, typer.Option(help="Ratio of the gear, if it is known; found, or guessed from the lines, if not given.")
+    ] = None,
+    column: Annotated[
+        list[str] | None, typer.Option(help="A column's name or number in your file, as torque=Moment; repeat as needed.")
+    ] = None,
+    unit: Annotated[
+        list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
+    ] = None,
+    side: Annotated[
+        str | None, typer.Option(help="Where an angle was measured whose name does not say it: input or output.")
+    ] = None,
+    rate: Annotated[float | None, typer.Option(help="Samples per second of files without time, in Hz.")] = None,
+    joint: Annotated[str | None, typer.Option(help="Which joint, of a file with several.")] = None,
+    highest: Annotated[float | None, typer.Option(help="Order up to which ripple is looked for.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
+) -> None:
+    """Find the orders of a gear: its kinematic error from two encoders, its ripple from torque or current.
+
+    A file with the angles of both shafts tells ratio, kinematic error and lost motion. A file with torque or current and one
+    angle tells the lines that repeat with the angle, and from them the ratio; lines that repeat with time, as mains and
+    resonances, are told apart where the speed varies.
+    """
+    import signal
+
+    from rich.console import Console
+
+    from strainwave.files.writing import making, write_all, written
+    from strainwave.messages import one_line
+    from strainwave.report.orders import orders_files, orders_report, orders_summary
+    from strainwave.report.provenance import Provenance
+
+    with Console(stderr=True).status("reading") as status:
+        found = []
+        for path in paths:
+            status.update(path.name)
+            try:
+                found.append(_of_file(path, ratio, column or (), unit or (), side, rate, joint, highest))
+            except ValueError as error:
+                raise ValueError(one_line(str(error) if str(path) in str(error) else f"{path}: {error}")) from None
+        status.update("report")
+        files = orders_files(found)
+        files["report.html"] = orders_report(found, Provenance.of_this_command(paths))
+        heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            with making(out):
+                write_all({out / name: content for name, content in files.items()})
+            written.append(out)
+        finally:
+            signal.signal(signal.SIGINT, heeded)
+    print(orders_summary(found))
+    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+
+
+def _of_file(
+    path: Path,
+    ratio: float | None,
+    column: Sequence[str],
+    unit: Sequence[str],
+    side: str | None,
+    rate: float | None,
+    joint: str | None,
+    highest: float | None,
+) -> OrdersFound:
+    from dataclasses import replace
+
+    from strainwave.identification.orders.measured import orders_found
+    from strainwave.identification.reading.channels import CHANNELS
+    from strainwave.identification.reading.mapping import FileMapping
+    from strainwave.identification.reading.recognise import recognise
+    from strainwave.messages import pairs
+
+    known = set(CHANNELS)
+    said = FileMapping(
+        columns=pairs("--column", list(column), known),
+        units=pairs("--unit", list(unit), known),
+        constants={} if rate is None else {"rate": rate},
+        joint=joint,
+    )
+    read = recognise(path, said)
+    where: Any = side  # anything but a side is refused there
+    found = orders_found(read.recording, path.name, ratio=ratio, side=where, highest=highest)
+    return replace(found, remarks=(*read.remarks, *found.remarks))

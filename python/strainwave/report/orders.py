@@ -1,0 +1,271 @@
+"""The page of the orders that recordings tell of a gear, the same in lines for a terminal, and the numbers as files."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import fields
+from importlib import metadata
+from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from strainwave.files.recording import Recording
+from strainwave.identification.orders.measured import OrdersFound
+from strainwave.identification.orders.ripple import Ripple, RippleLine
+from strainwave.identification.orders.two_encoders import ErrorOrder, TransmissionError
+from strainwave.report import figures
+from strainwave.report import orders_figures as plots
+from strainwave.report.page import render
+from strainwave.report.provenance import Provenance
+from strainwave.report.rig_files import results_json
+from strainwave.report.typeset import number, quantity, uncertain, unit
+
+LINE = 110  # letters of a line on a terminal
+STRIP = 72  # letters of a spectrum on a terminal
+BLOCKS = " ▁▂▃▄▅▆▇█"
+MICRO = 1e-6
+KINDS = {"order": "order line", "time": "time line", "either": "order or time line"}
+
+
+def orders_report(found: Sequence[OrdersFound], provenance: Provenance | None = None) -> str:
+    """The page, as one HTML file that needs nothing else.
+
+    Args:
+        found: of each recording
+        provenance: how the page came to be, if that is to be shown
+
+    Returns:
+        HTML; the same for the same arguments
+    """
+    return render(
+        "orders.html.jinja",
+        {
+            "recordings": [_section(each, place) for place, each in enumerate(found)],
+            "provenance": provenance or Provenance(),
+            "version": metadata.version("strainwave"),
+            "light": figures.variables(figures.LIGHT),
+            "dark": figures.variables(figures.DARK),
+        },
+    )
+
+
+def _section(found: OrdersFound, place: int) -> dict[str, Any]:
+    from markupsafe import Markup
+
+    error, ripple = found.transmission, found.ripple
+    return {
+        "name": found.name,
+        "error": None if error is None else _error(error, f"error-{place}"),
+        "ripple": None
+        if ripple is None
+        else {
+            "title": f"{ripple.column.replace('_', ' ')} over the angle of the {ripple.side}",
+            "facts": _facts(ripple),
+            "lines": [_line(each, ripple) for each in ripple.lines],
+            "candidates": [_candidate(each.ratio, each.share, each.matched) for each in ripple.candidates],
+            "spectrum": Markup(plots.spectrum_figure(ripple, f"spectrum-{place}")),
+            "map": Markup(drawn) if (drawn := plots.map_figure(ripple, f"map-{place}")) else "",
+        },
+        "remarks": _remarks(found),
+    }
+
+
+def _error(error: TransmissionError, name: str) -> dict[str, Any]:
+    from markupsafe import Markup
+
+    return {
+        "ratio": uncertain(error.ratio.value, error.ratio.sigma),
+        "used": number(error.ratio.used),
+        "lost": _quantity(error.lost_motion),
+        "windup": _quantity(error.windup),
+        "frequency": _quantity(error.natural_frequency),
+        "damping": _quantity(error.damping_ratio),
+        "noise": quantity(error.noise, "rad"),
+        "turns": number(error.revolutions, 4),
+        "orders": [
+            {
+                "order": number(each.order),
+                "shaft": each.shaft,
+                "amplitude": uncertain(each.amplitude / MICRO, each.amplitude_sigma / MICRO),
+                "phase": uncertain(each.phase, each.phase_sigma),
+                "alarm": _chance(each.false_alarm),
+                "state": "significant" if each.significant else "not told from noise",
+            }
+            for each in error.orders
+        ],
+        "figure": Markup(plots.error_figure(error, name)),
+        "over_angle": Markup(plots.turn_figure(error, f"{name}-turn")),
+    }
+
+
+def _quantity(measured: Any) -> str:
+    return "" if measured is None else f"{uncertain(measured.value, measured.sigma)} {unit(measured.unit)}".strip()
+
+
+def _chance(probability: float) -> str:
+    return "< 10⁻⁹" if probability < 1e-9 else number(probability, 2)
+
+
+def _facts(ripple: Ripple) -> dict[str, str]:
+    facts = {
+        "Turned": f"{number(ripple.revolutions, 4)} revolutions from end to end, {number(ripple.turned, 4)} to and fro",
+        "Resolution": f"{number(ripple.resolution, 3)} per revolution: orders that are closer are one line",
+        "Looked for": f"orders {number(ripple.lowest, 3)} to {number(ripple.highest, 4)}",
+    }
+    if ripple.ratio is not None:
+        facts["Ratio"] = number(ripple.ratio)
+    return facts
+
+
+def _line(line: RippleLine, ripple: Ripple) -> dict[str, str]:
+    order = uncertain(line.order, line.order_sigma) if line.kind != "time" else ""
+    return {
+        "kind": KINDS[line.kind],
+        "order": order,
+        "per_input": number(line.per_input, 5) if line.per_input is not None and ripple.side == "output" and order else "",
+        "frequency": "" if line.frequency is None else f"{number(line.frequency, 4)} Hz",
+        "amplitude": f"{uncertain(line.amplitude, line.sigma)} {unit(ripple.unit)}",
+        "forward": "" if line.forward is None else quantity(line.forward, ripple.unit),
+        "backward": "" if line.backward is None else quantity(line.backward, ripple.unit),
+        "alarm": _chance(line.false_alarm),
+        "parts": ", ".join(_parts(line, ripple.unit)),
+    }
+
+
+def _parts(line: RippleLine, of: str) -> Iterator[str]:
+    """What a line grows with, the largest first; what noise explains is left out."""
+    words = {"constant": "at rest and at speed alike", "direction": "with the direction", "load": "with the load"}
+    for part in sorted(line.parts, key=lambda each: -each.amplitude):
+        if part.false_alarm < 0.01:
+            yield f"{words.get(part.name, 'with the speed squared')} {quantity(part.amplitude, of)}"
+
+
+def _candidate(ratio: int, share: float, matched: Sequence[tuple[float, float]]) -> dict[str, str]:
+    lines = ", ".join(f"{number(order, 5)} as order {number(of, 2)}" for order, of in matched)
+    return {"ratio": str(ratio), "share": f"{number(100.0 * share, 2)} %", "lines": lines}
+
+
+def _remarks(found: OrdersFound) -> list[str]:
+    remarks = [*found.remarks]
+    for part in (found.transmission, found.ripple):
+        remarks += [] if part is None else [each for each in part.remarks if each not in remarks]
+    return remarks
+
+
+# ---- On a terminal ---------------------------------------------------------------------------------------------------
+
+
+def orders_summary(found: Sequence[OrdersFound]) -> str:
+    """What was found, as lines of text."""
+    lines: list[str] = []
+    for each in found:
+        lines += ["", each.name] if lines else [each.name]
+        lines += [] if each.transmission is None else _error_lines(each.transmission)
+        lines += [] if each.ripple is None else _ripple_lines(each.ripple)
+        lines += [
+            line for remark in _remarks(each) for line in textwrap.wrap(f"  note: {remark}", LINE, subsequent_indent="    ")
+        ]
+    return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
+
+
+def _error_lines(error: TransmissionError) -> Iterator[str]:
+    yield f"  ratio {number(error.ratio.used)} (measured {uncertain(error.ratio.value, error.ratio.sigma)})"
+    yield f"  kinematic error, over {number(error.revolutions, 4)} revolutions of the input:"
+    for each in error.orders:
+        if each.significant:
+            amplitude = uncertain(each.amplitude / MICRO, each.amplitude_sigma / MICRO)
+            yield f"    {_order_words(each)}: {amplitude} µrad, phase {uncertain(each.phase, each.phase_sigma)} rad"
+    if missing := [number(each.order, 5) for each in error.orders if not each.significant]:
+        yield f"    not told from noise: orders {', '.join(missing)}"
+    if error.lost_motion is not None:
+        yield f"  lost motion, backward against forward: {_quantity(error.lost_motion)}"
+    if error.windup is not None:
+        yield f"  twist by {'torque' if 'N' in error.windup.unit else 'current'}: {_quantity(error.windup)}"
+    if error.natural_frequency is not None:
+        yield f"  output vibrates at {_quantity(error.natural_frequency)} with the input held"
+
+
+def _order_words(each: ErrorOrder) -> str:
+    return f"order {number(each.order, 6)}" + ("" if each.shaft == "input" else f" ({each.shaft})")
+
+
+def _ripple_lines(ripple: Ripple) -> Iterator[str]:
+    per = "revolution" + (" of the input" if ripple.side == "input" else " of the output")
+    yield f"  ripple in {ripple.column.replace('_', ' ')}, orders per {per}:"
+    yield f"    {_strip(ripple)}"
+    yield f"    {number(ripple.lowest, 3):<{STRIP // 2}}{number(ripple.highest, 4):>{STRIP - STRIP // 2}}"
+    for line in ripple.lines:
+        place = _place(line)
+        text = f"    {KINDS[line.kind]} {place}: {uncertain(line.amplitude, line.sigma)} {unit(ripple.unit)}"
+        if line.forward is not None and line.backward is not None and line.kind != "time":
+            text += f"; forward {quantity(line.forward, ripple.unit)}, backward {quantity(line.backward, ripple.unit)}"
+        if parts := list(_parts(line, ripple.unit)):
+            text += f"; grows {', '.join(parts)}"
+        yield from textwrap.wrap(text, LINE, subsequent_indent="      ")
+    if not ripple.lines:
+        yield "    no line stands out of the noise"
+    if ripple.candidates:
+        words = ", ".join(f"{each.ratio} ({number(100.0 * each.share, 2)} %)" for each in ripple.candidates[:3])
+        yield f"  ratio from these lines: {words}"
+
+
+def _place(line: RippleLine) -> str:
+    """Where a line stands: its order, its frequency, or both where they cannot be told apart."""
+    order, frequency = uncertain(line.order, line.order_sigma), f"{number(line.frequency or 0.0, 4)} Hz"
+    if line.kind == "time" and line.frequency is not None:
+        return frequency
+    return f"{order} or {frequency}" if line.kind == "either" and line.frequency is not None else order
+
+
+def _strip(ripple: Ripple) -> str:
+    """The spectrum in one row of blocks: full where an amplitude is ten times that which a line needs, and more."""
+    over = ripple.spectrum["amplitude"] / ripple.spectrum["threshold"]
+    places = np.linspace(0, len(over), STRIP + 1).astype(int)
+    peaks = [float(over[low : max(high, low + 1)].max()) for low, high in pairwise(places.tolist())]
+    heights = [0 if peak < 1.0 else 1 + min(int(7.0 * np.log10(peak)), 7) for peak in peaks]
+    return "".join(BLOCKS[height] if height else "·" for height in heights)
+
+
+# ---- As files --------------------------------------------------------------------------------------------------------
+
+
+def orders_files(found: Sequence[OrdersFound]) -> dict[str, str | bytes]:
+    """Numbers as JSON; spectra and curves as CSV."""
+    files: dict[str, str | bytes] = {"results.json": results_json({"recordings": [_results(each) for each in found]})}
+    stems = [Path(each.name).stem for each in found]
+    for place, (each, stem) in enumerate(zip(found, stems, strict=True)):
+        name = stem if stems.count(stem) == 1 else f"{stem}-{place + 1}"
+        if each.transmission is not None:
+            files[f"{name}-error.csv"] = _csv(each.transmission.curves)
+        if each.ripple is not None:
+            files[f"{name}-spectrum.csv"] = _csv(each.ripple.spectrum)
+    return files
+
+
+def _results(found: OrdersFound) -> dict[str, Any]:
+    def told(value: Any) -> dict[str, Any] | None:
+        if value is None:
+            return None
+        members = {each.name: getattr(value, each.name) for each in fields(value)}
+        return {name: member for name, member in members.items() if not isinstance(member, Recording)}
+
+    law = None if found.transmission is None else found.transmission.law
+    return {
+        "made_by": f"strainwave {metadata.version('strainwave')}",
+        "name": found.name,
+        "two_encoders": told(found.transmission),
+        "law": None if law is None else {name: list(getattr(law, name)) for name in ("order", "amplitude", "phase")},
+        "ripple": told(found.ripple),
+        "remarks": _remarks(found),
+    }
+
+
+def _csv(recording: Recording) -> bytes:
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "table.csv")
+        recording.to_csv(path)
+        return path.read_bytes()

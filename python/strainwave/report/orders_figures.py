@@ -1,0 +1,130 @@
+"""Figures of orders: spectra over the angle, orders against time, the transmission error."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import tau
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from strainwave.identification.orders.ripple import Ripple
+from strainwave.identification.orders.two_encoders import TransmissionError
+from strainwave.report import figures
+from strainwave.report.figures import LIGHT, WIDTH
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+BLOCKS = 40  # of time, in the map
+CELLS = 90  # of the order, in the map
+SHADES = (0.25, 0.45, 0.7, 1.0)  # of a cell, over the largest amplitude
+VARIES = 0.1  # of the speed, above which a map shows more than the spectrum
+FEW = 8  # samples of a block that can show anything
+
+
+def spectrum_figure(ripple: Ripple, name: str) -> str:
+    """Amplitude over order, with its floor, the threshold, and the lines that were found."""
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        spectrum = ripple.spectrum
+        order = spectrum["order"]
+        figures.curve(axes, order, spectrum["amplitude"], color=LIGHT["measured"], linewidth=0.9, label="spectrum")
+        figures.curve(axes, order, spectrum["floor"], color=LIGHT["muted"], linewidth=0.9, label="noise")
+        figures.curve(axes, order, spectrum["threshold"], color=LIGHT["earlier"], linestyle="--", label="needed for a line")
+        for kind, colour, mark in (("order", "model", "o"), ("time", "held-out", "x"), ("either", "earlier", "s")):
+            lines = [line for line in ripple.lines if line.kind == kind and line.order <= ripple.highest]
+            if lines:
+                where = [line.order for line in lines], [line.amplitude for line in lines]
+                axes.plot(*where, mark, color=LIGHT[colour], label={"either": "order or time"}.get(kind, f"{kind} line"))
+        axes.set_ylim(bottom=0.0)
+        figures.label_axes(axes, "amplitude", ripple.unit, f"order per revolution of the {ripple.side}", "1")
+        figures.legend(figure, axes)
+
+    return figures.inline(draw, (WIDTH, 3.0), name, "Amplitude of ripple over its order")
+
+
+def map_figure(ripple: Ripple, name: str) -> str:
+    """Order against time; nothing where the speed does not vary, or no time is known."""
+    curves = ripple.curves
+    if "time" not in curves or not ripple.lines:
+        return ""
+    speed = np.abs(curves["speed"])
+    if float(np.std(speed)) < VARIES * float(np.mean(speed)):
+        return ""
+    highest = min(ripple.highest, 1.3 * max(line.order for line in ripple.lines if line.order <= ripple.highest * 1.01))
+    order = np.linspace(ripple.lowest, highest, CELLS)
+    wave = curves["series"] - curves["smooth"]
+    edges = np.linspace(0, len(wave), BLOCKS + 1).astype(int)
+    blocks = [slice(low, high) for low, high in pairwise(edges.tolist()) if high - low >= FEW]
+    rows = []
+    for block in blocks:
+        window = np.hanning(block.stop - block.start)
+        turned = np.exp(-1j * np.outer(order, curves["angle"][block]))
+        rows.append(2.0 / window.sum() * np.abs(turned @ (window * (wave[block] - wave[block].mean()))))
+    amplitude = np.array(rows)
+    middle = np.array([float(curves["time"][block].mean()) for block in blocks])
+    share = amplitude / amplitude.max()
+
+    def draw(figure: Figure) -> None:
+        axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
+        for low, high in zip(SHADES, (*SHADES[1:], 1.1), strict=True):
+            row, column = np.nonzero((share >= low) & (share < high))
+            axes.plot(middle[row], order[column], "s", color=LIGHT["measured"], alpha=low, markersize=2.6, markeredgewidth=0.0)
+        figures.curve(below, curves["time"], curves["speed"], color=LIGHT["ink"], linewidth=0.8)
+        axes.set_ylim(ripple.lowest, highest)
+        figures.label_axes(axes, f"order per revolution of the {ripple.side}", "1")
+        figures.label_axes(below, "speed", "rad/s", "time", "s")
+
+    return figures.inline(draw, (WIDTH, 3.6), name, "Amplitude of ripple over order and time")
+
+
+def error_figure(error: TransmissionError, name: str) -> str:
+    """The transmission error over the record, the orders found in it, and what is left."""
+    curves = error.curves
+    timed = "time" in curves
+    x = curves["time"] if timed else curves["input_angle"] / tau
+
+    def draw(figure: Figure) -> None:
+        whole, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
+        figures.curve(
+            whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error"
+        )
+        figures.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
+        figures.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
+        residual.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
+        figures.label_axes(whole, "at the output", "rad")
+        figures.label_axes(
+            residual, "left by orders and loads", "rad", "time" if timed else "revolutions of the input", "s" if timed else "1"
+        )
+        figures.legend(figure, whole)
+
+    return figures.inline(draw, (WIDTH, 3.6), name, "Transmission error, kinematic error and residual")
+
+
+def turn_figure(error: TransmissionError, name: str) -> str:
+    """The kinematic error over a revolution of the input, as found, and each sample's residual on top of it."""
+    law = error.law
+    turn = np.linspace(0.0, 1.0, 400)
+    found = sum(
+        (a * np.sin(n * tau * turn + p) for n, a, p in zip(law.order, law.amplitude, law.phase, strict=True)),
+        np.zeros_like(turn),
+    )
+    curves = error.curves
+    place = (curves["input_angle"] / tau) % 1.0
+    at = curves["input_angle"]
+    each = sum((a * np.sin(n * at + p) for n, a, p in zip(law.order, law.amplitude, law.phase, strict=True)), np.zeros_like(at))
+    bins = np.minimum((place * 60).astype(int), 59)
+    counts = np.bincount(bins, minlength=60)
+    measured = np.bincount(bins, each + curves["residual"], 60)[counts > 0] / counts[counts > 0]
+    middle = ((np.arange(60) + 0.5) / 60)[counts > 0]
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        axes.plot(middle, measured, "o", color=LIGHT["measured"], markersize=2.8, label="mean of the samples")
+        axes.plot(turn, found, color=LIGHT["model"], label="significant orders")
+        figures.label_axes(axes, "kinematic error", "rad", "revolution of the input", "1")
+        figures.legend(figure, axes)
+
+    return figures.inline(draw, (WIDTH, 2.8), name, "Kinematic error over a revolution of the input")
