@@ -85,7 +85,7 @@ def by_scipy(loop: TorsionLoop, model: Model) -> tuple[Array, int]:
         nonlocal runs
         runs += 1
         path = loop.twist - x[5]
-        return model(np.concatenate((path, path)), *x[:4])[-n:] + x[4] - loop.torque
+        return np.asarray(model(np.concatenate((path, path)), *x[:4])[-n:] + x[4] - loop.torque)
 
     low = np.array([0.0, 0.0, 1e-9, 0.0, -np.inf, -np.inf])
     found = least_squares(

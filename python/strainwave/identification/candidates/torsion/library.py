@@ -23,10 +23,12 @@ class Choice:
     Attributes:
         columns: of the library's torques, those of its weights
         put: the gear with this part, from its weights
+        group: choices of one group lead to the same minimum; starts are sought in several
     """
 
     columns: tuple[int, ...]
     put: Callable[[Gear, Array], Gear]
+    group: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +83,7 @@ def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int 
         most: how many answers are wanted
 
     Returns:
-        answers, best first
+        answers, best first; their choices of the first library that has several groups are of different ones
 
     Raises:
         ValueError: no choice has an answer
@@ -125,7 +127,11 @@ def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int 
             break
     if not answers:
         raise ValueError("no spring and hysteresis fits this loop")
-    return sorted(answers.values(), key=lambda answer: answer.error)[:most]
+    parted = next((place for place, each in enumerate(libraries) if len({choice.group for choice in each.choices}) > 1), 0)
+    of_groups: dict[float, Answer] = {}
+    for answer in sorted(answers.values(), key=lambda answer: answer.error):
+        of_groups.setdefault(answer.choices[parted].group, answer)
+    return [*of_groups.values()][:most]
 
 
 def _positive(matrix: Array, sought: Array) -> tuple[Array, float] | None:

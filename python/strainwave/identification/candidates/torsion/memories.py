@@ -80,14 +80,14 @@ class Scaled(Beside):
     """A law whose torque has a factor; all else is tried."""
 
     dear = True
-    minima = 3
+    minima = 4
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         laws = [*self.units(loop, gear)]
         tried = [(law, torque) for law in laws if np.isfinite(torque := _traced(law, loop)).all()]
 
         def choice(place: int, law: Law) -> Choice:
-            return Choice((place,), lambda g, weights: self.put(g, law, max(float(weights[0]), LEAST)))
+            return Choice((place,), lambda g, weights: self.put(g, law, max(float(weights[0]), LEAST)), place)
 
         return Library.of([torque for _, torque in tried], [choice(place, law) for place, (law, _) in enumerate(tried)])
 

@@ -18,7 +18,9 @@ Array = NDArray[np.float64]
 Part = stiffness.Linear | stiffness.Cubic | stiffness.Piecewise | stiffness.ThreeSegment | stiffness.MultiCompliance
 Spring = Part | stiffness.Backlash
 KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span: tried for the knees of a spring
-CLEARANCES = np.array([0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.2])  # of half the span: tried for a play from flank to flank
+CLEARANCES = np.array(
+    [0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.2]
+)  # of half the span: tried for a play from flank to flank
 SHARES = (0.2, 0.5, 0.8)  # of the compliance at zero torque: tried for the wave generator's
 HARDENINGS = (0.1, 1.0, 4.0)  # per the torque at half the span: tried for flexspline and wave generator
 NEGLIGIBLE = 1e-6  # of the secant stiffness: a spring that stands for none
@@ -139,7 +141,7 @@ class MultiCompliance(Kind):
     """Its torque is linear in a factor of both stiffnesses that divides both hardenings; all else is tried."""
 
     name, words = "multi_compliance", "multi-compliance spring"
-    minima = 3
+    minima = 4
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         ratio = abs(gear.kinematics.ratio)
@@ -147,7 +149,7 @@ class MultiCompliance(Kind):
         inside = [shape for shape in shapes if np.isfinite(_torque(shape, twist)).all()]
 
         def choice(place: int, unit: stiffness.MultiCompliance) -> Choice:
-            return Choice((place,), lambda g, w: g.replace(stiffness=scaled(unit, float(w[0]))))
+            return Choice((place,), lambda g, w: g.replace(stiffness=scaled(unit, float(w[0]))), place)
 
         return Library.of(
             [_torque(shape, twist) for shape in inside], [choice(place, unit) for place, unit in enumerate(inside)]
@@ -162,7 +164,7 @@ class Backlash(Kind):
     """Play before a spring of another kind."""
 
     law: Kind
-    minima = 3
+    minima = 6
 
     @property
     def name(self) -> str:  # type: ignore[override]
@@ -203,7 +205,7 @@ def _behind_play(choice: Choice, clearance: float, first: int) -> Choice:
         assert not isinstance(law, stiffness.Backlash)
         return gear.replace(stiffness=stiffness.Backlash(law=law, clearance=clearance))
 
-    return Choice(tuple(first + column for column in choice.columns), put)
+    return Choice(tuple(first + column for column in choice.columns), put, clearance)
 
 
 class Negligible(Kind):
