@@ -15,9 +15,9 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.experiments.branches import thinned
 from strainwave.messages import shortened
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, check_catalogue, rated_torque_of
-from strainwave.rig.analysis.lost_motion import LOST_MOTION, Width, area, closure, drift, separation, widest, widest_in_torque
+from strainwave.rig.analysis.lost_motion import Width, area, closure, drift, lost_motion, separation, widest, widest_in_torque
 from strainwave.rig.analysis.regimes import NAMES, RegimeName, Segmented, cycles, part, segment
-from strainwave.rig.analysis.result import Result, result
+from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.soft_spot import SoftSpot, soft_spots
 from strainwave.rig.analysis.stiffness import Stiffness, segments_of, stiffness_of
 from strainwave.rig.loop import Loop
@@ -147,7 +147,7 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
     cut, freedom = (segment(loop), inf) if stated else _with_scatter(loop)
     found = _analysis(loop, cut, freedom, rated_torque, stated)
     if gear_set is not None:
-        checks, words = check_catalogue(cut, gear_set, found.width_at_zero, rated_torque, freedom)
+        checks, words = check_catalogue(cut, gear_set, found.width_at_zero, found.lost_motion, rated_torque, freedom)
         found = replace(found, catalogue=checks, remarks=(*found.remarks, *words))
     return found
 
@@ -196,8 +196,7 @@ def _analysis(loop: Loop, cut: Segmented, freedom: float, rated: float | None, s
         at_zero = separation(falling, rising, 0.0, cut.loop, freedom)
         in_torque = widest_in_torque(falling, rising)
         if rated is not None:
-            at = [separation(falling, rising, sign * LOST_MOTION * rated, cut.loop, freedom) for sign in (-1.0, 1.0)]
-            lost = None if at[0] is None or at[1] is None else _mean(at[0], at[1], freedom)
+            lost = lost_motion(falling, rising, rated, cut.loop, freedom)
     analysis = LoopAnalysis(
         loop, cut, stiffnesses, wide, at_zero, rated, None, lost, in_torque, energy, closure(cut, freedom),
         _drift(loop, cut), soft_spots(stiffnesses), (), stated, (),
@@ -206,13 +205,6 @@ def _analysis(loop: Loop, cut: Segmented, freedom: float, rated: float | None, s
     if rated is not None and max(abs(high - rated), abs(low + rated)) <= NEAR * rated:
         analysis = replace(analysis, hysteresis_loss=at_zero)
     return replace(analysis, remarks=(*loop.remarks, *cut.remarks, *_remarks(analysis)))
-
-
-def _mean(one: Result, other: Result, freedom: float) -> Result:
-    random = 0.5 * float(np.hypot(one.random, other.random))
-    return result(
-        0.5 * (one.value + other.value), one.unit, random=random, shared=0.5 * (one.shared + other.shared), freedom=freedom
-    )
 
 
 def _drift(loop: Loop, cut: Segmented) -> Result | None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
-from strainwave.rig.analysis.lost_motion import LOST_MOTION, separation
+from strainwave.rig.analysis.lost_motion import lost_motion, separation
 from strainwave.rig.analysis.regimes import Branch, Segmented, segment
 from strainwave.rig.analysis.result import Result, inverse, result
 from strainwave.rig.analysis.stiffness import COMPLIANCE, UNIT, shared
@@ -68,7 +68,12 @@ def rated_torque_of(gear_set: GearSet, side: Side) -> float | None:
 
 
 def check_catalogue(
-    cut: Segmented, gear_set: GearSet, width_at_zero: Result | None, rated_torque: float | None, freedom: float = inf
+    cut: Segmented,
+    gear_set: GearSet,
+    width_at_zero: Result | None,
+    lost: Result | None,
+    rated_torque: float | None,
+    freedom: float = inf,
 ) -> tuple[tuple[CatalogueCheck, ...], tuple[str, ...]]:
     """Compares a loop with a set, and says what cannot be compared.
 
@@ -84,7 +89,7 @@ def check_catalogue(
         own = _own_loop(cut, gear_set)
     except ValueError as error:  # its friction holds all of the torque, or it has stages
         return stiffnesses, (*words, f"widths are not compared with those of the set's own loop: {error}")
-    return (*stiffnesses, *_widths(cut, own, width_at_zero, rated_torque, freedom)), words
+    return (*stiffnesses, *_widths(own, width_at_zero, lost, rated_torque)), words
 
 
 def _factor(gear_set: GearSet, side: Side) -> float:
@@ -126,7 +131,8 @@ def _stiffnesses(cut: Segmented, gear_set: GearSet, freedom: float) -> Iterator[
         if reached and not told:
             why = "friction of the wave generator is in the loop and shifts its torques; take it out by a table (--friction)"
         elif not reached:
-            why = f"the loop ends at {peak:.3g} N.m, the figure is for {low:.3g} N.m and beyond"
+            over = f"{low:.3g} N.m and beyond" if name == "K3" else f"{low:.3g} to {high:.3g} N.m"
+            why = f"the loop ends at {peak:.3g} N.m, the figure is for {over}"
         yield CatalogueCheck(name, measured, figures[name], UNIT, None if entry is None else entry.spread, why)
 
 
@@ -168,28 +174,18 @@ def _own_loop(cut: Segmented, gear_set: GearSet) -> Segmented:
     return segment(Loop(model.angle, model.torque, side=loop.side, name=gear_set.name))
 
 
-def _widths(
-    cut: Segmented, own: Segmented, width_at_zero: Result | None, rated_torque: float | None, freedom: float
-) -> Iterator[CatalogueCheck]:
+def _widths(own: Segmented, at_zero: Result | None, lost: Result | None, rated: float | None) -> Iterator[CatalogueCheck]:
     """Widths beside those of the set's own loop."""
-    peak = float(own.loop.torque.max())
-    stated = _separation(own, 0.0)
-    if width_at_zero is not None and stated is not None:
-        why = f"model of the set after ±{peak:.3g} N.m"
-        yield CatalogueCheck("width at zero torque", width_at_zero, stated.value, "rad", None, why)
-    if rated_torque is None:
+    if own.falling is None or own.rising is None:
         return
-    measured, stated = (_separation(each, LOST_MOTION * rated_torque, freedom) for each in (cut, own))
-    if measured is not None and stated is not None:
-        yield CatalogueCheck(
-            "lost motion", measured, stated.value, "rad", None, "model of the set, width at 4 % of rated torque"
-        )
-
-
-def _separation(cut: Segmented, torque: float, freedom: float = inf) -> Result | None:
-    if cut.falling is None or cut.rising is None:
-        return None
-    return separation(cut.falling, cut.rising, torque, cut.loop, freedom)
+    stated = separation(own.falling, own.rising, 0.0, own.loop)
+    if at_zero is not None and stated is not None:
+        why = f"model of the set after ±{float(own.loop.torque.max()):.3g} N.m"
+        yield CatalogueCheck("width at zero torque", at_zero, stated.value, "rad", None, why)
+    stated = None if rated is None else lost_motion(own.falling, own.rising, rated, own.loop)
+    if lost is not None and stated is not None:
+        why = "model of the set, mean width at ±4 % of rated torque"
+        yield CatalogueCheck("lost motion", lost, stated.value, "rad", None, why)
 
 
 def _words(cut: Segmented, gear_set: GearSet) -> Iterator[str]:

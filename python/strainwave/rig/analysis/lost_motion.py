@@ -50,6 +50,15 @@ def separation(falling: Branch, rising: Branch, torque: float, loop: Loop, freed
     return _width(down - up, down_variance + up_variance, abs(down_slope) + abs(up_slope), loop, freedom)
 
 
+def lost_motion(falling: Branch, rising: Branch, rated: float, loop: Loop, freedom: float = inf) -> Result | None:
+    """Mean separation at plus and minus 4 % of the rated torque [rad]; None where a branch does not reach it."""
+    low, high = (separation(falling, rising, sign * LOST_MOTION * rated, loop, freedom) for sign in (-1.0, 1.0))
+    if low is None or high is None:
+        return None
+    random, shared = 0.5 * hypot(low.random, high.random), 0.5 * (low.shared + high.shared)
+    return result(0.5 * (low.value + high.value), "rad", random=random, shared=shared, freedom=freedom)
+
+
 def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) -> Width | None:
     """The widest separation at equal torque: hysteresis as document T defines it; None where the branches share no torque.
 

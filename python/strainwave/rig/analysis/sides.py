@@ -124,5 +124,5 @@ def friction_at_rest(table: Recording, gear: Gear) -> Value:
     """
     best = fit_friction(FrictionTable.of(table), arguments.gear(gear))[0]
     by_name = {estimate.path.rpartition(".")[2]: estimate for estimate in best.fit.estimates}
-    found = by_name.get("breakaway", by_name["coulomb"])
+    found = by_name.get("breakaway") or by_name.get("coulomb") or best.fit.estimates[0]
     return Value(found.value, found.sigma, f"friction table {table.title}".strip())

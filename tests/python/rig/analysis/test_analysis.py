@@ -42,6 +42,8 @@ def test_the_model_of_a_set_is_what_its_catalogue_says(name: str) -> None:
     assert found.hysteresis_loss is not None
     assert found.hysteresis_loss.value == pytest.approx(torsion.width(), rel=1e-3)
     assert found.lost_motion is not None
+    assert checks["lost motion"].measured == found.lost_motion
+    assert checks["lost motion"].stated == pytest.approx(found.lost_motion.value, rel=1e-3)
     assert 0.0 < found.lost_motion.value <= torsion.width() * 1.01
     width = checks["width at zero torque"]
     assert width.measured is not None
@@ -77,7 +79,7 @@ def test_figures_beyond_the_loop_are_not_compared() -> None:
     checks = {each.name: each for each in analyse(of_set("csg-20-100", 10.0), gear_set=sw.GearSet.read("csg-20-100")).catalogue}
     assert checks["K1"].measured is not None
     assert checks["K2"].measured is None
-    assert "the loop ends at 10 N.m, the figure is for 7 N.m and beyond" in str(checks["K2"])
+    assert "the loop ends at 10 N.m, the figure is for 7 to 25 N.m" in str(checks["K2"])
 
 
 def test_at_the_input_the_figures_are_those_of_the_input() -> None:
@@ -119,7 +121,7 @@ def test_friction_of_the_pulleys_spreads_k1_as_its_interval_says() -> None:
         assert found is not None
         shown.append(found)
     changes = [abs(1.0 / each.value - 1.0 / shown[0].value) for each in shown[1:]]
-    assert max(changes) == pytest.approx(shown[0].shared / shown[0].value**2, rel=0.02)
+    assert max(changes) == pytest.approx(shown[0].shared / shown[0].value ** 2, rel=0.02)
 
 
 def test_a_set_without_such_figures_says_so() -> None:
