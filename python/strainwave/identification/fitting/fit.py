@@ -10,45 +10,77 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, arguments
+from strainwave import Drive, _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
+from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.problem import Problem
-from strainwave.messages import shortened
-from strainwave.parameters import Parameter, parameters
+from strainwave.identification.fitting.problem import Problem, Record
+from strainwave.identification.fitting.unknowns import AT, Plan, plan
+from strainwave.messages import listed, quoted, shortened
 from strainwave.simulation.resolution import warn_of_bristles
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps end far below it where residuals are small
 ROUGH = 1e-3  # the same of the pass that finds how the channels weigh
+NOISE = 0.01  # of the size of a channel, before a first pass has told it (assumed)
+OF_GEAR = (FrictionTable, TorsionLoop)  # what is measured on a gear, also where the model is of a drive
+OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "input_torque"})
+
+
+@dataclass(frozen=True, eq=False)
+class Part(ComparedByFields):
+    """What a fit makes of one record.
+
+    Attributes:
+        name: of the record
+        model: the model with the numbers that were fitted to this record
+        experiment: what was measured
+        predicted: what the model predicts, shape (channels, n)
+        training: which of the n samples took part, shape (n,)
+    """
+
+    name: str
+    model: Any
+    experiment: Experiment
+    predicted: Array
+    training: NDArray[np.bool_]
+
+    @property
+    def residuals(self) -> Array:
+        """Measured less predicted, shape (channels, n)."""
+        return self.experiment.measured - self.predicted
+
+    def rms(self, *, held_out: bool = False) -> Array:
+        """Root mean square residual of each channel over the samples that took part, or over those that did not."""
+        chosen = ~self.training if held_out else self.training
+        return (
+            np.sqrt(np.mean(self.residuals[:, chosen] ** 2, axis=1)) if chosen.any() else np.full(len(self.residuals), np.nan)
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Fit(ComparedByFields):
-    """A model fitted to an experiment.
+    """A model fitted to one record or several.
 
     Attributes:
-        model: the model with the fitted numbers
-        experiment: what it was fitted to
-        estimates: the free parameters, then the unknowns of the measurement
+        model: the model with the fitted numbers; of parameters that each record has for itself, those of the first
+        estimates: the free parameters, those tied to them, then the unknowns of the measurements; what is one record's own
+            has its name behind an @
         covariance: of the estimates, shape (p, p), infinite in directions that the data do not determine
-        predicted: what the model predicts, shape (channels, n)
-        training: which of the n samples took part, shape (n,)
+        parts: of each record its experiment, its model, what it predicts, and what it leaves
         evaluations: how often the model was run
     """
 
     model: Any
-    experiment: Experiment
     estimates: tuple[Estimate, ...]
     covariance: Array
-    predicted: Array
-    training: NDArray[np.bool_]
+    parts: tuple[Part, ...]
     evaluations: int
 
     @property
@@ -66,16 +98,34 @@ class Fit(ComparedByFields):
         return correlation
 
     @property
+    def experiment(self) -> Experiment:
+        """What it was fitted to, where that is one record."""
+        return self._only.experiment
+
+    @property
+    def predicted(self) -> Array:
+        """What the model predicts for the only record, shape (channels, n)."""
+        return self._only.predicted
+
+    @property
+    def training(self) -> NDArray[np.bool_]:
+        """Which of the n samples of the only record took part, shape (n,)."""
+        return self._only.training
+
+    @property
     def residuals(self) -> Array:
-        """Measured less predicted, shape (channels, n)."""
-        return self.experiment.measured - self.predicted
+        """Measured less predicted of the only record, shape (channels, n)."""
+        return self._only.residuals
 
     def rms(self, *, held_out: bool = False) -> Array:
-        """Root mean square residual of each channel over the samples that took part, or over those that did not."""
-        chosen = ~self.training if held_out else self.training
-        return (
-            np.sqrt(np.mean(self.residuals[:, chosen] ** 2, axis=1)) if chosen.any() else np.full(len(self.residuals), np.nan)
-        )
+        """Root mean square residual of each channel of the only record, of the samples that took part or that did not."""
+        return self._only.rms(held_out=held_out)
+
+    @property
+    def _only(self) -> Part:
+        if len(self.parts) > 1:
+            raise ValueError(f"the fit is to {len(self.parts)} records; each has its own in parts, in their order")
+        return self.parts[0]
 
     def summary(self) -> str:
         """A table of the estimates and the residuals, to print."""
@@ -83,54 +133,78 @@ class Fit(ComparedByFields):
         for e in self.estimates:
             note = "  at its limit" if e.at_limit else "" if np.isfinite(e.sigma) else "  not determined by the data"
             lines.append(f"{e.path:44} {e.start:12.5g} {e.value:14.7g} {e.sigma:10.2g}  {e.unit}{note}")
-        for name, unit, trained, held in zip(
-            self.experiment.channels, self.experiment.units, self.rms(), self.rms(held_out=True), strict=True
-        ):
-            held_out = "" if np.isnan(held) else f", on data held out {held:.4g} {unit}"
-            lines.append(f"residual of {name}: {trained:.4g} {unit} rms{held_out}")
+        for part in self.parts:
+            of = f"{AT}{part.name}" if len(self.parts) > 1 else ""
+            for name, unit, trained, held in zip(
+                part.experiment.channels, part.experiment.units, part.rms(), part.rms(held_out=True), strict=True
+            ):
+                held_out = "" if np.isnan(held) else f", on data held out {held:.4g} {unit}"
+                lines.append(f"residual of {name}{of}: {trained:.4g} {unit} rms{held_out}")
         return "\n".join(lines)
+
+
+Measured = Recording | Experiment
+Mask = NDArray[np.bool_] | None
 
 
 def fit(
     model: Gear | Drive,
-    recording: Recording | Experiment,
+    recordings: Measured | Sequence[Measured] | Mapping[str, Measured],
     free: Sequence[str],
     *,
     channels: Sequence[str] | None = None,
     dt: float | None = None,
     initial: Mapping[str, float] | None = None,
-    training: NDArray[np.bool_] | None = None,
+    training: Mask | Sequence[Mask] | Mapping[str, Mask] = None,
     loss: Literal["linear", "soft_l1"] = "linear",
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, tuple[float, float] | Entry] | None = None,
+    ties: Mapping[str, str | tuple[str, float]] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    per_record: Sequence[str] = (),
 ) -> Fit:
-    """Fits free parameters of a model to a measurement by least squares.
+    """Fits free parameters of a model to measurements by least squares.
 
-    The Jacobian comes from dual numbers through the same code that simulates, so it is exact to rounding. Channels are
-    weighed by their residuals, found in a first pass. The covariance accounts for residuals that hang together in time.
+    The Jacobian comes from dual numbers through the same code that simulates, so it is exact to rounding. Channels of all
+    records are weighed by their residuals, found in a first pass. The covariance accounts for residuals that hang together in
+    time.
+
+    Where several records are given, a key of `bounds`, `priors` and `fixed` may name one of them behind an @, as
+    "load.inertia @ heavy". Records are called by the names that a mapping gives them, else "record 1", "record 2" and so on.
 
     Args:
-        model: a drive, for a log over time; a gear, for a friction table or a torsion loop
-        recording: time, command and outputs (a drive log); speed and torque (a friction table, input side); twist and
-            torque, or input_angle and input_torque (a torsion loop); or an experiment made of one
+        model: a drive, for a log over time; a gear or a drive, for a friction table or a torsion loop
+        recordings: time, command and outputs (a drive log); speed and torque (a friction table, input side); twist and
+            torque, or input_angle and input_torque (a torsion loop); or an experiment made of one. Or several of them: a list,
+            or a mapping from the names of the records
         free: paths of parameters, as "gear.friction_input.coulomb" of a drive or "friction_input.coulomb" of a gear;
             "hysteresis.stiffness[2]" is one element, "hysteresis.stiffness" all of them
-        channels: columns of a drive log to compare; all that a simulation has too if not given
+        channels: columns of drive logs to compare; all that a simulation has too if not given
         dt: largest step of the simulation [s], shorter where the drive needs it; 0.2 ms if not given
         initial: of a drive log that does not begin at rest, what is known of its beginning, as for `simulate`; encoders then
             count from where they say
-        training: which samples take part, shape (n,); all if not given
+        training: which samples take part, shape (n,); all if not given. Of several records, one of these or None for each
         loss: "linear", or "soft_l1" where outliers are to be feared
+        bounds: lowest and highest value of free parameters, by path, within what their laws allow
+        priors: what is known of free or tied parameters without the measurement, by path: value and standard deviation of a
+            normal distribution; or an `Entry` with spread or uncertainty, for the value that the model has
+        ties: parameters that follow a free one, by path: its path, or its path and the factor that it is multiplied by
+        fixed: values of parameters that are not free, by path; they take the place of those of the model
+        per_record: free parameters of which each record has its own value, as the load or what the temperature changes
 
     Returns:
         the fitted model with its uncertainty
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an unknown path, too few samples, a recording without the columns needed, a model that is not valid over
-            the measurement from the start
+        ValueError: an unknown path, or one that is free and fixed, or free and tied; a bound, a prior or a tie that makes no
+            sense; too few samples; a recording without the columns needed; a model that is not valid over the measurement from
+            the start
         FloatingPointError: at the start the model diverges, or its derivatives grow beyond all numbers
 
     Warns:
-        RuntimeWarning: the bristles of the drive found are too stiff for `dt`
+        RuntimeWarning: the bristles of the drive found are too stiff for `dt`; a parameter starts out of its bounds, and is
+            moved to the nearest
 
     >>> import numpy as np, strainwave as sw
     >>> truth = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
@@ -142,40 +216,101 @@ def fit(
     >>> round(found.gear.friction_input.coulomb, 9), round(found.gear.friction_input.viscous, 9)
     (0.02, 0.0003)
     """
-    _check_kinds(model, recording, loss)
-    if initial is not None and not (isinstance(model, Drive) and isinstance(recording, Recording)):
+    _check_kinds(model, loss)
+    records = _records(recordings)
+    if initial is not None and not (isinstance(model, Drive) and all(isinstance(each, Recording) for each in records.values())):
         raise TypeError("initial is the beginning of a drive log: give a drive and a recording, or leave it out")
-    experiment = experiment_of(model, recording, channels, dt, initial) if isinstance(recording, Recording) else recording
-    places = parameters("free", model, free)
-    _check_branch(experiment, places)
-    problem = Problem(model, experiment, places, training)
-    start = problem.start()
-    _check_motion(experiment, problem.predict(start)[0])
-    weights = 1.0 / _scale(experiment.measured[:, problem.training])
-    for tolerance in (TOLERANCE,) if len(experiment.channels) == 1 else (ROUGH, TOLERANCE):
-        found = problem.solve(start, weights, loss, tolerance)
-        residual = (experiment.measured - problem.predict(found)[0])[:, problem.training]
-        weights = 1.0 / np.maximum(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)), 1e-12 * _scale(experiment.measured))
-        start = found
-    estimates, covariance = problem.estimates(found, weights)
-    predicted, _ = problem.predict(found)
-    result = Fit(problem.model_with(found), experiment, estimates, covariance, predicted, problem.training, problem.evaluations)
-    if isinstance(experiment, DriveLog):
-        warn_of_bristles(result.model, experiment.step(result.model))
-    return result
+    asked = plan(
+        model, list(records), free, bounds=bounds, priors=priors, ties=ties, fixed=fixed, per_record=per_record
+    )  # fmt: skip
+    models = [_core.with_numbers(model, list(numbers)) for numbers in asked.numbers]
+    experiments = [
+        experiment_of(own, each, channels, dt, initial) if isinstance(each, Recording) else each
+        for own, each in zip(models, records.values(), strict=True)
+    ]
+    problem = _problem(asked, list(records), models, experiments, _masks(training, list(records)))
+    return _solved(problem, loss)
 
 
-def _check_kinds(model: object, recording: object, loss: object) -> None:
+def _problem(
+    asked: Plan, names: list[str], models: Sequence[Any], experiments: Sequence[Experiment], masks: Sequence[Mask]
+) -> Problem:
+    first, built = len(asked.unknowns), []
+    for experiment, mask, own, moves in zip(experiments, masks, models, asked.moves, strict=True):
+        _check_branch(experiment, [move.path for move in moves])
+        of_gear = isinstance(experiment, OF_GEAR) and isinstance(own, Drive)
+        built.append(Record(experiment, mask, own, moves, of_gear, first))
+        first += len(experiment.nuisances)
+    return Problem(asked, built, names)
+
+
+def _solved(problem: Problem, loss: Literal["linear", "soft_l1"]) -> Fit:
+    """The fit, in passes: the residuals of each say how much its rows weigh in the next."""
+    start, records = problem.start(), problem.records
+    for record, (predicted, _) in zip(records, problem.predict(start), strict=True):
+        _check_motion(record.experiment, predicted)
+    weights = [1.0 / (NOISE * _scale(record.experiment.measured[:, record.training])) for record in records]
+    single = len(records) == len(records[0].experiment.channels) == 1 and not problem.plan.priors
+    for tolerance in (TOLERANCE,) if single else (ROUGH, TOLERANCE):
+        start = problem.solve(start, weights, loss, tolerance)
+        weights = [
+            1.0 / np.maximum(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)), 1e-12 * _scale(record.experiment.measured))
+            for record, residual in zip(records, problem.residuals(start), strict=True)
+        ]
+    estimates, covariance = problem.estimates(start, weights)
+    parts = tuple(
+        Part(name, record.model(start), record.experiment, predicted, record.training)
+        for name, record, (predicted, _) in zip(problem.names, records, problem.predict(start), strict=True)
+    )
+    for part in parts:
+        if isinstance(part.experiment, DriveLog):
+            warn_of_bristles(part.model, part.experiment.step(part.model))
+    return Fit(parts[0].model, estimates, covariance, parts, problem.evaluations)
+
+
+def _check_kinds(model: object, loss: object) -> None:
     if not isinstance(model, Gear | Drive):
         raise TypeError(f"model must be a Gear or a drive, not {shortened(model)}")
-    if not isinstance(recording, Recording) and not hasattr(recording, "predict"):
-        raise TypeError(f"recording must be a Recording, or an experiment made of one, not {shortened(recording)}")
     arguments.one_of("loss", loss, ("linear", "soft_l1"))
 
 
-def _check_branch(experiment: Experiment, places: Sequence[Parameter]) -> None:
+def _records(recordings: object) -> dict[str, Any]:
+    """The measurements, by the names of their records."""
+    if isinstance(recordings, Recording) or hasattr(recordings, "predict"):
+        return {"record 1": recordings}
+    if isinstance(recordings, Mapping):
+        named = dict(zip(arguments.names("names of recordings", recordings), recordings.values(), strict=True))
+    elif isinstance(recordings, list | tuple):
+        named = {f"record {place}": each for place, each in enumerate(recordings, 1)}
+    else:
+        named = {"": recordings}
+    for each in named.values():
+        if not (isinstance(each, Recording) or hasattr(each, "predict")):
+            raise TypeError(f"recordings must be Recordings, or experiments made of them, not {shortened(each)}")
+    if not named:
+        raise ValueError("recordings is empty; give at least one")
+    return named
+
+
+def _masks(training: Any, names: list[str]) -> list[Mask]:
+    """Which samples of each record take part."""
+    if training is None:
+        return [None for _ in names]
+    if isinstance(training, Mapping):
+        for name in training:
+            if name not in names:
+                raise ValueError(f"training names record {quoted(str(name))}; the records are {listed(names)}")
+        return [training.get(name) for name in names]
+    if len(names) == 1 and not (isinstance(training, list | tuple) and len(training) == 1):
+        return [training]
+    if not isinstance(training, list | tuple) or len(training) != len(names):
+        raise ValueError(f"training must be a list with one mask or None for each of the {len(names)} records")
+    return list(training)
+
+
+def _check_branch(experiment: Experiment, paths: Sequence[str]) -> None:
     """Of a path that never turns back, a fit can take the whole for the spring, or for hysteresis."""
-    wrong = [place.path for place in places if not place.path.startswith("stiffness.")]
+    wrong = [path for path in paths if not path.removeprefix("gear.").startswith("stiffness.")]
     if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
         raise ValueError(
             f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} cannot be told from stiffness; "
@@ -205,12 +340,14 @@ def experiment_of(
     Raises:
         ValueError: the columns fit no experiment
     """
-    if isinstance(model, Drive):
+    names = set(recording.names)
+    if isinstance(model, Drive) and (names & {"time", "command"} or not any(columns <= names for columns in OF_GEAR_COLUMNS)):
         return DriveLog.of(recording, model, channels, dt, initial)
-    if {"speed", "torque"} <= set(recording.names):
+    gear: Gear = model.gear if isinstance(model, Drive) else model
+    if {"speed", "torque"} <= names:
         return FrictionTable.of(recording)
-    if {"twist", "torque"} <= set(recording.names) or {"input_angle", "input_torque"} <= set(recording.names):
-        return TorsionLoop.of(recording, model)
+    if any(columns <= names for columns in OF_GEAR_COLUMNS):
+        return TorsionLoop.of(recording, gear)
     raise ValueError(
         f"columns {', '.join(recording.names)} are no experiment on a gear; a friction table has speed and torque, "
         "a torsion loop twist and torque or input_angle and input_torque"

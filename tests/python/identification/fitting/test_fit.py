@@ -220,21 +220,21 @@ def test_columns_that_are_no_experiment_are_refused() -> None:
     ("given", "error", "message"),
     [
         ({"model": 3}, TypeError, r"^model must be a Gear or a drive, not 3$"),
-        ({"recording": "log.csv"}, TypeError, r"^recording must be a Recording, or an experiment made of one, not 'log.csv'$"),
+        ({"recordings": "log.csv"}, TypeError, r"^recordings must be Recordings, or experiments made of them, not 'log.csv'$"),
         ({"free": "gear.damping"}, TypeError, r"^free must be a list of names, not 'gear.damping'$"),
         ({"channels": "torque"}, TypeError, r"^channels must be a list of names, not 'torque'$"),
         ({"dt": "1 ms"}, TypeError, r"^dt must be a number, not '1 ms'$"),
         ({"training": [0, 1, 2]}, TypeError, r"^training must hold True or False for each sample, not int64$"),
         ({"loss": "cauchy"}, ValueError, r'^loss = "cauchy" must be one of linear, soft_l1$'),
         (
-            {"model": gear(), "recording": friction_table(), "free": []},
+            {"model": gear(), "recordings": friction_table(), "free": []},
             ValueError,
             r"^free must name at least one parameter: nothing else of ",
         ),
     ],
 )
 def test_what_makes_no_sense_is_refused(given: dict[str, Any], error: type[Exception], message: str) -> None:
-    arguments: dict[str, Any] = {"model": drive(), "recording": drive_log(noise=0.0), "free": ["gear.damping"]}
+    arguments: dict[str, Any] = {"model": drive(), "recordings": drive_log(noise=0.0), "free": ["gear.damping"]}
     with pytest.raises(error, match=message):
         sw.fit(**arguments | given)
 

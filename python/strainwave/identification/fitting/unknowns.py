@@ -1,0 +1,309 @@
+"""What a fit looks for: free numbers of a model, shared by all records or one for each, and what is known of them before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot, isfinite
+from typing import Any
+from warnings import warn
+
+from strainwave import Drive, Gear, arguments
+from strainwave.files.entries import Entry, Quantity
+from strainwave.messages import listed, quoted, shortened
+from strainwave.parameters import Parameter, every, parameters, unknown
+
+NEAR = 1e-6  # of the size of a parameter
+AT = " @ "  # between the path of a parameter and the record whose own it is
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A number that a fit looks for.
+
+    Attributes:
+        path: where it stands in the model, and of which record it is if it is the record's own
+        unit: its unit
+        before: its value in the model
+        low, high: what it may be
+    """
+
+    path: str
+    unit: str
+    before: float
+    low: float
+    high: float
+
+    @property
+    def start(self) -> float:
+        """Where a fit starts: the value of the model, or the nearest that it may be."""
+        return min(max(self.before, self.low), self.high)
+
+    def at_limit(self, value: float) -> bool:
+        """Whether a fit ended at what it may be: solvers stop short of it, by far less than the parameter's size."""
+        near = [NEAR * max(abs(end), abs(self.before)) if isfinite(end) else 0.0 for end in (self.low, self.high)]
+        return value <= self.low + near[0] or value >= self.high - near[1]
+
+
+@dataclass(frozen=True)
+class Move:
+    """A number of the model of a record, that is a multiple of an unknown.
+
+    Attributes:
+        path: of the number
+        number: its place among all numbers of the model
+        unknown: place of the unknown
+        factor: the number over the unknown
+    """
+
+    path: str
+    number: int
+    unknown: int
+    factor: float
+
+
+@dataclass(frozen=True)
+class Tied:
+    """A parameter that follows an unknown.
+
+    Attributes:
+        path: where it stands in the model, and of which record it is if the unknown is a record's own
+        unit: its unit
+        before: its value in the model
+        unknown: place of the unknown
+        factor: the parameter over the unknown
+    """
+
+    path: str
+    unit: str
+    before: float
+    unknown: int
+    factor: float
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What is known of a multiple of an unknown before a fit: factor * unknown = value ± sigma, normally distributed."""
+
+    unknown: int
+    factor: float
+    value: float
+    sigma: float
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The unknowns of a model, and what each of them means for each record.
+
+    Attributes:
+        unknowns: all of them
+        numbers: of the model of each record, before the fit
+        moves: of the model of each record
+        tied: parameters that follow an unknown
+        priors: what is known before
+    """
+
+    unknowns: tuple[Unknown, ...]
+    numbers: tuple[tuple[float, ...], ...]
+    moves: tuple[tuple[Move, ...], ...]
+    tied: tuple[Tied, ...]
+    priors: tuple[Prior, ...]
+
+
+def plan(
+    model: Gear | Drive,
+    records: Sequence[str],
+    free: Sequence[str],
+    *,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, Any] | None = None,
+    ties: Mapping[str, Any] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    per_record: Sequence[str] = (),
+) -> Plan:
+    """The unknowns of a fit, from what its user asks; arguments and errors are those of `fit`.
+
+    >>> from strainwave import Drive
+    >>> asked = plan(Drive(), ["light", "heavy"], ["motor.inertia", "load.inertia"], per_record=["load.inertia"])
+    >>> [each.path for each in asked.unknowns]
+    ['motor.inertia', 'load.inertia @ light', 'load.inertia @ heavy']
+    """
+    return _Planner(model, records, free, per_record).plan(bounds or {}, priors or {}, ties or {}, fixed or {})
+
+
+class _Planner:
+    """Puts a plan together, and says what is wrong with the parts of it."""
+
+    def __init__(self, model: Gear | Drive, records: Sequence[str], free: Sequence[str], per_record: Sequence[str]) -> None:
+        self.model, self.records, self.known = model, list(records), every(model)
+        self.free = {each.path: each for each in parameters("free", model, free)}
+        self.own = {each.path for each in parameters("per_record", model, per_record)}
+        for path in self.own:
+            if path not in self.free:
+                raise ValueError(f"per_record names {path}, which is not free; name it in free too")
+
+    def plan(
+        self, bounds: Mapping[str, Any], priors: Mapping[str, Any], ties: Mapping[str, Any], fixed: Mapping[str, Any]
+    ) -> Plan:
+        for name, value, example in (
+            ("bounds", bounds, '{"load.inertia": (0.1, 0.9)}'),
+            ("priors", priors, '{"load.inertia": (0.5, 0.02)}'),
+            ("ties", ties, '{"motor.back_emf": "motor.torque_constant"}'),
+            ("fixed", fixed, '{"motor.resistance": 0.5}'),
+        ):
+            arguments.mapping(name, value, example)
+        numbers = self._numbers(fixed)
+        leaders = self._leaders(ties, fixed)
+        owners = [(path, record) for path in self.free for record in self._owners(path)]
+        places = {owner: place for place, owner in enumerate(owners)}
+
+        def moves(record: int) -> tuple[Move, ...]:
+            of = {path: places[path, record if path in self.own else None] for path in self.free}
+            own = [Move(path, each.number, of[path], 1.0) for path, each in self.free.items()]
+            follow = [Move(path, self.known[path].number, of[leader], factor) for path, (leader, factor) in leaders.items()]
+            return (*own, *follow)
+
+        all_moves = tuple(moves(record) for record in range(len(self.records)))
+        limits = self._limits(bounds, leaders)
+        tied = tuple(
+            Tied(self._named_of(path, record), self.known[path].unit, self.known[path].value, places[leader, record], factor)
+            for path, (leader, factor) in leaders.items()
+            for record in self._owners(leader)
+        )
+        unknowns = tuple(self._unknown(path, record, limits) for path, record in owners)
+        return Plan(unknowns, numbers, all_moves, tied, self._priors(priors, all_moves))
+
+    def _owners(self, path: str) -> Sequence[int | None]:
+        """Records of which each has its own value of a free parameter; None for all together."""
+        return range(len(self.records)) if path in self.own else (None,)
+
+    def _named_of(self, path: str, record: int | None) -> str:
+        return path if record is None else f"{path}{AT}{self.records[record]}"
+
+    def _numbers(self, fixed: Mapping[str, Any]) -> tuple[tuple[float, ...], ...]:
+        """Numbers of the model of each record, with those that are given for it."""
+        numbers = [[each.value for each in self.known.values()] for _ in self.records]
+        for key, value in sorted(fixed.items(), key=lambda item: AT in str(item[0])):  # those of one record have the last word
+            for each, records in self._named("fixed", key):
+                if each.path in self.free:
+                    raise ValueError(f"{each.path} is both free and fixed; take it out of one of the two")
+                given = arguments.number(f"fixed[{quoted(key)}]", value, each.unit, "[]", each.low, each.high)
+                for record in records:
+                    numbers[record][each.number] = given
+        return tuple(map(tuple, numbers))
+
+    def _leaders(self, ties: Mapping[str, Any], fixed: Mapping[str, Any]) -> dict[str, tuple[str, float]]:
+        """What each tied number follows, and by which factor."""
+        leaders = {}
+        for path, followed in ties.items():
+            if path not in self.known:
+                raise unknown(path, self.known)
+            pair = (followed, 1.0) if isinstance(followed, str) else followed
+            if not (isinstance(pair, tuple | list) and len(pair) == 2 and isinstance(pair[0], str)):
+                raise TypeError(
+                    f"ties[{quoted(path)}] must be a path, or a path and a factor as (path, 2.0), not {shortened(followed)}"
+                )
+            leader, factor = pair[0], arguments.number(f"the factor of ties[{quoted(path)}]", pair[1])
+            if factor == 0.0:
+                raise ValueError(f"the factor of ties[{quoted(path)}] is 0; to make {path} zero, name it in fixed")
+            if leader not in self.known:
+                raise unknown(leader, self.known)
+            if path in self.free:
+                raise ValueError(f"{path} is both free and tied to {leader}; take it out of one of the two")
+            if any(path in (key, key.split("[")[0], key.split(AT)[0]) for key in fixed):
+                raise ValueError(f"{path} is both fixed and tied to {leader}; take it out of one of the two")
+            if leader not in self.free:
+                raise ValueError(f"{path} is tied to {leader}, which is not free; free it, or give {path} a value in fixed")
+            leaders[path] = leader, factor
+        return leaders
+
+    def _limits(
+        self, bounds: Mapping[str, Any], leaders: Mapping[str, tuple[str, float]]
+    ) -> dict[tuple[str, int], tuple[float, float]]:
+        """What each free number may be, by path and record: within its law, its bounds and the law of those that follow it."""
+        limits = {
+            (path, record): (each.low, each.high) for path, each in self.free.items() for record in range(len(self.records))
+        }
+
+        def narrow(path: str, record: int, low: float, high: float, why: str) -> None:
+            before = limits[path, record]
+            limits[path, record] = (max(before[0], low), min(before[1], high))
+            if limits[path, record][0] >= limits[path, record][1]:
+                raise ValueError(f"{why} leaves {path} no value: it must lie in [{before[0]:g}, {before[1]:g}] too")
+
+        for key, pair in bounds.items():
+            if not (isinstance(pair, tuple | list) and len(pair) == 2):
+                raise TypeError(f"bounds[{quoted(key)}] must be two numbers, as (low, high), not {shortened(pair)}")
+            low, high = (arguments.number(f"bounds[{quoted(key)}]", end, brackets="[]") for end in pair)
+            if not low < high:
+                raise ValueError(f"bounds[{quoted(key)}] = ({low:g}, {high:g}) must have the lower end first")
+            for each, records in self._named("bounds", key, self.free):
+                for record in records:
+                    narrow(each.path, record, low, high, f"bounds[{quoted(key)}]")
+        for path, (leader, factor) in leaders.items():
+            low, high = sorted((self.known[path].low / factor, self.known[path].high / factor))
+            for record in range(len(self.records)):
+                narrow(leader, record, low, high, f"ties[{quoted(path)}]")
+        return limits
+
+    def _unknown(self, path: str, record: int | None, limits: Mapping[tuple[str, int], tuple[float, float]]) -> Unknown:
+        each = self.free[path]
+        lows, highs = zip(
+            *(limits[path, i] for i in ([record] if record is not None else range(len(self.records)))), strict=True
+        )
+        name = self._named_of(path, record)
+        found = Unknown(name, each.unit, each.value, max(lows), min(highs))
+        if found.start != each.value:
+            warn(
+                f"{name} starts at {found.start:g} {each.unit}: its value {each.value:g} {each.unit} lies out of its bounds",
+                RuntimeWarning,
+                stacklevel=5,
+            )
+        return found
+
+    def _priors(self, priors: Mapping[str, Any], moves: tuple[tuple[Move, ...], ...]) -> tuple[Prior, ...]:
+        """What is known of each unknown before; what is said of one record goes before what is said of all."""
+        found: dict[tuple[int, str], Prior] = {}
+        moved = {move.path for move in moves[0]}
+        for key, given in sorted(priors.items(), key=lambda item: AT in str(item[0])):
+            for each, records in self._named("priors", key, moved):
+                value, sigma = _prior(key, given, each)
+                for record in records:
+                    move = next(move for move in moves[record] if move.path == each.path)
+                    found[move.unknown, each.path] = Prior(move.unknown, move.factor, value, sigma)
+        return tuple(found.values())
+
+    def _named(self, name: str, key: object, among: Any = None) -> list[tuple[Parameter, Sequence[int]]]:
+        """The parameters that a key names, and the records for which: all, or the one behind the @."""
+        path, at, record = arguments.text(f"a key of {name}", key).partition(AT)
+        if at and record not in self.records:
+            raise ValueError(f"{name} names record {quoted(record)}; the records are {listed(self.records)}")
+        chosen = parameters(name, self.model, [path])
+        for each in chosen:
+            if among is not None and each.path not in among:
+                raise ValueError(f"{name} names {each.path}, which is not free; name it in free, or leave it out of {name}")
+            if at and among is not None and each.path in self.free and each.path not in self.own:
+                raise ValueError(
+                    f"{name} names {each.path} of record {quoted(record)}, but all share it; name it in per_record"
+                )
+        return [(each, [self.records.index(record)] if at else range(len(self.records))) for each in chosen]
+
+
+def _prior(key: str, given: object, parameter: Parameter) -> tuple[float, float]:
+    """Value and standard deviation of a prior, in the unit of the parameter."""
+    name = f"priors[{quoted(key)}]"
+    if isinstance(given, Entry):
+        if isinstance(given, Quantity):
+            given = given.to(parameter.unit)
+        value = given.value if isinstance(given, Quantity) else parameter.value
+        sigma = hypot((given.spread or 0.0) * value, given.uncertainty or 0.0)
+        if sigma == 0.0:
+            raise ValueError(
+                f"{name}: its source says neither uncertainty, nor spread of a value that is not 0; give (value, sigma)"
+            )
+        return value, sigma
+    if not (isinstance(given, tuple | list) and len(given) == 2):
+        raise TypeError(f"{name} must be (value, sigma), or an Entry with spread or uncertainty, not {shortened(given)}")
+    value = arguments.number(f"the value of {name}", given[0], parameter.unit)
+    sigma = arguments.number(f"the sigma of {name}", given[1], parameter.unit, low=0.0)
+    return value, sigma
