@@ -78,6 +78,10 @@ ELSEWHERE = {
         "identification/candidates/friction.py": STEADY_TABLE,
         "identification/candidates/steady_shapes.py": STEADY_TABLE,
     },
+    "AngleSpeedMap": {
+        "identification/candidates/friction.py": STEADY_TABLE,
+        "identification/candidates/steady_shapes.py": STEADY_TABLE,
+    },
     "CurvedViscous": {
         "identification/candidates/friction.py": STEADY_TABLE,
         "identification/candidates/steady_shapes.py": STEADY_TABLE,

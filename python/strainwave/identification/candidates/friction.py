@@ -33,6 +33,7 @@ Plain = (
     | friction.MaxwellSlipFriction
     | friction.CurvedViscous
     | friction.MixedLubrication
+    | friction.AngleSpeedMap
 )  # what a table of torque over speed can tell
 Modulated = friction.Asymmetric | friction.Thermal | friction.Cyclic
 
@@ -73,12 +74,17 @@ class FrictionCandidate(ComparedByFields):
 
     @property
     def coulomb(self) -> float:
-        """Coulomb torque found [N.m]."""
+        """Coulomb torque found [N.m]; of a map the mean of its slowest speed."""
+        law = innermost(self.law)
+        if isinstance(law, friction.AngleSpeedMap):
+            return float(np.mean(law.level[: len(law.level) // len(law.speed)]))
         return self._found("coulomb")
 
     @property
     def viscous(self) -> float:
-        """Viscous friction found [N.m.s/rad]; of a curved one, its chord to the reference speed."""
+        """Viscous friction found [N.m.s/rad]; of a curved one, its chord to the reference speed; a map has none by itself."""
+        if isinstance(innermost(self.law), friction.AngleSpeedMap):
+            return 0.0
         if isinstance(innermost(self.law), friction.CurvedViscous):
             return self._found("viscous_torque") / float(innermost(self.law).reference_speed)
         return self._found("viscous")
@@ -257,11 +263,10 @@ def _kept(found: Any, known: Plain, fell: bool) -> Any:
     if isinstance(found, Modulated):
         return found.replace(law=_kept(found.law, known, fell))
     ratio = known.breakaway / known.coulomb if isinstance(known, friction.Coulomb) and known.coulomb > 0.0 else 1.0
-    law = found if fell else found.replace(breakaway=ratio * found.coulomb)
-    if isinstance(law, friction.Stribeck) or (isinstance(law, friction.Coulomb) and not isinstance(known, friction.Viscous)):
-        bristles = isinstance(known, friction.LuGre | friction.MaxwellSlipFriction)
-        if bristles or isinstance(known, friction.Stribeck):
-            return dissipating(known.replace(**{name: getattr(law, name) for name in STEADY if hasattr(law, name)}))
+    law = found if fell or isinstance(found, friction.AngleSpeedMap) else found.replace(breakaway=ratio * found.coulomb)
+    kinds = friction.Stribeck | friction.LuGre | friction.MaxwellSlipFriction | friction.MixedLubrication
+    if isinstance(law, friction.Coulomb | friction.Stribeck) and isinstance(known, kinds):
+        return dissipating(known.replace(**{name: getattr(law, name) for name in STEADY if hasattr(law, name)}))
     return law
 
 

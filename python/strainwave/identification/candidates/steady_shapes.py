@@ -23,6 +23,10 @@ WARMER = 2.0  # K: a smaller spread of temperature tells nothing
 ORDERS = 8  # of the turn, looked for
 SURE = 1e-3  # probability that chance alone gives a harmonic, over all looked for
 WAVES = 4  # harmonics taken at most
+NEAR = 0.02  # of a speed: speeds that differ by less are one
+MAP_SPEEDS, LEVELS = 8, 128  # that a map may have
+CELLS = 12  # of a turn, at most
+IN_A_CELL = 8  # samples, at least on average
 
 
 @dataclass(frozen=True)
@@ -114,28 +118,51 @@ def beside_speed(table: FrictionTable, shape: Shape, residual: Array) -> Iterato
     if table.temperature is not None and np.ptp(table.temperature) > WARMER:
         middle = float(np.mean(table.temperature))
         yield shape.around("over the temperature", friction.Thermal, ("dry_fall", "viscous_fall"), reference_temperature=middle)
-        if (mixed := _mixed(shape.law, table)) is not None:
-            law = mixed.replace(viscosity_fall=0.01, reference_temperature=middle)
-            yield Shape(f"{shape.name}, lubricated over the temperature", law, (*shape.free, "viscosity_fall"))
-    if table.load is not None and np.ptp(np.abs(table.load)) > 0.0 and (mixed := _mixed(shape.law, table)) is not None:
-        law = mixed.replace(load_sensitivity=0.1 / float(np.abs(table.load).max()))
-        yield Shape(f"{shape.name}, over the load", law, (*shape.free, "load_sensitivity"))
-    if table.angle is not None and (waves := harmonics_of(table, residual)):
-        order, amplitude, phase = map(list, zip(*waves, strict=True))
-        free = tuple(f"{name}[{i}]" for name in ("amplitude", "phase") for i in range(len(order)))
-        yield shape.around("over the angle", friction.Cyclic, free, order=order, amplitude=amplitude, phase=phase)
-
-
-def _mixed(law: Any, table: FrictionTable) -> friction.MixedLubrication | None:
-    """The same friction, as of a bearing that load and viscosity act on."""
-    if isinstance(law, friction.Stribeck):
-        return friction.MixedLubrication(
-            coulomb=law.coulomb, breakaway=law.breakaway, stribeck_speed=law.stribeck_speed, viscous=law.viscous
+        yield from _lubricated(
+            shape, table, "lubricated over the temperature", viscosity_fall=0.01, reference_temperature=middle
         )
-    if isinstance(law, friction.Coulomb):
-        gone = 1e-3 * float(np.abs(table.speed).min())  # at every speed of the table nothing is left of a fall
-        return friction.MixedLubrication(coulomb=law.coulomb, breakaway=0.0, stribeck_speed=gone, viscous=law.viscous)
-    return None
+    if table.load is not None and np.ptp(np.abs(table.load)) > 0.0:
+        yield from _lubricated(shape, table, "over the load", load_sensitivity=0.1 / float(np.abs(table.load).max()))
+    if table.angle is not None:
+        if waves := harmonics_of(table, residual):
+            order, amplitude, phase = map(list, zip(*waves, strict=True))
+            free = tuple(f"{name}[{i}]" for name in ("amplitude", "phase") for i in range(len(order)))
+            yield shape.around("over the angle", friction.Cyclic, free, order=order, amplitude=amplitude, phase=phase)
+        yield from _map(table, table.angle)
+
+
+def _lubricated(shape: Shape, table: FrictionTable, name: str, **changed: float) -> Iterator[Shape]:
+    """The same friction, as of a bearing that load and viscosity act on; the first number changed is to be found."""
+    outer = shape.law if isinstance(shape.law, friction.Asymmetric) else None
+    law = shape.law if outer is None else outer.law
+    if isinstance(law, friction.Stribeck):
+        fall = {"breakaway": law.breakaway, "stribeck_speed": law.stribeck_speed}
+    elif isinstance(law, friction.Coulomb):  # at every speed of the table nothing is left of a fall
+        fall = {"breakaway": 0.0, "stribeck_speed": 1e-3 * float(np.abs(table.speed).min())}
+    else:
+        return
+    mixed = friction.MixedLubrication(coulomb=law.coulomb, viscous=law.viscous, **(fall | changed))
+    (found, *_), inner = changed, "" if outer is None else "law."
+    yield Shape(f"{shape.name}, {name}", mixed if outer is None else outer.replace(law=mixed), (*shape.free, inner + found))
+
+
+def _map(table: FrictionTable, angle: Array) -> Iterator[Shape]:
+    """A table over angle and speed, where few speeds were measured and many samples at each."""
+    speed, level = np.abs(table.speed), np.sign(table.speed) * table.torque
+    ordered = np.sort(speed)
+    group = np.searchsorted(ordered[1:][np.diff(ordered) > NEAR * ordered[1:]], speed, "right")
+    speeds = [float(speed[group == k].mean()) for k in range(group.max() + 1)]
+    angles = min(CELLS, LEVELS // len(speeds), int(np.bincount(group).min()) // IN_A_CELL)
+    if len(speeds) > MAP_SPEEDS or angles < 3:
+        return
+    cell = np.rint(angle / (2.0 * np.pi) * angles).astype(int) % angles
+    means = [float(level[group == k].mean()) for k in range(len(speeds))]
+    found = [
+        max(float(level[here].mean()) if np.any(here := (group == k) & (cell == j)) else means[k], 0.0)
+        for k in range(len(speeds))
+        for j in range(angles)
+    ]
+    yield Shape("map over angle and speed", friction.AngleSpeedMap(speed=speeds, level=found), ("level",))
 
 
 def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, float, float]]:

@@ -53,11 +53,11 @@ def test_no_fall_is_made_up_from_noise() -> None:
     truth = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=2e-4)
     speed = np.geomspace(0.1, 300.0, 40)
     names = []
-    for seed in range(10):
+    for seed in range(5):
         noise = 1e-3 * np.random.default_rng(seed).normal(size=len(speed))
         table = FrictionTable(speed, truth.steady(speed) + noise)
         names.append(fit_friction(table, sw.Gear(friction_input=LUGRE))[0].name)
-    assert names.count("Coulomb and viscous") >= 8
+    assert names.count("Coulomb and viscous") >= 4
 
 
 def test_nothing_is_said_of_the_passivity_of_laws_tried_on_the_way() -> None:
@@ -130,12 +130,12 @@ TRUTHS = {
 
 @pytest.mark.parametrize("name", TRUTHS)
 def test_the_law_that_the_torque_follows_is_ranked_first(name: str) -> None:
-    """What is more than the truth, as asymmetry, is taken from noise alone in one table of eight at most."""
+    """What is more than the truth, as asymmetry, is not taken from noise alone."""
     truth, first = TRUTHS[name].steady(BOTH_WAYS), []
-    for seed in range(8):
+    for seed in range(3):
         noise = 0.01 * np.abs(truth).max() * np.random.default_rng(seed).normal(size=len(truth))
         first.append(fit_friction(FrictionTable(BOTH_WAYS, truth + noise), sw.Gear())[0].name)
-    assert first.count(name) >= 7, first
+    assert first == 3 * [name]
 
 
 def test_a_curved_law_leaves_bristles_out_and_an_asymmetric_one_holds_them() -> None:
@@ -180,3 +180,43 @@ def test_a_table_over_the_temperature_tells_how_friction_falls() -> None:
         low, high = fall[name].interval(0.99)
         assert low < truth < high
         assert fall[name].sigma < 0.1 * truth
+
+
+def test_a_table_under_load_tells_how_friction_grows_with_it() -> None:
+    """In both directions, and where one of them has more friction, too."""
+    mixed = sw.friction.MixedLubrication(coulomb=0.03, breakaway=0.05, stribeck_speed=3.0, viscous=2e-4, load_sensitivity=2.0)
+    speed, load = np.tile(BOTH_WAYS, 3), np.repeat([0.0, 0.15, -0.3], len(BOTH_WAYS))
+    for law in (mixed, sw.friction.Asymmetric(law=mixed, dry_asymmetry=0.1)):
+        noise = 3e-4 * np.random.default_rng(2).normal(size=len(speed))
+        best = fit_friction(FrictionTable(speed, law.steady(speed, load=load) + noise, load=load), sw.Gear())[0]
+        assert best.name.endswith("over the load")
+        (found,) = (each for each in best.fit.estimates if each.path.endswith("load_sensitivity"))
+        low, high = found.interval(0.99)
+        assert low < 2.0 < high
+        assert found.sigma < 0.1
+
+
+RUNS = np.repeat([2.0, 10.0, 40.0, -2.0, -10.0, -40.0], 50)
+PLACES = np.random.default_rng(3).uniform(0.0, 300.0, len(RUNS))
+
+
+def test_friction_over_the_turn_is_told_by_its_orders() -> None:
+    law = sw.friction.Cyclic(
+        law=sw.friction.Coulomb(coulomb=0.03, viscous=2e-4), order=[2, 4], amplitude=[0.2, 0.1], phase=[0.3, 1.0]
+    )
+    noise = 1e-3 * np.random.default_rng(4).normal(size=len(RUNS))
+    best = fit_friction(FrictionTable(RUNS, law.steady(RUNS, angle=PLACES) + noise, angle=PLACES), sw.Gear())[0]
+    assert best.name == "Coulomb and viscous, over the angle"
+    assert (best.law.order, best.law.amplitude) == (pytest.approx([2, 4]), pytest.approx([0.2, 0.1], abs=0.02))
+
+
+def test_what_no_order_describes_is_told_by_a_map() -> None:
+    """Torques at twelve angles that differ from speed to speed."""
+    level = np.random.default_rng(5).uniform(0.02, 0.05, 36)
+    law = sw.friction.AngleSpeedMap(speed=[2.0, 10.0, 40.0], level=level.tolist())
+    noise = 3e-4 * np.random.default_rng(6).normal(size=len(RUNS))
+    best = fit_friction(FrictionTable(RUNS, law.steady(RUNS, angle=PLACES) + noise, angle=PLACES), sw.Gear())[0]
+    assert best.name == "map over angle and speed"
+    off = [(estimate.value - truth) / estimate.sigma for estimate, truth in zip(best.fit.estimates, level, strict=True)]
+    assert np.mean(np.abs(off) <= 2.0) >= 0.9
+    assert best.coulomb == pytest.approx(level[:12].mean(), rel=0.01)
