@@ -31,17 +31,14 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
+from strainwave.identification.experiments.motion import near_rest, spectra, widest_cutoff
 from strainwave.messages import shortened
 
 PARAMETERS = ("inertia", "viscous", "coulomb", "offset")
 
 Array = NDArray[np.float64]
 
-_PASS_BAND = 0.4  # of the cut-off: 2/5, the literature's rule
-_HIGHEST_CUTOFF = 0.1  # of the sampling rate
-_NOISE_SHARE = 1e-3  # of the power of the filtered acceleration
 _JITTER = 0.01  # of a sampling step
-_REST = 3.0  # standard deviations; positions that differ by less are equal
 _EDGE_ROWS = 5  # lost to the ends of the filters, each side
 _LARGEST = 1e12  # in SI units; of a step, at least the reciprocal
 _FEWEST_ROWS = 10  # in each direction of motion (assumed)
@@ -209,9 +206,9 @@ def regression(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cutof
 
     position, torque, time = _checked(position, torque, time)
     step = float(time[-1] - time[0]) / (len(time) - 1)
-    frequency, acceleration, noise, position_noise = _spectra(position, step)
+    frequency, acceleration, noise, position_noise = spectra(position, step)
     if cutoff is None:
-        cutoff = _cutoff(frequency, acceleration, noise, 1 / step)
+        cutoff = widest_cutoff(frequency, acceleration, noise, 1 / step)
     # from one period within the record to half the sampling rate
     cutoff = arguments.number("cutoff", cutoff, "Hz", low=1.0 / float(time[-1] - time[0]), high=0.5 / step)
     every = round(1 / (step * cutoff))  # the filter of `decimate` ends at 0.8 of its Nyquist frequency: 0.4 cut-off
@@ -222,7 +219,7 @@ def regression(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cutof
     columns = _columns(speed, np.diff(smooth, 2) / step**2)
     # At rest and at the ends of the filters both sides of the equation are zeroed before the decimation filter, which
     # would otherwise carry their error into its neighbourhood.
-    valid = ~_near_rest(position, every, position_noise)[1:-1]
+    valid = ~near_rest(position, every, position_noise)[1:-1]
     valid[: _EDGE_ROWS * every] = valid[-_EDGE_ROWS * every :] = False
     rows = valid[::every]
     _require_both_directions(speed[::every][rows], cutoff)
@@ -257,52 +254,6 @@ def _correlated_lags(residual: Array) -> int:
     correlation = float(residual[1:] @ residual[:-1]) / power
     strength = 4 * correlation**2 / (1 - correlation**2) ** 2
     return min(int(1.1447 * np.cbrt(strength * len(residual))), len(residual) // 4)
-
-
-def _spectra(position: Array, step: float) -> tuple[Array, Array, Array, float]:
-    """What motion and noise contribute to the acceleration.
-
-    Above a quarter of the sampling rate the position is taken to hold only white noise; the median over that range does
-    not see single lines. The spectrum is estimated from the speed, which is flat enough not to leak over the decades
-    between motion and noise.
-
-    Returns:
-        frequency [Hz]; spectral density of the acceleration, and its part due to the noise [rad2/s4/Hz], all of shape
-        (n,); standard deviation of the noise of the position [rad]
-    """
-    from scipy import signal
-
-    frequency, speed = signal.welch(np.diff(position) / step, 1 / step, nperseg=len(position) // 8)
-    gain = (2 * np.sin(np.pi * frequency * step) / step) ** 2
-    upper = frequency > 0.25 / step
-    density = float(np.median(speed[upper] / gain[upper]))
-    return frequency, gain * speed, gain**2 * density, float(np.sqrt(density / (2 * step)))
-
-
-def _cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float) -> float:
-    """The highest cut-off at which noise is a negligible share of the acceleration in the pass band [Hz]."""
-    highest = _HIGHEST_CUTOFF * rate
-    within = frequency <= _PASS_BAND * highest
-    clean = np.cumsum(noise[within]) <= _NOISE_SHARE * np.cumsum(acceleration[within])
-    if clean[-1]:
-        return highest
-    edge = float(frequency[within][clean][-1]) if clean.any() else 0.0
-    if edge == 0.0:
-        raise ValueError(f"position: its noise exceeds {_NOISE_SHARE:g} of the acceleration's power at every frequency")
-    return edge / _PASS_BAND
-
-
-def _near_rest(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:
-    """Samples at rest, and those so close to rest that the position filter mixes the two.
-
-    A sample rests if the position `reach` samples earlier and later are equal within the noise. This finds the middle
-    of each stop; widening it by `reach` restores the stop, and by as much again covers the response of the filter.
-    """
-    from scipy import ndimage
-
-    padded = np.pad(position, reach, mode="edge")
-    resting = np.abs(padded[2 * reach :] - padded[: -2 * reach]) <= _REST * np.sqrt(2) * noise
-    return ndimage.maximum_filter1d(resting, 4 * reach + 1)
 
 
 def _checked(position: ArrayLike, torque: ArrayLike, time: ArrayLike) -> tuple[Array, Array, Array]:

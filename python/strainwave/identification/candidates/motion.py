@@ -1,0 +1,231 @@
+"""Logs of moving drives: inertia, gravity and friction that the torque along a measured motion tells, and which friction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, friction, loads
+from strainwave.equality import ComparedByFields
+from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, per_torque
+from strainwave.identification.fitting.fit import Fit, fit
+
+Array = NDArray[np.float64]
+
+BLOCKS = 10  # of a log, every second of which is held out while models are compared
+QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
+LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
+FALL = ("gear.friction_input.breakaway", "gear.friction_input.stribeck_speed")
+FOLLOWS = {FALL[0]: "gear.friction_input.coulomb"}
+CLEARLY = 0.98  # of an error held out: what is not smaller than that is chance
+TOLD = 2.5  # standard deviations: what is nearer to nothing is left out
+SMALL = 1e-3  # of the largest torque: a friction from which a fit can start
+
+
+@dataclass(frozen=True, eq=False)
+class MotionCandidate(ComparedByFields):
+    """A model of the friction fitted to logs of one drive.
+
+    Attributes:
+        name: what it describes
+        fit: the fit to the whole logs
+        error: rms of each log's effort, held out, over the rms of its effort about its mean, all logs together [1]
+    """
+
+    name: str
+    fit: Fit
+    error: float
+
+
+@dataclass(frozen=True)
+class Regression:
+    """What linear regression finds in one log, from which fits start; referred to the input.
+
+    Attributes:
+        inertia: of everything that turns [kg.m2]
+        viscous: [N.m.s/rad]
+        coulomb: [N.m]
+        offset: [N.m]
+        gravity: amplitude at the output [N.m]
+        phase: of the gravity [rad]
+        share: of the variation of the torque that is explained
+    """
+
+    inertia: float
+    viscous: float
+    coulomb: float
+    offset: float
+    gravity: float
+    phase: float
+    share: float
+
+    @property
+    def reversed(self) -> bool:
+        """Whether the torque is counted against the motion: then both inertia and friction come out negative."""
+        return self.inertia < 0.0 and self.coulomb + self.viscous < 0.0
+
+
+def regression(log: MotionLog, drive: Drive) -> Regression:
+    """Inertia, friction and gravity by linear least squares, as though friction were Coulomb's and viscous.
+
+    torque = J a + b v + c sgn v + o + (g_s sin q + g_c cos q) / i, in the pass band of the log
+    """
+    motion, ratio = log.motion, drive.gear.kinematics.ratio
+    angle = motion.angle / ratio
+    series = [motion.acceleration, motion.speed, np.sign(motion.speed), np.ones_like(angle)]
+    series += [np.sin(angle) / ratio, np.cos(angle) / ratio, *(each / ratio for each in log.regressors.values())]
+    columns = motion.filtered(np.stack(series)).T
+    torque = log.measured[0] / per_torque(drive, log.effort, motion) - motion.filtered(log.extra[np.newaxis] / ratio)[0]
+    size = np.linalg.norm(columns, axis=0)
+    weights = np.linalg.lstsq(columns / size, torque, rcond=1e-6)[0] / size
+    left = torque - columns @ weights
+    inertia, viscous, coulomb, offset = (float(each) for each in weights[:4])
+    return Regression(
+        inertia,
+        viscous,
+        coulomb,
+        offset,
+        float(np.hypot(*weights[4:6])),
+        float(np.arctan2(weights[5], weights[4])),
+        1.0 - float(np.var(left) / np.var(torque)),
+    )
+
+
+def fit_motion(
+    logs: Mapping[str, MotionLog],
+    drive: Drive,
+    *,
+    inertia: str = "load.inertia",
+    own_load: bool = False,
+    kept: Sequence[str] = (),
+    priors: Mapping[str, tuple[float, float]] | None = None,
+) -> tuple[MotionCandidate, ...]:
+    """Fits a rigid drive to logs of its motion by every friction that they can tell, and ranks them.
+
+    Args:
+        logs: by name
+        drive: to start from, with a load of inertia or pendulum
+        inertia: the inertia that is not known, as a path of the drive
+        own_load: whether each log has a load of its own, inertia and gravity
+        kept: paths that are not fitted, as friction that a better measurement has told
+        priors: what is known of free parameters: value and standard deviation
+
+    Returns:
+        candidates, best first: the one with fewest parameters whose held-out error is within 2 % of the least
+
+    Raises:
+        ValueError: a log cannot be explained by any inertia and friction
+    """
+    found = {name: regression(log, drive) for name, log in logs.items()}
+    start, free = _start(drive, found, inertia)
+    load = [path for path in free if path.startswith("load.")] if own_load else []
+    logs = _with_delay(logs, start, free, load)
+    tried = [_candidate(each, logs, free, load, kept, priors or {}) for each in _frictions(start)]
+    straight, better = tried[0], [each for each in tried[1:] if each.error < CLEARLY * tried[0].error]
+    if len(better) == len(tried) - 1:  # each of them tells something of its own, so that both together may tell more
+        tried.append(_candidate(_together(straight.fit.model), logs, free, load, kept, priors or {}))
+    best = min(each.error for each in tried)
+    return tuple(sorted(tried, key=lambda each: (each.error > best / CLEARLY, len(each.fit.estimates), each.error)))
+
+
+def _start(drive: Drive, found: Mapping[str, Regression], inertia: str) -> tuple[Drive, list[str]]:
+    """The drive near the measurement, and what is free of it."""
+    middle = {
+        name: float(np.median([getattr(each, name) for each in found.values()])) for name in ("inertia", "viscous", "coulomb")
+    }
+    heaviest = max(found.values(), key=lambda each: each.gravity)
+    ratio, least = drive.gear.kinematics.ratio, SMALL * max(abs(middle["coulomb"]), 1e-6)
+    law = friction.Coulomb(
+        coulomb=max(middle["coulomb"], least), breakaway=max(middle["coulomb"], least), viscous=max(middle["viscous"], 0.0)
+    )
+    drive = drive.replace(gear=drive.gear.replace(friction_input=law))
+    free = ["gear.friction_input.coulomb", "gear.friction_input.viscous"]
+    total = max(middle["inertia"], 1e-9)
+    if inertia == "load.inertia":
+        carried = max(total - drive.motor.inertia - drive.gear.input_inertia, 0.02 * total) * ratio**2
+        load: Any = loads.Pendulum(inertia=carried, gravity_torque=heaviest.gravity, gravity_phase=heaviest.phase)
+        drive, free = drive.replace(load=load), [*free, inertia, "load.gravity_torque", "load.gravity_phase"]
+    else:
+        rest = total - drive.gear.input_inertia - inertia_of(drive) / ratio**2
+        drive = drive.replace(motor=drive.motor.replace(inertia=max(rest, 0.02 * total)))
+        free = [*free, inertia]
+    return drive, free
+
+
+def _with_delay(logs: Mapping[str, MotionLog], drive: Drive, free: Sequence[str], load: Sequence[str]) -> dict[str, MotionLog]:
+    """The logs, with a delay as an unknown of those where it is found."""
+    found = {}
+    for name, log in logs.items():
+        tried = fit(drive, log.with_delay(), free)
+        delay = next(each for each in tried.estimates if each.path == "delay")
+        found[name] = log.with_delay() if abs(delay.value) > TOLD * delay.sigma else log
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Form(ComparedByFields):
+    """A friction to be tried: its name, the drive that has it, and what is free and tied beside the rest."""
+
+    name: str
+    drive: Drive
+    free: tuple[str, ...]
+    ties: Mapping[str, str]
+
+
+def _frictions(drive: Drive) -> list[_Form]:
+    """Coulomb's friction alone, with a fall at low speed, and with a loss under load."""
+    return [_Form("Coulomb and viscous", drive, (), FOLLOWS), _falling(drive), _lossy(drive)]
+
+
+def _falling(drive: Drive) -> _Form:
+    law: Any = drive.gear.friction_input
+    falling = friction.Stribeck(coulomb=law.coulomb, breakaway=1.3 * law.coulomb, stribeck_speed=3.0, viscous=law.viscous)
+    return _Form("with a fall at low speed", drive.replace(gear=drive.gear.replace(friction_input=falling)), FALL, {})
+
+
+def _lossy(drive: Drive) -> _Form:
+    lossy = friction.LoadDependent(**dict.fromkeys(QUADRANTS, 0.02))
+    alike = dict.fromkeys(LOSSES[1:], LOSSES[0])  # one for each quadrant cannot be told from inertia and gravity
+    return _Form(
+        "with loss under load", drive.replace(gear=drive.gear.replace(friction_mesh=lossy)), LOSSES[:1], FOLLOWS | alike
+    )
+
+
+def _together(drive: Drive) -> _Form:
+    falling = _falling(drive)
+    lossy = _lossy(falling.drive)
+    ties = {path: other for path, other in lossy.ties.items() if path not in FOLLOWS}
+    return _Form("with loss under load and a fall at low speed", lossy.drive, (*FALL, *lossy.free), ties)
+
+
+def _candidate(
+    form: _Form,
+    logs: Mapping[str, MotionLog],
+    free: Sequence[str],
+    load: Sequence[str],
+    kept: Sequence[str],
+    priors: Mapping[str, tuple[float, float]],
+) -> MotionCandidate:
+    paths = [path for path in (*free, *form.free) if path not in kept]
+    given: dict[str, Any] = {
+        "ties": form.ties,
+        "per_record": load if len(logs) > 1 else (),
+        "priors": {path: prior for path, prior in priors.items() if path in paths},
+    }
+    masks = {name: _training(log) for name, log in logs.items()}
+    held = fit(form.drive, dict(logs), paths, training=masks, **given)
+    left = sum(float(np.sum(part.residuals[:, ~part.training] ** 2) / np.var(part.experiment.measured)) for part in held.parts)
+    count = sum(int(np.sum(~part.training)) for part in held.parts)
+    return MotionCandidate(form.name, fit(held.model, dict(logs), paths, **given), float(np.sqrt(left / count)))
+
+
+def _training(log: MotionLog) -> NDArray[np.bool_]:
+    """Every second of some blocks of time."""
+    time = log.time
+    block = np.minimum((BLOCKS * (time - time[0]) / (time[-1] - time[0])).astype(int), BLOCKS - 1)
+    training: NDArray[np.bool_] = block % 2 == 0
+    return training

@@ -1,0 +1,166 @@
+"""The motion of a drive from its measured angle: smoothed, differentiated, and where it rests.
+
+Torque and all that is compared with it then pass one and the same filter without phase shift. A filter common to both sides of
+an equation that is linear does not bias it (`dynamics.inverse_dynamics` says where this comes from).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.equality import ComparedByFields
+
+Array = NDArray[np.float64]
+
+REST = 3.0  # standard deviations; positions that differ by less are equal
+NOISE_SHARE = 1e-3  # of the power of the filtered acceleration
+HIGHEST_CUTOFF = 0.1  # of the sampling rate
+PASS_BAND = 0.4  # of the cut-off: 2/5, the literature's rule
+WIDER = 4.0  # cut-off of the speed over that of the acceleration: when it reverses must be known to milliseconds
+EDGE = 5  # samples of the decimated series that the ends of the filters spoil, each side
+GAP = 2.5  # intervals: a longer one is a gap, over which nothing is known
+FEWEST = 200  # samples that a motion is worked out from
+
+
+@dataclass(frozen=True, eq=False)
+class Motion(ComparedByFields):
+    """How a shaft moved, on a regular grid.
+
+    Attributes:
+        time: of the grid [s], shape (n,)
+        angle, speed, acceleration: of the shaft, smoothed [rad, rad/s, rad/s2], shape (n,)
+        known: where it moves, and is known: not at rest, in a gap or at the ends, shape (n,)
+        every: one of so many samples of the grid is compared
+        cutoff: of the filter on the angle [Hz]; what is compared is compared up to 0.4 of it
+    """
+
+    time: Array
+    angle: Array
+    speed: Array
+    acceleration: Array
+    known: NDArray[np.bool_]
+    every: int
+    cutoff: float
+
+    @property
+    def rows(self) -> NDArray[np.intp]:
+        """The samples of the grid that are compared."""
+        rows: NDArray[np.intp] = np.arange(0, len(self.time), self.every)
+        return rows[self.known[rows]]
+
+    def filtered(self, series: Array) -> Array:
+        """A series on the grid in the pass band, at the samples compared, shape (…, rows)."""
+        from scipy import signal
+
+        step = (self.time[-1] - self.time[0]) / (len(self.time) - 1)
+        low_pass = signal.butter(4, PASS_BAND * self.cutoff, fs=1.0 / step, output="sos")
+        smooth: Array = signal.sosfiltfilt(low_pass, np.where(self.known, series, 0.0), axis=-1)
+        return smooth[..., self.rows]
+
+
+def motion_of(time: Array, angle: Array, cutoff: float | None = None, slid: float = 0.0) -> Motion:
+    """The motion of a shaft from its angle at instants that rise, with gaps and no other order in them.
+
+    Args:
+        time: [s], shape (n,), rising
+        angle: [rad], shape (n,)
+        cutoff: of the filter on the angle [Hz]; by default the highest at which the noise of the angle is a negligible share of
+            the acceleration, and at most a tenth of the rate
+        slid: angle over which friction turns over at a reversal [rad]: as far before and behind one nothing is compared
+
+    Raises:
+        ValueError: too few samples, a cut-off that the record does not hold, or an angle whose noise hides the motion
+    """
+    from scipy import signal
+    from scipy.interpolate import Akima1DInterpolator
+
+    if len(time) < FEWEST:
+        raise ValueError(f"the log has {len(time)} samples; at least {FEWEST} are needed to tell how it moves")
+    step = float(np.median(np.diff(time)))
+    grid = np.arange(0.0, float(time[-1] - time[0]) + 0.5 * step, step) + float(time[0])
+    regular = np.asarray(Akima1DInterpolator(time, angle, extrapolate=True)(grid))
+    frequency, power, of_noise, noise = spectra(regular, step)
+    if cutoff is None:
+        cutoff = widest_cutoff(frequency, power, of_noise, 1.0 / step)
+    every = max(1, round(1.0 / (step * 2.0 * PASS_BAND * cutoff)))  # at twice the pass band, where noise is white
+    smooth = signal.sosfiltfilt(signal.butter(4, cutoff, fs=1.0 / step, output="sos"), regular)
+    quick = signal.sosfiltfilt(signal.butter(4, min(WIDER * cutoff, 0.4 / step), fs=1.0 / step, output="sos"), regular)
+    speed = np.gradient(quick, step)
+    acceleration = np.zeros_like(smooth)
+    acceleration[1:-1] = np.diff(smooth, 2) / step**2
+    known = ~near_rest(regular, every, noise) & ~_in_gap(time, grid, step, every) & ~_turning(regular, speed, slid)
+    known[: EDGE * every] = known[-EDGE * every :] = False
+    return Motion(grid, smooth, speed, acceleration, known, every, cutoff)
+
+
+def _turning(angle: Array, speed: Array, slid: float) -> NDArray[np.bool_]:
+    """Samples so near to a reversal that friction turns over there."""
+    from scipy import ndimage
+
+    turns = np.flatnonzero(np.diff(np.sign(speed)) != 0.0)
+    if slid == 0.0 or len(turns) == 0:
+        return np.zeros(len(angle), bool)
+    after = np.searchsorted(turns, np.arange(len(angle)))
+    near = np.zeros(len(angle), bool)
+    for place in (after - 1, after):
+        turn = turns[np.clip(place, 0, len(turns) - 1)]
+        near |= (np.abs(angle - angle[turn]) < slid) & (place >= 0) & (place < len(turns))
+    return ndimage.binary_dilation(near)
+
+
+def _in_gap(time: Array, grid: Array, step: float, reach: int) -> NDArray[np.bool_]:
+    """Samples of a grid within a gap of the instants, and so near that the filters mix the two."""
+    from scipy import ndimage
+
+    after = np.clip(np.searchsorted(time, grid), 1, len(time) - 1)
+    within = time[after] - time[after - 1] > GAP * step
+    return ndimage.maximum_filter1d(within, 2 * reach + 1)
+
+
+def spectra(position: Array, step: float) -> tuple[Array, Array, Array, float]:
+    """What motion and noise contribute to the acceleration.
+
+    Above a quarter of the sampling rate the position is taken to hold only white noise; the median over that range does
+    not see single lines. The spectrum is estimated from the speed, which is flat enough not to leak over the decades
+    between motion and noise.
+
+    Returns:
+        frequency [Hz]; spectral density of the acceleration, and its part due to the noise [rad2/s4/Hz], all of shape
+        (n,); standard deviation of the noise of the position [rad]
+    """
+    from scipy import signal
+
+    frequency, speed = signal.welch(np.diff(position) / step, 1 / step, nperseg=len(position) // 8)
+    gain = (2 * np.sin(np.pi * frequency * step) / step) ** 2
+    upper = frequency > 0.25 / step
+    density = float(np.median(speed[upper] / gain[upper]))
+    return frequency, gain * speed, gain**2 * density, float(np.sqrt(density / (2 * step)))
+
+
+def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float) -> float:
+    """The highest cut-off at which noise is a negligible share of the acceleration in the pass band [Hz]."""
+    highest = HIGHEST_CUTOFF * rate
+    within = frequency <= PASS_BAND * highest
+    clean = np.cumsum(noise[within]) <= NOISE_SHARE * np.cumsum(acceleration[within])
+    if clean[-1]:
+        return highest
+    edge = float(frequency[within][clean][-1]) if clean.any() else 0.0
+    if edge == 0.0:
+        raise ValueError(f"position: its noise exceeds {NOISE_SHARE:g} of the acceleration's power at every frequency")
+    return edge / PASS_BAND
+
+
+def near_rest(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:
+    """Samples at rest, and those so close to rest that the position filter mixes the two.
+
+    A sample rests if the position `reach` samples earlier and later are equal within the noise. This finds the middle
+    of each stop; widening it by `reach` restores the stop, and by as much again covers the response of the filter.
+    """
+    from scipy import ndimage
+
+    padded = np.pad(position, reach, mode="edge")
+    resting = np.abs(padded[2 * reach :] - padded[: -2 * reach]) <= REST * np.sqrt(2) * noise
+    return ndimage.maximum_filter1d(resting, 4 * reach + 1)

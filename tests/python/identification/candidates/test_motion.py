@@ -1,0 +1,171 @@
+"""Logs of moving drives: what the torque along a measured motion tells, against equations written down here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.candidates.motion import LOSSES, fit_motion, regression
+from strainwave.identification.experiments.motion_log import MotionLog, spoilt
+
+RATE, RATIO = 250.0, -80.0
+TIME = np.arange(0.0, 20.0, 1.0 / RATE)
+MOTOR = 1e-4  # kg.m2, known
+ANGLE = 0.9 * np.sin(0.7 * TIME) + 0.25 * np.sin(2.9 * TIME + 0.6) + 0.05 * np.sin(11.9 * TIME)  # rad, of the output
+SPEED = 0.63 * np.cos(0.7 * TIME) + 0.725 * np.cos(2.9 * TIME + 0.6) + 0.595 * np.cos(11.9 * TIME)
+RISE = -0.441 * np.sin(0.7 * TIME) - 2.1025 * np.sin(2.9 * TIME + 0.6) - 7.0805 * np.sin(11.9 * TIME)
+
+
+def drive() -> sw.Drive:
+    gear = GearSet.read("hfuc-20-80").gear.replace(input_inertia=0.0)
+    motor = sw.motor.CurrentSource(torque_constant=0.08, inertia=MOTOR)
+    return sw.Drive(gear=gear, motor=motor, load=sw.loads.Inertia(inertia=0.1))
+
+
+def torque(truth: dict[str, float]) -> NDArray[np.float64]:
+    """Of the motor [N.m], by hand."""
+    load = truth["inertia"] * RISE + truth["gravity"] * np.sin(ANGLE + truth["phase"])
+    motor = MOTOR * RATIO * RISE + load / RATIO + truth["viscous"] * RATIO * SPEED
+    dry = truth["coulomb"] + truth["loss"] * np.abs(load / RATIO)
+    dry += truth.get("asymmetry", 0.0) * truth["coulomb"] * np.sign(RATIO * SPEED)
+    return np.asarray(motor + dry * np.sign(RATIO * SPEED))
+
+
+def record(truth: dict[str, float], noise: float = 0.0, seed: int = 0, **shifted: Any) -> sw.Recording:
+    random = np.random.default_rng(seed)
+    current = torque(truth) / 0.08
+    late = np.interp(TIME - shifted.get("delay", 0.0), TIME, current) + shifted.get("zero", 0.0)
+    columns = {
+        "time": TIME,
+        "input_angle": RATIO * ANGLE + 1e-4 * random.standard_normal(len(TIME)),
+        "current": late + noise * random.standard_normal(len(TIME)),
+    }
+    return sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})
+
+
+TRUTH = {"inertia": 0.8, "gravity": 10.0, "phase": 0.4, "coulomb": 0.05, "viscous": 3e-4, "loss": 0.0}
+NAMES = {
+    "inertia": "load.inertia", "gravity": "load.gravity_torque", "phase": "load.gravity_phase",
+    "coulomb": "gear.friction_input.coulomb", "viscous": "gear.friction_input.viscous", "loss": LOSSES[0],
+}  # fmt: skip
+numbers = st.floats(0.5, 2.0)
+
+
+@settings(max_examples=5, deadline=None)
+@given(inertia=numbers, gravity=numbers, phase=st.floats(-3.0, 3.0), coulomb=numbers, viscous=numbers)
+def test_regression_finds_what_a_motor_without_noise_gave(**scale: float) -> None:
+    truth = {name: TRUTH[name] * factor for name, factor in scale.items()} | {"phase": scale["phase"], "loss": 0.0}
+    found = regression(MotionLog.of(record(truth), drive()), drive())
+    assert found.inertia == pytest.approx(MOTOR + truth["inertia"] / RATIO**2, rel=2e-3)
+    assert found.coulomb == pytest.approx(truth["coulomb"], rel=5e-3)
+    assert found.viscous == pytest.approx(truth["viscous"], rel=1e-2)
+    assert found.gravity == pytest.approx(truth["gravity"], rel=5e-3)
+    assert np.exp(1j * found.phase) == pytest.approx(np.exp(1j * truth["phase"]), abs=5e-3)
+    assert found.share > 0.999
+    assert not found.reversed
+
+
+def test_a_torque_counted_the_other_way_makes_inertia_and_friction_negative() -> None:
+    reversed_record = record(TRUTH)
+    turned = reversed_record.with_column("current", -reversed_record["current"], "A")
+    assert regression(MotionLog.of(turned, drive()), drive()).reversed
+
+
+def test_slopes_agree_with_differences() -> None:
+    model = drive().replace(load=sw.loads.Pendulum(inertia=0.7, gravity_torque=9.0, gravity_phase=0.2))
+    lossy = sw.friction.LoadDependent(driving_forward=0.02, driving_reverse=0.02, backdriving_forward=0.02)
+    law = sw.friction.Stribeck(coulomb=0.05, breakaway=0.07, stribeck_speed=3.0, viscous=3e-4)
+    model = model.replace(gear=model.gear.replace(friction_input=law, friction_mesh=lossy))
+    base = record(TRUTH)
+    log = MotionLog.of(base.with_column("arm", np.sin(TIME), "N.m"), model, regressors=("arm",)).with_delay()
+    from strainwave import _core
+
+    described = _core.parameters(model)
+    paths = (
+        "gear.friction_input.coulomb",
+        "gear.friction_mesh.driving_forward",
+        "load.inertia",
+        "motor.inertia",
+        "motor.torque_constant",
+    )
+    places = [[each[0] for each in described].index(path) for path in paths]
+    nuisances = np.array([0.1, 2e-3, 0.3])
+    _, slopes = log.predict(model, places, nuisances)
+
+    def predicted(values: list[float], given: NDArray[np.float64]) -> NDArray[np.float64]:
+        return log.predict(_core.with_numbers(model, values), [], given)[0]
+
+    values = [each[1] for each in described]
+    for slope, place in zip(slopes, places, strict=False):
+        step = 1e-4 * values[place]
+        ends = [[*values[:place], values[place] + way * step, *values[place + 1 :]] for way in (1.0, -1.0)]
+        apart = (predicted(ends[0], nuisances) - predicted(ends[1], nuisances)) / (2.0 * step)
+        assert np.sqrt(np.mean((slope - apart) ** 2)) < 1e-3 * np.sqrt(np.mean(apart**2))  # steps meet kinks in other places
+    for i, step in enumerate((1e-3, 1e-6, 1e-3)):
+        moved = np.eye(3)[i] * step
+        apart = (predicted(values, nuisances + moved) - predicted(values, nuisances - moved)) / (2.0 * step)
+        slope = slopes[len(places) + i]
+        assert np.sqrt(np.mean((slope - apart) ** 2)) < 0.05 * np.sqrt(np.mean(apart**2))  # steps are smoothed differently
+
+
+def test_intervals_hold_the_truth_and_the_loss_is_found() -> None:
+    truth, distances = TRUTH | {"loss": 0.05}, []
+    for seed in range(4):
+        best = fit_motion({"log": MotionLog.of(record(truth, 0.05, seed), drive())}, drive())[0]
+        assert best.name == "with loss under load"
+        values = {each.path: each for each in best.fit.estimates}
+        distances += [(values[path].value - truth[name]) / values[path].sigma for name, path in NAMES.items()]
+    assert np.mean(np.abs(distances) < 2.0) >= 0.8
+    assert 0.5 < np.sqrt(np.mean(np.square(distances))) < 1.6
+
+
+def test_a_delay_is_found_and_does_not_bias_friction() -> None:
+    best = fit_motion({"log": MotionLog.of(record(TRUTH, 0.05, 1, delay=6e-3, zero=0.2), drive())}, drive())[0]
+    values = {each.path: each for each in best.fit.estimates}
+    assert values["delay"].value == pytest.approx(6e-3, abs=3.0 * values["delay"].sigma)
+    assert values["current_zero"].value == pytest.approx(0.2, abs=3.0 * values["current_zero"].sigma)
+    for name in ("coulomb", "viscous", "inertia"):
+        assert abs(values[NAMES[name]].value - TRUTH[name]) < 4.0 * values[NAMES[name]].sigma
+
+
+def test_several_logs_share_the_friction_and_have_their_own_loads() -> None:
+    truths = {"light": TRUTH | {"inertia": 0.3, "gravity": 3.0}, "heavy": TRUTH | {"inertia": 1.6, "gravity": 20.0}}
+    logs = {name: MotionLog.of(record(truth, 0.05, 2), drive()) for name, truth in truths.items()}
+    best = fit_motion(logs, drive(), own_load=True)[0]
+    values = {each.path: each for each in best.fit.estimates}
+    assert abs(values[NAMES["coulomb"]].value - TRUTH["coulomb"]) < 4.0 * values[NAMES["coulomb"]].sigma
+    for name, truth in truths.items():
+        found = values[f"load.inertia @ {name}"]
+        assert abs(found.value - truth["inertia"]) < 4.0 * found.sigma
+
+
+def test_outliers_and_clipped_samples_are_found_and_no_others() -> None:
+    random = np.random.default_rng(3)
+    clean = np.sin(TIME) + 0.01 * random.standard_normal(len(TIME))
+    assert np.mean(spoilt(clean)) < 1e-3
+    clipped = np.clip(clean, -0.8, 0.8)
+    assert np.mean(spoilt(clipped)[np.abs(clean) > 0.8]) == 1.0
+    assert np.mean(spoilt(clipped)[np.abs(clean) < 0.8]) < 1e-3
+    outlying = clean.copy()
+    hit = random.choice(len(TIME), 100, replace=False)
+    outlying[hit] += 3.0 * np.sign(random.standard_normal(100))
+    assert np.mean(spoilt(outlying)[hit]) > 0.95
+    assert np.mean(np.delete(spoilt(outlying), hit)) < 0.01
+
+
+def test_a_log_that_does_not_tell_the_torque_or_the_motion_is_refused() -> None:
+    only = sw.Recording({"time": TIME, "input_angle": RATIO * ANGLE}, {"time": "s", "input_angle": "rad"})
+    with pytest.raises(ValueError, match="which tell the torque"):
+        MotionLog.of(only, drive())
+    current = sw.Recording({"time": TIME, "current": torque(TRUTH)}, {"time": "s", "current": "A"})
+    with pytest.raises(ValueError, match="needs an angle"):
+        MotionLog.of(current, drive())
+    braked = drive().replace(load=sw.loads.TorsionSpring(inertia=0.1, stiffness=1.0))
+    with pytest.raises(ValueError, match="inertia or pendulum"):
+        MotionLog.of(record(TRUTH), braked).predict(braked, [], np.zeros(1))
