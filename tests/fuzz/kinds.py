@@ -12,6 +12,7 @@ from numpy.random import Generator
 
 from tests.fuzz.calls import calls_case, scalars_case
 from tests.fuzz.drives import drives_case
+from tests.fuzz.formats import formats_case, recognised_case
 from tests.fuzz.gear_files import name_case, toml_case
 from tests.fuzz.laws import Case
 from tests.fuzz.measurements import measurements_case
@@ -42,6 +43,8 @@ KINDS = {
     "scenarios": Kind(scenarios_case, 3, 2.0),
     "names": Kind(name_case, 1, 2.0),
     "parquet": Kind(parquet_case, 4, 2.0),
+    "recognised": Kind(recognised_case, 5, 2.0),
+    "formats": Kind(formats_case, 2, 5.0),
     "units": Kind(units_case, 4, 0.5),
     "calls": Kind(calls_case, 12, 10.0),
     # The slowest of what runs drives is what all steps take that an adaptive run may take.

@@ -93,7 +93,9 @@ def check_against_csv(recording: sw.Recording, data: bytes) -> None:
     ended = re.findall(r"[^\r\n]+(?:\r\n|\r|\n)?", data.decode("utf-8-sig"))
     lines = [line for line in ended if line.strip(" \r\n") and line[0] != "#"]
     delimiter = next(mark for mark in "\t;," if mark in lines[0] or mark == ",")
-    _, *rows = csv.reader(io.StringIO("".join(lines), newline=""), delimiter=delimiter, strict=True)
+    rows = list(csv.reader(io.StringIO("".join(lines), newline=""), delimiter=delimiter, strict=True))
+    if not all(_NUMBER.fullmatch(cell.strip()) for cell in rows[0]):  # else the names stand in a comment
+        rows = rows[1:]
     assert len(rows) == len(recording), f"{len(recording)} rows, where Python's csv finds {len(rows)}"
     for place, name in enumerate(recording.names):
         cells = [row[place].strip(" \t") for row in rows]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
-from strainwave.files.labels import unreadable
+from strainwave.files.labels import read_by_others
 from strainwave.messages import one_line
 
 Array = NDArray[np.float64]
@@ -26,29 +26,26 @@ def open_bag(path: str | Path) -> GridTable:
     The time of a joint's state is that of its header; that of a plain number is when it was recorded. It counts from the first.
     """
     try:
-        from rosbags.highlevel import AnyReader, AnyReaderError
-        from rosbags.rosbag1 import ReaderError as Reader1Error
-        from rosbags.rosbag2 import ReaderError as Reader2Error
-        from rosbags.serde import SerdeError
+        from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ImportError:
         raise ImportError(f"{Path(path).name}: bags are read by rosbags: pip install strainwave[formats]") from None
 
     samples: dict[str, list[tuple[int, dict[str, float]]]] = {}
-    try:
-        with AnyReader([Path(path)], default_typestore=get_typestore(Stores.LATEST)) as reader:
-            wanted = [each for each in reader.connections if each.msgtype in (JOINTS, *NUMBERS)]
-            several = len({each.topic for each in wanted if each.msgtype == JOINTS}) > 1
-            for connection, stamp, data in reader.messages(wanted) if wanted else ():
-                message: Any = reader.deserialize(data, connection.msgtype)
-                if connection.msgtype == JOINTS:
-                    row = dict(_of_joints(message, f"{connection.topic.strip('/')}." if several else ""))
-                    samples.setdefault(connection.topic, []).append((_stamp(message) or stamp, row))
-                else:
-                    name = connection.topic.strip("/").replace("/", ".")
-                    samples.setdefault(connection.topic, []).append((stamp, {name: float(message.data)}))
-    except (OSError, AnyReaderError, Reader1Error, Reader2Error, SerdeError, ValueError, KeyError, AssertionError) as error:
-        raise ValueError(unreadable(path, error)) from None
+    with (
+        read_by_others(path, "bag"),
+        AnyReader([Path(path)], default_typestore=get_typestore(Stores.LATEST)) as reader,
+    ):
+        wanted = [each for each in reader.connections if each.msgtype in (JOINTS, *NUMBERS)]
+        several = len({each.topic for each in wanted if each.msgtype == JOINTS}) > 1
+        for connection, stamp, data in reader.messages(wanted) if wanted else ():
+            message: Any = reader.deserialize(data, connection.msgtype)
+            if connection.msgtype == JOINTS:
+                row = dict(_of_joints(message, f"{connection.topic.strip('/')}." if several else ""))
+                samples.setdefault(connection.topic, []).append((_stamp(message) or stamp, row))
+            else:
+                name = connection.topic.strip("/").replace("/", ".")
+                samples.setdefault(connection.topic, []).append((stamp, {name: float(message.data)}))
     begin = min((rows[0][0] for rows in samples.values()), default=0)
     grids = [_grid(rows, begin) for rows in samples.values()]
     names = [name for grid in grids for name in grid.columns]

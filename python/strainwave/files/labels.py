@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import re
+import sys
+import traceback
+import warnings
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -125,6 +130,31 @@ def _unit(file: str, label: Label, name: str, given: str | None) -> str:
 def unreadable(path: str | Path, error: Exception) -> str:
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error).partition("\n")[0]
     return one_line(f"{path} cannot be read: {reason}")
+
+
+@contextmanager
+def read_by_others(path: str | Path, kind: str) -> Iterator[None]:
+    """Says in one line that a file cannot be read, whatever a library raises of it, and whatever its objects say when they end.
+
+    Libraries for binary formats raise any error of a damaged file, in words that say nothing to who wrote it.
+    """
+    said, sys.unraisablehook = sys.unraisablehook, lambda unraisable: None
+    try:
+        yield
+    except (ImportError, NotImplementedError):
+        raise
+    except Exception as error:
+        cause: BaseException | None = error
+        while cause is not None:
+            traceback.clear_frames(cause.__traceback__)
+            cause = cause.__context__
+        with warnings.catch_warnings(action="ignore"):
+            gc.collect()  # so that half-made objects end here
+        if isinstance(error, OSError) and error.strerror:
+            raise ValueError(unreadable(path, error)) from None
+        raise ValueError(one_line(f"{path} cannot be read: it is damaged, or no {kind} file")) from None
+    finally:
+        sys.unraisablehook = said
 
 
 def seconds_since_first(stamps: NDArray[np.datetime64]) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.labels import label_of, unreadable
+from strainwave.files.labels import label_of, read_by_others
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
@@ -49,15 +49,13 @@ def open_mat(path: str | Path) -> ArrayTable:
 
 def _variables(path: Path) -> Iterator[tuple[str, Any]]:
     from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
 
     try:
-        found = loadmat(path, simplify_cells=True, chars_as_strings=True)
+        with read_by_others(path, "MAT"):
+            found = loadmat(path, simplify_cells=True, chars_as_strings=True)
     except NotImplementedError:  # version 7.3
         yield from _of_hdf5(path)
         return
-    except (OSError, MatReadError, ValueError, TypeError, EOFError, IndexError, KeyError, MemoryError, OverflowError) as error:
-        raise ValueError(unreadable(path, error)) from None
     yield from ((name, value) for name, value in found.items() if not name.startswith("__"))
 
 
@@ -66,17 +64,15 @@ def _of_hdf5(path: Path) -> Iterator[tuple[str, Any]]:
         import h5py
     except ImportError:
         raise ImportError(f"{path.name}: MAT files of version 7.3 are read by h5py: pip install strainwave[formats]") from None
-    try:
-        with h5py.File(path, "r") as opened:
-            for name, value in opened.items():
-                if name.startswith("#"):  # MATLAB's own
-                    continue
-                if isinstance(value, h5py.Group):
-                    yield name, {key: each[()] for key, each in value.items() if isinstance(each, h5py.Dataset)}
-                else:
-                    yield name, value[()]
-    except (OSError, RuntimeError, KeyError) as error:
-        raise ValueError(unreadable(path, error)) from None
+    with read_by_others(path, "MAT"), h5py.File(path, "r") as opened:
+        found = {
+            name: {key: each[()] for key, each in value.items() if isinstance(each, h5py.Dataset)}
+            if isinstance(value, h5py.Group)
+            else value[()]
+            for name, value in opened.items()
+            if not name.startswith("#")  # MATLAB's own
+        }
+    yield from found.items()
 
 
 def _series(name: str, value: Any, depth: int = 1) -> Iterator[tuple[str, Array]]:

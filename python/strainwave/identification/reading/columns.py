@@ -35,7 +35,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
         sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
         channel = Channel(found.quantity, found.side if sided else None, found.commanded)
         if not any(column.channel == channel for column in said):
-            unit = "s" if content == "dates" else found.unit or label.unit
+            unit = "s" if content == "dates" else found.unit or label.unit or None
             told.append(Column(position, label, channel, found.which, found.robot, unit=unit))
     return said + _of_one_joint(table, told, mapping)
 
@@ -52,7 +52,7 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
             raise ValueError(one_line(f"{table.file} {fault} {quoted(wanted)} to be the {name}; it has {there}"))
         label = table.labels[places[0]]
         told = meaning(label)
-        unit = label.unit or (told.unit if told and told.quantity == channel.quantity else None)
+        unit = label.unit or (told.unit if told and told.quantity == channel.quantity else None) or None
         unit = "s" if table.contents[places[0]] == "dates" else unit
         found.append(Column(places[0], label, channel, said=True, unit=unit))
     return found

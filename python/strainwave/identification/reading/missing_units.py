@@ -129,6 +129,7 @@ def _pairs(columns: Sequence[Column]) -> list[tuple[Column, Column]]:
     return [(angle, speed) for angle in kinds[0] for speed in kinds[1] if angle.channel.side == speed.channel.side]
 
 
+@np.errstate(all="ignore")
 def _slope(angle: Array, speed: Array, time: Array) -> float:
     """How much of the speed there is for each unit of the angle's slope, by least squares; 0 where nothing moves."""
     apart = max(2, len(time) // 5000)
@@ -137,7 +138,7 @@ def _slope(angle: Array, speed: Array, time: Array) -> float:
     middle = speed[forward + apart // 2]
     square = float(rate @ rate)
     related = square > 0.0 and middle @ middle > 0.0 and (rate @ middle) ** 2 > 0.5 * square * (middle @ middle)
-    return float(rate @ middle) / square if related else 0.0
+    return float(rate @ middle) / square if related and np.isfinite(square) else 0.0
 
 
 def _fitting(slope: float, units: Mapping[int, str], angle: Column, speed: Column, sure: set[int]) -> list[tuple[str, str]]:

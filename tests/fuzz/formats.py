@@ -1,0 +1,106 @@
+"""MAT, MDF and bag files with bytes changed, and text tables that may be measurements of any kind."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import strainwave as sw
+from numpy.random import Generator
+from strainwave.files.tables import open_table
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import Recognised, recognise
+
+from tests.fuzz.laws import Case, described, finite
+from tests.fuzz.mutation import encoded, mutated, mutated_bytes, picked
+
+WORDS = (
+    "time [s]", "t", "Zeit (ms)", "speed [rpm]", "Drehzahl [1/min]", "torque [N.m]", "tau", "q", "dq", "q1", "q2", "rpm",
+    "counts", "motor_angle [deg]", "link_angle [deg]", "current [A]", "voltage [V]", "command [deg]", "twist [arcmin]", "J3",
+    "position", "1970-01-01T00:00:00Z", "2026-02-31 25:00", "nan", "", "1e300", "-1e300", "1e-320", "360", "16384", "# t q",
+)  # fmt: skip
+HEADERS = (
+    "time [s],command [deg],current [A],motor_angle [deg]", "t,q,dq,tau", "rpm,torque [mNm]", "twist [arcmin],torque [N.m]",
+    "Zeit,Drehzahl [1/min],Strom [A]", "input_angle [deg],input_torque [N.m]", "motor [deg],link [deg]", "time_s,torque_Nm",
+    "time [s],q1,q2,tau1,tau2", "1,2,3", "t [ms],theta_m,i",
+)  # fmt: skip
+SCALES = (*8 * (1.0,), 1e-300, 1e-3, 1e3, 1e150, 1e300)
+SUFFIXES = ("mat", "73.mat", "mf4", "bag", "mcap")
+
+
+def recognised_case(random: Generator, folder: Path) -> Case:
+    """A text table with words of measurements, and perhaps something said of it."""
+    header = picked(random, HEADERS)
+    count, rows = header.count(",") + 1, int(random.integers(1, 60))
+    table = np.cumsum(random.normal(size=(rows, count)), axis=0) * picked(random, SCALES)
+    table[:, 0] = picked(random, (np.arange(rows) * 0.01, table[:, 0], np.round(table[:, 0], 1), np.zeros(rows)))
+    text = "\n".join([header, *(",".join(f"{value:.{random.integers(2, 10)}g}" for value in row) for row in table)])
+    data = encoded(mutated(text, random, WORDS), random)
+    path = folder / f"log{picked(random, ('.csv', '.txt'))}"
+    path.write_bytes(data)
+    said = picked(
+        random,
+        (
+            FileMapping(),
+            FileMapping(side="output"),
+            FileMapping(constants={"rate": 100.0}),
+            FileMapping(joint="1"),
+            FileMapping(kind="friction"),
+            FileMapping(kind="log", columns={"time": "1", "input_angle": "2", "current": "3"}),
+            FileMapping(units={"time": "ms"}),
+        ),
+    )
+    return Case(f"{said} {described(data)}", lambda: recognise(path, said), lambda found: _check(found, path, said))
+
+
+def formats_case(random: Generator, folder: Path) -> Case:
+    """A file of a format that is read by a library, with some bytes changed."""
+    suffix = picked(random, SUFFIXES)
+    data = mutated_bytes(_whole(suffix), random)
+    path = folder / f"log.{suffix}"
+    path.write_bytes(data)
+
+    def attempt() -> sw.Recording | Recognised:
+        open_table(path)
+        return recognise(path, FileMapping(units={"t": "s"} if "mat" in suffix else {}))
+
+    return Case(f"{suffix} {described(data)}", attempt, lambda found: _check(found, path, None))
+
+
+def _check(found: Recognised, path: Path, said: FileMapping | None) -> None:
+    assert finite(found.recording), "a number that is not finite"
+    assert set(found.columns) | {"time"} >= set(found.recording.names), "a channel of no column"
+    assert found.why, "no word of why"
+    assert all(line.isprintable() for line in (*found.why, *found.remarks)), "words that a terminal would obey"
+    if said is not None:
+        assert recognise(path, said).recording == found.recording, "the same file gives another recording"
+
+
+@cache
+def _whole(suffix: str) -> bytes:
+    """A file as it should be, as bytes."""
+    from scipy.io import savemat
+
+    from tests.python.files.test_formats import save_bag, save_hdf5, save_mdf
+
+    time = np.arange(60) * 0.01
+    series = {"t": time, "q": np.sin(time), "tau": np.cos(time)}
+    if suffix == "mat":
+        buffer = io.BytesIO()
+        savemat(buffer, {"data": series, "kp": 3.0}, do_compression=True)
+        return buffer.getvalue()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "log")
+        if suffix == "73.mat":
+            save_hdf5(path, series)
+        elif suffix == "mf4":
+            save_mdf(path.with_suffix(".mf4"), {"q": (series["q"], "rad"), "tau": (series["tau"], "Nm")}, times=[time])
+            path = path.with_suffix(".mf4")
+        elif suffix == "bag":
+            save_bag(path, "rosbag", time, series["q"])
+        else:
+            (path,) = save_bag(path, "mcap", time, series["q"]).glob("*.mcap")
+        return path.read_bytes()
