@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 NARROWEST = 40  # lines of a block at the lowest frequencies
 WIDENING = 0.5  # of the frequency: blocks grow with it, as noise is steep at low frequencies and flat at high ones
-WIDEST = 0.1  # of all lines
+WIDEST = 0.03  # of all lines
 EDGE = 0.05  # of the series, on which the taper rises at each end
 
 

@@ -35,7 +35,7 @@ class Line:
         evidence: logarithm of the likelihood that it adds
         false_alarm: probability that noise alone makes such a line anywhere in the spectra
         forward, backward: complex amplitudes over the angle or over time; nan where there is no such motion
-        sigma: standard deviation of their real and imaginary parts, the smaller one of both
+        sigma: standard deviation of their real and imaginary parts, the larger one of both
     """
 
     kind: Kind
@@ -64,7 +64,7 @@ class Found:
         orders: spectrum over the angle, with all lines in it
         times: spectrum over time, with all lines in it
         floor: of the series without the lines
-        residual: series less the lines, shape (n,)
+        residual: series less these lines, shape (n,)
         tested: lines of both spectra
     """
 
@@ -99,7 +99,7 @@ def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) ->
     floor, orders, times = _spectra(moving, moving.series, lowest, highest, floor)
     own = [line for place, line in enumerate(kept) if not any(_beside(moving, line, other) for other in kept[:place])]
     if own:  # by themselves, as lines beside each other are hardly told apart
-        own, _ = refitted(moving, own, floor)
+        own, left = refitted(moving, own, floor)
     return Found(tuple(sorted(own, key=lambda each: -each.evidence)), len(kept) - len(own), orders, times, floor, left, tested)
 
 
@@ -192,7 +192,7 @@ def refitted(moving: Moving, lines: list[Line], floor: Floor) -> tuple[list[Line
         last = first + len(each)
         found, sigmas = values[first:last], np.sqrt(np.diag(covariance)[first:last])
         parts = [complex(found[k], found[k + 1]) for k in range(0, len(each), 2)]
-        sigma = min(hypot(sigmas[k], sigmas[k + 1]) / np.sqrt(2.0) for k in range(0, len(each), 2))
+        sigma = max(hypot(sigmas[k], sigmas[k + 1]) / np.sqrt(2.0) for k in range(0, len(each), 2))
         if line.kind == "time":
             parts = [parts[0], parts[0]]
         elif len(parts) == 1:

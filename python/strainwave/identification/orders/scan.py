@@ -4,7 +4,7 @@ A line of order n is cos(n theta(t)). With the series y and the covariance C of 
 
 .. math:: S(n) = \sum_t (C^{-1} y)_t \, e^{-j n \theta_t}, \qquad I(n) = \sum_t \frac{1}{P(n \omega_t)}
 
-is the matched filter for it (Kay1998, generalised matched filters): the square of S over I is exponentially distributed where there is noise
+is the generalised matched filter for it (Kay1998): the square of S over I is exponentially distributed where there is noise
 alone, whose power P is that of the frequency at which the order passes; 2 S / I is the amplitude of the line. So a slow
 stretch, where the order passes in low and noisy frequencies, counts for less than a fast one. To divide by C costs one Fourier
 transform, S another one: the products are summed into narrow bins of the angle. Forward and backward are summed apart, since

@@ -13,6 +13,7 @@ from strainwave.identification.orders.turning import direction, reach_of, smooth
 
 Array = NDArray[np.float64]
 
+STEADY = 1e-3  # of the speed: what varies by less is constant
 KNOTS = 6  # of the friction over speed, in each direction
 TREND = 4  # periods of the angle, the longest somewhat longer than the span, in the slow trend over it
 GATE = 0.05  # of a fast speed: around it a sample counts half; friction turns over at rest, where ripple is not told
@@ -76,17 +77,14 @@ def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple
 
 
 def _friction(speed: Array, sense: Array) -> Array:
-    """Piecewise linear over speed, each direction by itself, odd in it but for a share that differs."""
-    columns = []
-    for each in (1.0, -1.0):
-        there = sense == each
-        if not there.any():
-            continue
-        columns.append(np.where(there, each, 0.0))
-        swift = np.abs(speed[there])
-        knots = np.unique(np.quantile(swift, np.linspace(0.0, 0.9, KNOTS)))
-        if np.ptp(swift) > 1e-3 * swift.max():
-            columns += [np.where(there, each * np.maximum(np.abs(speed) - knot, 0.0), 0.0) for knot in knots]
+    """Piecewise linear over speed and odd in it, and a share of it that is even; a constant is left to the load."""
+    columns = [sense] if np.any(sense > 0.0) and np.any(sense < 0.0) else []
+    swift = np.abs(speed)
+    knots = np.unique(np.quantile(swift, np.linspace(0.0, 0.9, KNOTS)))
+    if float(np.ptp(swift)) > STEADY * float(swift.max()):
+        for knot in knots:
+            above = np.maximum(swift - knot, 0.0)
+            columns += [sense * above, above] if columns and columns[0] is sense else [above]
     return np.stack(columns, axis=1) if columns else np.zeros((len(speed), 0))
 
 

@@ -12,8 +12,9 @@ so that the transmission error, which two encoders measure, is
 
 with omega_0 the natural frequency of the output with the input held. Slow against it, F = H = 1. An order that passes it is
 amplified, and above it the output stands still and the transmission error shows no kinematic error at all. Everything but
-omega_0 and zeta is linear, so that only these two are sought (GolubPereyra1973). Both sides are compared in the frequency domain, each line weighed by the noise around it, which is
-told from what is left; what the ends of the record add is a transient of the stage (PintelonSchoukens2012).
+omega_0 and zeta is linear, so that only these two are sought (GolubPereyra1973). Both sides are compared in the frequency
+domain, each line weighed by the noise around it, which is told from what is left; what the ends of the record add is a
+transient of the stage (PintelonSchoukens2012).
 """
 
 from __future__ import annotations

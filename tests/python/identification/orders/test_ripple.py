@@ -1,0 +1,141 @@
+"""Ripple: lines put into a torque are found and named; noise makes no more lines than allowed; ratios come out blind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+UNITS = {"time": "s", "output_angle": "rad", "torque": "N.m"}
+MOTIONS: dict[str, Callable[[Array], Array]] = {
+    "to and fro": lambda t: 1.2 * np.sin(0.5 * t) + 0.3 * np.sin(1.3 * t),
+    "run-up": lambda t: 0.2 * t + 0.012 * t**2,
+    "two speeds": lambda t: np.where(t < 15.0, 0.5 * t, 7.5 + 0.9 * (t - 15.0)),
+    "constant": lambda t: 0.7 * t,
+}
+
+
+def joint(motion: str, seed: int = 0, noise: float = 0.4, coloured: bool = False, step: float = 0.004) -> dict[str, Array]:
+    """A joint with friction and gravity, without ripple."""
+    time = np.arange(0.0, 30.0, step)
+    q = MOTIONS[motion](time)
+    rough = np.random.default_rng(seed).normal(0.0, noise, len(time) + 50)
+    if coloured:
+        kernel = np.exp(-np.arange(51) / 10.0) * np.cos(0.5 * np.arange(51))
+        rough = np.convolve(rough, kernel, "valid")
+    torque = 5.0 * np.sign(np.gradient(q)) + 3.0 * np.gradient(q, time) + 8.0 * np.sin(q) + rough[: len(time)]
+    return {"time": time, "output_angle": q, "torque": torque}
+
+
+def rippled(columns: dict[str, Array], order: float, amplitude: float, phase: float = 0.0) -> dict[str, Array]:
+    return {**columns, "torque": columns["torque"] + amplitude * np.cos(order * columns["output_angle"] + phase)}
+
+
+def found(columns: dict[str, Array], **options: float) -> sw.Ripple:
+    return sw.ripple(sw.Recording(columns, {name: UNITS[name] for name in columns}), "torque", **options)
+
+
+@pytest.mark.parametrize("motion", ["to and fro", "run-up", "two speeds"])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_an_order_line_and_mains_are_told_apart_where_the_speed_varies(motion: str, seed: int) -> None:
+    columns = rippled(joint(motion, seed), 200.0, 0.15)
+    columns["torque"] = columns["torque"] + 0.15 * np.cos(2.0 * np.pi * 50.0 * columns["time"] + 1.0)
+    lines = {line.kind: line for line in found(columns).lines}
+    assert set(lines) == {"order", "time"}
+    assert abs(lines["order"].order - 200.0) < 4.0 * lines["order"].order_sigma
+    assert lines["time"].frequency == pytest.approx(50.0, abs=0.02)
+    for line in lines.values():
+        assert abs(line.amplitude - 0.15) < 4.0 * line.sigma
+        assert line.sigma < 0.02
+
+
+@pytest.mark.parametrize("put_in", ["order", "mains"])
+def test_at_constant_speed_it_is_said_that_order_and_time_cannot_be_told_apart(put_in: str) -> None:
+    columns = joint("constant")
+    wave = 200.0 * columns["output_angle"] if put_in == "order" else 2.0 * np.pi * 50.0 * columns["time"]
+    columns["torque"] = columns["torque"] + 0.15 * np.cos(wave)
+    told = found(columns)
+    assert [line.kind for line in told.lines] == ["either"]
+    assert any("too constant" in each for each in told.remarks)
+
+
+@pytest.mark.parametrize("motion", ["to and fro", "constant"])
+@pytest.mark.parametrize("coloured", [False, True])
+def test_noise_alone_makes_no_more_lines_than_allowed(motion: str, coloured: bool) -> None:
+    seen = sum(bool(found(joint(motion, seed, coloured=coloured), false_alarm=0.05).lines) for seed in range(24))
+    assert seen <= 5  # of 24 at 5 %: more would happen in half a per cent of all trials
+
+
+def test_amplitudes_scatter_by_as_much_as_is_stated() -> None:
+    off = []
+    for seed in range(30):
+        told = found(rippled(joint("to and fro", seed, coloured=True), 160.0, 0.3, 0.7), ratio=80.0)
+        line = next(line for line in told.lines if abs(line.order - 160.0) < 1.0)
+        assert line.forward is not None
+        off += [(line.forward - 0.3) / line.sigma, (line.order - 160.0) / line.order_sigma]
+    assert 0.7 < np.sqrt(np.mean(np.square(off[0::2]))) < 1.4
+    assert 0.5 < np.sqrt(np.mean(np.square(off[1::2]))) < 1.4
+
+
+@settings(deadline=None, max_examples=10)
+@given(ratio=st.sampled_from([50, 80, 100, 101, 120, 160]), seed=st.integers(0, 100))
+def test_the_ratio_is_found_blind_from_orders_two_and_four(ratio: int, seed: int) -> None:
+    columns = joint("to and fro", seed)
+    columns = rippled(rippled(columns, 2.0 * ratio, 0.3, 0.4), 4.0 * ratio, 0.12, -1.0)
+    told = found(columns)
+    assert told.candidates[0].ratio == ratio
+    assert {order for _, order in told.candidates[0].matched} >= {2.0}
+
+
+def test_the_parts_of_a_line_tell_what_makes_it() -> None:
+    columns = joint("to and fro", 3, noise=0.2)
+    q, time = columns["output_angle"], columns["time"]
+    sense, speed = np.sign(np.gradient(q)), np.gradient(q, time)
+    wave = np.cos(160.0 * q)
+    load = 6.0 + 8.0 * np.sin(q)
+    for name, growing in (("direction", sense), ("speed squared", speed**2 / np.mean(speed**2)), ("load", load / 8.0)):
+        told = found({**columns, "torque": columns["torque"] + 6.0 + 0.3 * growing * wave}, ratio=80.0)
+        line = next(line for line in told.lines if abs(line.order - 160.0) < 1.5)
+        largest = max(line.parts, key=lambda part: part.amplitude)
+        assert largest.name == name
+        assert largest.false_alarm < 1e-6
+
+
+def test_it_works_without_time_and_with_a_wrapped_angle_of_the_motor() -> None:
+    theta = np.linspace(0.0, 900.0, 20_000)
+    torque = 0.05 + 0.004 * np.cos(2 * theta + 0.5) + np.random.default_rng(0).normal(0.0, 0.01, len(theta))
+    recording = sw.Recording(
+        {"input_angle": np.degrees(theta) % 360.0, "torque": torque}, {"input_angle": "deg", "torque": "N.m"}
+    )
+    told = sw.ripple(recording, "torque", angle="input_angle", side="input")
+    assert [(line.kind, round(line.order, 2)) for line in told.lines] == [("either", 2.0)]
+    assert told.lines[0].frequency is None
+    assert any("without time" in each for each in told.remarks)
+
+
+def test_outliers_do_not_count() -> None:
+    columns = rippled(joint("to and fro"), 200.0, 0.3)
+    hit = np.random.default_rng(1).choice(len(columns["time"]), 150, replace=False)
+    columns["torque"][hit] += 30.0 * np.random.default_rng(2).standard_normal(150)
+    told = found(columns)
+    assert [round(line.order) for line in told.lines] == [200]
+    assert any("far outside" in each for each in told.remarks)
+
+
+def test_what_cannot_show_orders_is_refused_with_the_reason() -> None:
+    columns = joint("to and fro", step=0.25)
+    with pytest.raises(ValueError, match=r"4 samples per second show orders up to .* record faster, or turn slower"):
+        found(columns)
+    columns = joint("to and fro")
+    columns["output_angle"] = 0.01 * columns["output_angle"]
+    with pytest.raises(ValueError, match="turn further"):
+        found(columns)
+    columns = joint("to and fro")
+    with pytest.raises(ValueError, match="torque does not change"):
+        found({**columns, "torque": np.ones(len(columns["time"]))})
