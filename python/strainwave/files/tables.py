@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.bag_table import open_bag
-from strainwave.files.labels import Content, Label, Source, sources_of
+from strainwave.files.labels import Content, Label, Source, sources_of, unreadable
 from strainwave.files.matlab_table import open_mat
 from strainwave.files.mdf_table import open_mdf
 from strainwave.files.parquet_table import open_parquet
@@ -50,11 +50,22 @@ class OpenTable(Protocol):
         """How to speak of a row, counted from 0."""
 
 
+def _open_dat(path: str | Path) -> OpenTable:
+    """A file whose suffix says nothing but that it holds data: MDF by its first letters, else text."""
+    try:
+        with Path(path).open("rb") as file:
+            begin = file.read(8)
+    except OSError as error:
+        raise ValueError(unreadable(path, error)) from None
+    return open_mdf(path) if begin.startswith(b"MDF ") else open_csv(path)
+
+
 FORMATS: dict[str, Callable[[str | Path], OpenTable]] = {
     ".csv": open_csv,
     ".txt": open_csv,
     ".tsv": open_csv,
     ".parquet": open_parquet,
+    ".dat": _open_dat,
     ".mat": open_mat,
     ".mf4": open_mdf,
     ".mdf": open_mdf,

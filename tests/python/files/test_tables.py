@@ -324,7 +324,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
         Recording.read(path)
 
 
-KNOWN = ".csv, .txt, .tsv, .parquet, .mat, .mf4, .mdf, .bag, .mcap or .db3"
+KNOWN = ".csv, .txt, .tsv, .parquet, .dat, .mat, .mf4, .mdf, .bag, .mcap or .db3"
 
 
 def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:

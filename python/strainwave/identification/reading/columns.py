@@ -21,6 +21,9 @@ from strainwave.messages import as_option, listed, one_line, quoted
 Array = NDArray[np.float64]
 
 
+FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
+
+
 def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
     """The columns that mean something, one for each channel: those that a person named, and those whose names tell."""
     said = _said(table, mapping)
@@ -77,6 +80,8 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
     taken = []
     for group in groups.values():
         plain = [column for column in group if not column.which] if len(group) > 1 else group
+        if plain and plain[0].channel.quantity in FIRST:
+            plain = plain[:1]
         if len(plain) != 1:
             raise ValueError(one_line(f"{table.file}: {_choice(group, joints)}"))
         taken += plain
@@ -93,7 +98,8 @@ def _choice(group: Sequence[Column], joints: Sequence[str]) -> str:
     names = listed(column.name for column in group)
     channel = group[0].channel
     name = "command" if channel.commanded else "_".join(filter(None, (channel.side, channel.quantity)))
-    option = as_option("column", {"output_torque": "joint_torque"}.get(name, name), group[0].name)
+    wanted = {"output_torque": "joint_torque", "angle": "input_angle", "speed": "input_speed"}.get(name, name)
+    option = as_option("column", wanted, group[0].name)
     if len({column.which for column in group}) == len(group) and len(joints) > 1:
         which = f"it holds {len(joints)} joints ({listed(joints)}), as {names}"
         return f"{which}; say which with --joint {joints[0]}, or name columns, as {option}"

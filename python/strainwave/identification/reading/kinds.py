@@ -62,7 +62,7 @@ def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
     timed = "time" in has or "rate" in mapping.constants
     effort, motion = has & {"torque", "current"}, has & {"angle", "speed"}
     commanded = any(column.channel.commanded for column in columns)
-    if "twist" in has and "torque" in has:
+    if "twist" in has and "torque" in has and not (timed and motion):
         return "torsion"
     if timed and motion and (effort or "voltage" in has or commanded):
         return "log"

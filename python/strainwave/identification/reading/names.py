@@ -62,6 +62,7 @@ NEUTRAL = (
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "estimate", "tool", "gripper", "power", "id",
+    "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact",
 )  # fmt: skip
 # Symbols that say two things at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {
