@@ -41,11 +41,14 @@ def orders(
 
     from rich.console import Console
 
+    from strainwave.arguments import one_of
     from strainwave.files.writing import making, write_all, written
     from strainwave.messages import one_line
     from strainwave.report.orders import orders_files, orders_report, orders_summary
     from strainwave.report.provenance import Provenance
 
+    if side is not None:
+        one_of("side", side, ("input", "output"))
     with Console(stderr=True).status("reading") as status:
         found = []
         for path in paths:
@@ -86,14 +89,15 @@ def _of_file(
     from strainwave.identification.reading.recognise import recognise
     from strainwave.messages import pairs
 
+    where: Any = side
     known = set(CHANNELS)
     said = FileMapping(
         columns=pairs("--column", list(column), known),
         units=pairs("--unit", list(unit), known),
         constants={} if rate is None else {"rate": rate},
         joint=joint,
+        side=where,
     )
     read = recognise(path, said)
-    where: Any = side  # anything but a side is refused there
     found = orders_found(read.recording, path.name, ratio=ratio, side=where, highest=highest)
     return replace(found, remarks=(*read.remarks, *found.remarks))
