@@ -1,0 +1,62 @@
+"""Files that show one and the same measurement, which must not count twice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.recording import Recording
+from strainwave.identification.reading.recognise import Recognised
+
+Array = NDArray[np.float64]
+ALIKE = 1e-3  # of the range: two readings of one number differ by less
+OF_RUN = 2e-3  # of the range: two encoders of one drive that moved once differ by less, but for scale and zero
+
+
+def same_as(files: Sequence[Recognised]) -> dict[str, str]:
+    """Names of files that show what an earlier one shows, each with the name of that one."""
+    found: dict[str, str] = {}
+    for place, file in enumerate(files):
+        for earlier in files[:place]:
+            if earlier.path.name not in found and _alike(earlier, file):
+                found[str(file.path)] = str(earlier.path)
+                break
+    return found
+
+
+def _alike(one: Recognised, other: Recognised) -> bool:
+    if one.kind != other.kind:
+        return False
+    if one.kind in ("log", "encoders"):
+        return _same_run(one.recording, other.recording)
+    names = [name for name in one.recording.names if name in other.recording]
+    if len(one.recording) != len(other.recording) or len(names) < 2:
+        return False
+    return all(_close(one.recording[name], other.recording[name]) for name in names)
+
+
+def _close(one: Array, other: Array) -> bool:
+    return bool(np.all(np.abs(one - other) <= ALIKE * max(float(np.ptp(one)), 1e-300)))
+
+
+def _same_run(one: Recording, other: Recording) -> bool:
+    """Whether two logs show one motion: an angle of the one is a multiple of an angle of the other, at the same times."""
+    first, second = _angle(one), _angle(other)
+    if first is None or second is None:
+        return False
+    time = np.linspace(max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1]), 500)
+    if not time[-1] > time[0]:
+        return False
+    a, b = np.interp(time, one.time, first), np.interp(time, other.time, second)
+    if np.std(a) == 0.0 or np.std(b) == 0.0:
+        return False
+    a, b = (a - a.mean()) / np.std(a), (b - b.mean()) / np.std(b)
+    sense = np.sign(a @ b)
+    return bool(np.sqrt(np.mean((a - sense * b) ** 2)) < OF_RUN)
+
+
+def _angle(recording: Recording) -> Array | None:
+    names = [name for name in ("input_angle", "output_angle") if name in recording]
+    return recording[names[0]] if names and "time" in recording else None
