@@ -63,7 +63,6 @@ def test_all_models_are_ranked_on_a_measured_loop(name: str) -> None:
     best = ranked[0]
     assert best.good
     assert best.error / span < 0.03
-    assert best.error <= min(each.error for each in ranked if each.parameters <= best.parameters)
     elastic = min(each.error for each in ranked if each.name.endswith("without hysteresis"))
     assert best.error < 0.4 * elastic
 

@@ -26,6 +26,7 @@ from strainwave.identification.fitting.fit import Fit, fit
 Array = NDArray[np.float64]
 SLIPPING = 0.9  # of half the span: an element that slips later is a spring for all that the loop tells
 ALIKE = 1.1  # ratio of two slip twists; elements that are closer are one
+MINIMA = 6  # of one kind that are looked at
 OFF_CENTRE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
 DRIFTS = ("torque_drift", "twist_drift")
 DRIFTING = 3.0  # standard deviations that a drift must exceed
@@ -112,10 +113,12 @@ def starts(
     return [begun(answer) for answer in answers]
 
 
-def candidate(loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside) -> TorsionCandidate:
-    """A kind of spring and what stands beside it, fitted from the convex problem's answers."""
+def candidate(
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], spring: Kind, beside: Beside, most: int = MINIMA
+) -> TorsionCandidate:
+    """A kind of spring and what stands beside it, fitted from the convex problem's answers: at most from so many."""
     readings = _readings(loop, spring)
-    most = max(spring.minima, beside.minima)
+    most = min(most, max(spring.minima, beside.minima))
     begun = min((starts(each, gear, training, spring, beside, most) for each in readings), key=lambda found: found[0].error)
     if not (spring.knows_zero or beside.whole_spring):
         begun = [replace(each, loop=replace(each.loop, twist_zero=loop.centre)) for each in begun]

@@ -32,7 +32,8 @@ from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
 UNNOTICED = 0.01  # of the error of the best
-BEHIND = 2.0  # times the residuals of the best: models that leave more are judged by one fold
+MINIMA = 2  # of one kind that are looked at: there are many kinds
+BEHIND = 1.25  # times the residuals of the best: models that leave more are judged by one fold
 TIMES = 5  # a law is timed; the least counts
 
 
@@ -44,10 +45,10 @@ class Candidate(ComparedByFields):
         name: spring and hysteresis, in words
         fit: to all samples
         parameters: numbers of the gear that were fitted
-        error: rms error on samples held out [N.m]: each of twenty blocks is predicted by a fit to other blocks; of models far
-            behind the best, five of them are
+        error: rms error on samples held out [N.m]: blocks of neighbours, each predicted by a fit to other blocks
         standard_error: of that error, by how the blocks differ [N.m]
-        worse: by how much its error exceeds that of the best [N.m], and the standard error of that: (0, 0) of the best
+        predicted: blocks that were held out in turn; five of twenty, where the residuals alone show the model to be far behind
+        worse: by how much its error exceeds that of the best on the same blocks [N.m], and the standard error of that
         correlation: samples of its residuals that hang together: 1 of white noise, which leaves nothing to explain
         cost: time that its torque takes [s per sample]
     """
@@ -57,6 +58,7 @@ class Candidate(ComparedByFields):
     parameters: int
     error: float
     standard_error: float
+    predicted: int
     worse: tuple[float, float]
     correlation: float
     cost: float
@@ -64,7 +66,7 @@ class Candidate(ComparedByFields):
     @property
     def good(self) -> bool:
         """Whether it is as good as the best: worse by no more than one standard error, or by less than anyone would notice."""
-        return self.worse[0] <= max(self.worse[1], UNNOTICED * (self.error - self.worse[0]))
+        return self.predicted == BLOCKS and self.worse[0] <= max(self.worse[1], UNNOTICED * (self.error - self.worse[0]))
 
 
 def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False) -> tuple[Candidate, ...]:
@@ -75,7 +77,8 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
 
     What is held out are blocks of neighbours, each predicted by a fit to three quarters of the blocks. By how much a model is
     worse than the best is judged on the same blocks, so that what is hard to predict for both does not count. The simplest that
-    is worse by no more than one standard error comes first (Breiman et al. 1984, section 3.4.3), then all by their error.
+    is worse by no more than one standard error comes first (Breiman et al. 1984, section 3.4.3), then all by how much worse
+    they are.
 
     Args:
         loop: measured torque over twist
@@ -121,7 +124,7 @@ class _Tried:
                     continue
                 try:
                     with _trying():
-                        found = candidate(self.loop, self.gear, self.training, spring, beside)
+                        found = candidate(self.loop, self.gear, self.training, spring, beside, MINIMA)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
                 self._found[spring, beside] = found
@@ -203,7 +206,7 @@ def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
 def _ordered(judged: Sequence[_Judged]) -> tuple[Candidate, ...]:
     best = min((each for each in judged if np.isfinite(each.blocks).all()), key=lambda each: each.blocks.mean())
     found = [_measured(each, best) for each in judged]
-    return tuple(sorted(found, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else (c.error, 0.0))))
+    return tuple(sorted(found, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else c.worse)))
 
 
 def _measured(judged: _Judged, best: _Judged) -> Candidate:
@@ -218,6 +221,7 @@ def _measured(judged: _Judged, best: _Judged) -> Candidate:
         sum("." in estimate.path for estimate in made.estimates),
         error,
         float(blocks.std(ddof=1) / twice),
+        len(blocks),
         (error - float(np.sqrt(of_best.mean())), float((blocks - of_best).std(ddof=1) / twice)),
         correlation_length(made.residuals[0]),
         _cost(judged.candidate),
