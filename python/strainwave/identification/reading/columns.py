@@ -74,7 +74,12 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
         joint = mapping.joint if mapping.joint in known else number
         if joint not in known:
             raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(known)}"))
-        return [column for column in columns if column.which in ("", joint) or column.which not in known]
+        several_joints = len(known) > 1
+        return [
+            replace(column, robot=column.robot or (several_joints and column.which == joint))
+            for column in columns
+            if column.which in ("", joint) or column.which not in known
+        ]
     if len(several) == 1 and _are_two_encoders(columns, several[0]):
         return list(columns)
     taken = []
@@ -130,6 +135,10 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         unit = column.unit or assumed[column.position].unit
         found.append(replace(column, unit=unit, values=_in_si(table, column, raw[column.position], unit)))
     remarks = [*remarks, *told]
+    empty = [column for column in found if not column.said and not np.isfinite(column.si).any()]
+    if empty and len(empty) < len(found):
+        remarks.append(f"left out, as no row holds a number: {listed(column.name for column in empty)}")
+        found = [column for column in found if column not in empty]
     return _whole_rows(table, found, remarks)
 
 

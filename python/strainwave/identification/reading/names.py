@@ -24,6 +24,7 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "angle": (
         "angle", "position", "positions", "pos", "q", "theta", "th", "phi", "winkel", "lage", "drehwinkel", "stellung",
         "angulo", "angolo", "posicion", "posizione", "encoder", "enc", "geber", "drehgeber", "resolver", "rotation",
+        "counts", "ticks",
     ),
     "twist": ("twist", "torsion", "deflection", "verdrehung", "verdrillung", "deflexion", "torsione", "windup"),
     "speed": (
@@ -181,6 +182,8 @@ def _without_unit(name: str) -> tuple[str, str | None]:
         if len(words) <= count:
             continue
         unit = "/".join(words[-count:])
+        if any(word.isdigit() or word == "J" for word in words[-count:]):  # the number of a joint, or the word joint
+            continue
         rest = "_".join(words[:-count])
         quantity, _ = _quantity(words_of(rest), None)
         if quantity is not None and measures(unit, UNITS[quantity]):

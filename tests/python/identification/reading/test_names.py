@@ -22,6 +22,8 @@ NAMES = {
     "actual_qd_0": Meaning("speed", which="0", robot=True),
     "target_q_5": Meaning("angle", commanded=True, which="5", robot=True),
     "theta_m": Meaning("angle", "input"),
+    "tau_J_1": Meaning("torque", "output", which="1", robot=True),
+    "motor_counts": Meaning("angle", "input"),
     "tau_l [N.m]": Meaning("torque", "output", unit="N.m", robot=True),
     "i_q": Meaning("current"),
     "iq_ref": Meaning("current", commanded=True),

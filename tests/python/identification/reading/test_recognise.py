@@ -136,6 +136,17 @@ def test_several_joints_are_asked_for(tmp_path: Path) -> None:
     assert recognise(path, FileMapping(columns={"output_angle": "q1", "joint_torque": "5"})).columns["joint_torque"] == "tau2"
     with pytest.raises(ValueError, match=r'has no joint "3"; it has 1, 2$'):
         recognise(path, FileMapping(joint="3"))
+    axes = "Time [s],Position_A1 [deg],Position_A2 [deg],Torque_A1 [Nm],Torque_A2 [Nm]"
+    found = recognise(write(tmp_path / "axes.csv", axes, TIME, SWING, SWING, SWING, SWING), FileMapping(joint="A2"))
+    assert (found.side, found.columns["output_angle"], found.columns["joint_torque"]) == ("output", "Position_A2", "Torque_A2")
+
+
+def test_a_column_without_any_number_is_left_out_and_told(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t [s],q [rad],tau [N.m],temperature [degC]\n" + "".join(f"{i / 10},{i},{i},nan\n" for i in range(2000)))
+    found = recognise(path)
+    assert len(found.recording) == 2000
+    assert "temperature" not in found.recording
 
 
 def test_a_side_that_cannot_be_told_is_asked_for(tmp_path: Path) -> None:
