@@ -22,6 +22,12 @@ Array = NDArray[np.float64]
 
 FOLDS = 10  # a table is cut into at most so many parts, each predicted once from the others
 STEPS = 2_000  # of a law, timed
+FAR = 6.0  # standard deviations: noise does not come so far
+ENOUGH = 12  # rows, to tell an outlier
+FEW = 0.1  # of the rows may be outliers
+LESS = 0.5  # of the error that is left without them
+PASSES = 3  # in which outliers hide behind larger ones
+SAME = 1e-7  # of the largest torque: errors below are those of rounding and of where a fit ends
 BY_CHANCE = 0.01  # what explains more with this probability by chance does not count
 STEADY = ("coulomb", "breakaway", "stribeck_speed", "viscous")  # what bristles have in common with a law of steady friction
 
@@ -140,6 +146,10 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
 
     Raises:
         ValueError: fewer than four speeds, or a law of the gear that a table cannot tell
+
+    Warns:
+        RuntimeWarning: rows that lie so far from all others that the fits leave them out, which halves the error or more; they
+            are those that `fit.training` does not have
     """
     known = _known(gear.friction_input, table)
     if not isinstance(known, Plain):
@@ -151,15 +161,15 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
     speeds = len(np.unique(table.speed))
     if speeds < 4:
         raise ValueError(f"a friction table needs at least 4 speeds, one of them to validate; this one has {speeds}")
-    shapes = list(over_speed(table))
-    tried = [(shape, candidate) for shape in shapes if _falls(candidate := _candidate(shape, table, gear))]
-    shape, best = _chosen(tried)
-    for more in beside_speed(table, replace(shape, law=best.law), best.fit.residuals[0]):
-        tried.append((more, _candidate(more, table, gear)))
+    tried, trusted = _without_outliers(table, gear)
     _, best = _chosen(tried)
     simplest = tried[0][1]
     others = sorted((candidate for _, candidate in tried if candidate is not best), key=lambda candidate: candidate.error)
-    return [replace(each, chance=_chance(simplest, each), fit=_written(each, gear, known)) for each in (best, *others)]
+    found = [replace(each, chance=_chance(simplest, each)) for each in (best, *others)]
+    if not trusted.all():
+        _warn(table, trusted, best)
+        found = [_on_all(each, table, trusted) for each in found]
+    return [replace(each, fit=_written(each, gear, known)) for each in found]
 
 
 def ranking(candidates: Sequence[FrictionCandidate]) -> list[Rank]:
@@ -209,6 +219,69 @@ def _called(law: Any) -> str:
     return f"{law.name} of {_called(law.law)}" if isinstance(law, Modulated) else str(law.name)
 
 
+def outliers(off: Array) -> NDArray[np.bool_]:
+    """Which of the errors of predictions are no noise: far more standard deviations off than any, and few.
+
+    >>> outliers(np.array([0.1, -0.2, 0.1, 0.0, 0.2, -0.1, 5.0, 0.1, -0.1, 0.2, -0.2, 0.1])).nonzero()[0].tolist()
+    [6]
+    """
+    size = np.abs(off)
+    sigma = float(np.median(size)) / 0.6745  # of a normal distribution
+    far = size > FAR * sigma
+    return far if len(off) >= ENOUGH and sigma > 0.0 and far.mean() <= FEW else np.zeros(len(off), bool)
+
+
+def _tried(table: FrictionTable, gear: Gear) -> list[tuple[Shape, FrictionCandidate]]:
+    """Every law that the table may tell, those over the speed alone first, the simplest of all at the beginning."""
+    tried = [(shape, found) for shape in over_speed(table) if _falls(found := _candidate(shape, table, gear))]
+    shape, best = _chosen(tried)
+    beside = beside_speed(table, replace(shape, law=best.law), best.fit.residuals[0])
+    return [*tried, *((more, _candidate(more, table, gear)) for more in beside)]
+
+
+def _without_outliers(table: FrictionTable, gear: Gear) -> tuple[list[tuple[Shape, FrictionCandidate]], NDArray[np.bool_]]:
+    """Every law fitted to the rows that are no outliers, and which these are; to all where that does not halve the error."""
+    whole = tried = _tried(table, gear)
+    everything = trusted = np.ones(len(table.speed), bool)
+    for _ in range(PASSES):
+        _, best = _chosen(tried)
+        kept = trusted.copy()
+        kept[np.flatnonzero(trusted)[outliers(table.torque[trusted] - best.held_out)]] = False
+        if np.array_equal(kept, trusted) or len(np.unique(table.speed[kept])) < 4:
+            break
+        tried, trusted = _tried(_rows(table, kept), gear), kept
+    few = np.mean(~trusted) <= FEW
+    better = _chosen(tried)[1].error <= LESS * _chosen(whole)[1].error
+    return (tried, trusted) if few and better else (whole, everything)
+
+
+def _rows(table: FrictionTable, kept: NDArray[np.bool_]) -> FrictionTable:
+    columns = ((name, getattr(table, name)) for name in ("speed", "torque", "angle", "load", "temperature"))
+    changed: dict[str, Any] = {name: values[kept] for name, values in columns if values is not None}
+    return replace(table, **changed)
+
+
+def _on_all(candidate: FrictionCandidate, table: FrictionTable, trusted: NDArray[np.bool_]) -> FrictionCandidate:
+    """The same with the whole table beside it, what was left out too."""
+    whole = fit(candidate.fit.gear, table, [estimate.path for estimate in candidate.fit.estimates], training=trusted)
+    held_out = whole.predicted[0].copy()
+    held_out[trusted] = candidate.held_out
+    return replace(candidate, fit=whole, held_out=held_out)
+
+
+def _warn(table: FrictionTable, trusted: NDArray[np.bool_], best: FrictionCandidate) -> None:
+    rows = np.flatnonzero(~trusted)
+    named = "; ".join(f"row {row}, {table.torque[row]:.4g} N·m at {table.speed[row]:.4g} rad/s" for row in rows[:5])
+    more = f"; and {len(rows) - 5} more" if len(rows) > 5 else ""
+    warnings.warn(
+        f"{len(rows)} of {len(trusted)} rows of the friction table lie more than {FAR:g} standard deviations off what the "
+        f"others tell, and were left out: {named}{more}. Without them the error of predictions is {best.error:.3g} N·m. "
+        "Measure them again, or take them out of the table",
+        RuntimeWarning,
+        stacklevel=3,
+    )
+
+
 def _falls(candidate: FrictionCandidate) -> bool:
     """False where a fall was tried but the torque rises from rest on: a law without one says as much."""
     law = innermost(candidate.law)
@@ -221,11 +294,11 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
     Also one that chance may have made worse than the best (F test): of many laws tried some look better than they are.
     """
     best = min((candidate for _, candidate in tried), key=lambda candidate: candidate.error)
-    squares = _squares(best)
+    squares, rounding = _squares(best), (SAME * float(np.abs(best.fit.experiment.measured).max())) ** 2
 
     def as_good(candidate: FrictionCandidate) -> bool:
         worse = _squares(candidate) - squares
-        within = bool(np.mean(worse) <= np.std(worse, ddof=1) / np.sqrt(len(worse)))
+        within = bool(np.mean(worse) <= max(np.std(worse, ddof=1) / np.sqrt(len(worse)), rounding))
         return within or (candidate.parameters < best.parameters and _chance(candidate, best) > BY_CHANCE)
 
     return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,13 +70,14 @@ class FrictionTable(ComparedByFields):
         columns = {name: values for name in ("speed", "torque", *BESIDE) if (values := getattr(self, name)) is not None}
         if "angle" in columns:  # the mean of two angles is none
             rows = np.arange(0, len(self.speed), -(-len(self.speed) // (2 * TABLE)))
-            return replace(self, **{name: values[rows] for name, values in columns.items()})
+            taken: dict[str, Any] = {name: values[rows] for name, values in columns.items()}
+            return replace(self, **taken)
         sides = [np.flatnonzero(side) for side in (self.speed < 0.0, self.speed > 0.0)]
         ordered = [side[np.argsort(self.speed[side], kind="stable")] for side in sides if len(side)]
         means = [thinned(*(values[side] for values in columns.values()), samples=TABLE) for side in ordered]
-        return replace(
-            self, **{name: np.concatenate(each) for name, each in zip(columns, zip(*means, strict=True), strict=True)}
-        )
+        joined = [np.concatenate(each) for each in zip(*means, strict=True)]
+        thin: dict[str, Any] = dict(zip(columns, joined, strict=True))
+        return replace(self, **thin)
 
     @classmethod
     def of_output(cls, recording: Recording, gear: Gear) -> FrictionTable:

@@ -220,3 +220,32 @@ def test_what_no_order_describes_is_told_by_a_map() -> None:
     off = [(estimate.value - truth) / estimate.sigma for estimate, truth in zip(best.fit.estimates, level, strict=True)]
     assert np.mean(np.abs(off) <= 2.0) >= 0.9
     assert best.coulomb == pytest.approx(level[:12].mean(), rel=0.01)
+
+
+def test_rows_that_lie_far_off_are_named_and_left_out() -> None:
+    truth = TRUTHS["with a fall at low speed"].steady(BOTH_WAYS)
+    torque = truth + 5e-4 * np.random.default_rng(7).normal(size=len(truth))
+    torque[[3, 25]] *= [3.0, -1.0]
+    with pytest.warns(RuntimeWarning, match=r"2 of 40 rows .* left out: row 3, .*; row 25, .*Measure them again"):
+        best = fit_friction(FrictionTable(BOTH_WAYS, torque), sw.Gear())[0]
+    assert best.name == "with a fall at low speed"
+    assert np.flatnonzero(~best.fit.training).tolist() == [3, 25]
+    assert best.error == pytest.approx(5e-4, rel=0.3)
+    for estimate, value in zip(best.fit.estimates, (0.03, 0.05, 3.0, 2e-4), strict=True):
+        assert abs(estimate.value - value) < 3.0 * estimate.sigma
+
+
+def test_nothing_is_left_out_of_noise() -> None:
+    truth = TRUTHS["curved viscous"].steady(BOTH_WAYS)
+    for seed in range(3):
+        torque = truth + 1e-3 * np.random.default_rng(seed).standard_t(5, size=len(truth))
+        assert fit_friction(FrictionTable(BOTH_WAYS, torque), sw.Gear())[0].fit.training.all()
+
+
+def test_a_torque_without_any_noise_is_told_by_the_simplest_law() -> None:
+    best = fit_friction(FrictionTable(BOTH_WAYS, 0.05 * np.sign(BOTH_WAYS)), sw.Gear())[0]
+    assert (best.name, best.coulomb, best.viscous) == (
+        "Coulomb and viscous",
+        pytest.approx(0.05),
+        pytest.approx(0.0, abs=1e-10),
+    )
