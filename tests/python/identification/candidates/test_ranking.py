@@ -25,7 +25,7 @@ SEGMENTS = sw.stiffness.ThreeSegment(k1=1e4, k2=2e4, k3=4e4, t1=4.0, t2=16.0)
 NOTHING = sw.stiffness.Linear(k=1e-3)
 
 
-def along(*ends: float, n: int = 301) -> Array:
+def along(*ends: float, n: int = 121) -> Array:
     """Twist [rad] from one end to the next, evenly."""
     turns = HALF * np.array(ends)
     travelled = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(turns)))))
@@ -152,3 +152,8 @@ def test_of_a_single_branch_springs_are_ranked_with_the_hysteresis_kept() -> Non
     ranked = rank_loop(measured(gear, along(0, 1)), sw.Gear(hysteresis=ELEMENTS))
     assert ranked[0].name == "three-segment spring, hysteresis kept"
     assert all(each.fit.gear.hysteresis == ELEMENTS for each in ranked)
+
+
+def test_a_loop_of_few_samples_is_not_ranked() -> None:
+    with pytest.raises(ValueError, match="it needs 40 samples; there are 30"):
+        rank_loop(measured(sw.Gear(stiffness=SEGMENTS, hysteresis=ELEMENTS), along(0, 1, -1, 1, n=30)), sw.Gear())

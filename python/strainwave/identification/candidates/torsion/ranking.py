@@ -91,6 +91,10 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
     Raises:
         ValueError: too few samples for any candidate
     """
+    if len(loop.twist) < 2 * BLOCKS:
+        raise ValueError(
+            f"a ranking holds out {BLOCKS} blocks of a loop, so it needs {2 * BLOCKS} samples; there are {len(loop.twist)}"
+        )
     every = np.ones(len(loop.twist), bool)
     tried = _Tried(loop, gear, every)
     beside = asked(loop, gear, friction_measured)
