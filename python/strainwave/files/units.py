@@ -73,7 +73,7 @@ _WORDS = {
 }  # fmt: skip
 
 # What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.
-_COUNTED = re.compile(r"(?:counts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII)
+_COUNTED = re.compile(r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII)
 
 # German data sheets count revolutions as U, but only per time; alone, U is a voltage there.
 _REVOLUTIONS = re.compile(r"^U(?=/(?:min|s)$|\*(?:min|s)-1$)")
@@ -174,6 +174,15 @@ def measures(unit: str, wanted: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def counts(unit: str) -> bool:
+    """Whether a unit is that of an encoder's counts, without or with the counts of a revolution.
+
+    >>> counts("inc"), counts("counts/16384"), counts("rad")
+    (True, True, False)
+    """
+    return any(_COUNTED.fullmatch(each) for each in (unit, f"{unit}/1", unit.replace("/", "/1/", 1)))
 
 
 def check(unit: str) -> str:

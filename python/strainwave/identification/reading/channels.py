@@ -18,11 +18,16 @@ KINDS: dict[Kind, str] = {
 
 
 class Channel(NamedTuple):
-    """What a channel measures, and of which shaft; whether it is a reference instead."""
+    """What a channel measures, and of which shaft; whether it is a reference, or what a model says, instead."""
 
     quantity: Quantity
     side: Side | None = None
     commanded: bool = False
+    modelled: bool = False
+
+    @property
+    def measured(self) -> bool:
+        return not (self.commanded or self.modelled)
 
     @property
     def unit(self) -> str:
@@ -37,6 +42,7 @@ CHANNELS: dict[str, Channel] = {
     "current": Channel("current"),
     "input_torque": Channel("torque", "input"),  # of the motor, at its shaft
     "joint_torque": Channel("torque", "output"),  # of the motor, counted at the output; or of a sensor there
+    "rigid_torque": Channel("torque", "output", modelled=True),  # of gravity and of arms that move together, as a model has it
     "input_angle": Channel("angle", "input"),
     "input_speed": Channel("speed", "input"),
     "output_angle": Channel("angle", "output"),
@@ -48,14 +54,3 @@ CHANNELS: dict[str, Channel] = {
     "angle": Channel("angle"),
 }
 ALIASES = {"position": "angle", "output_torque": "joint_torque", "velocity": "speed"}  # other names that people may give
-
-OF_KIND: dict[Kind, tuple[str, ...]] = {
-    "friction": ("speed", "torque", "current", "temperature"),
-    "torsion": ("twist", "torque", "input_angle", "input_torque"),
-    "log": (
-        *("time", "command", "voltage", "current", "input_torque", "joint_torque"),
-        *("input_angle", "input_speed", "output_angle", "output_speed", "temperature"),
-    ),
-    "encoders": ("time", "input_angle", "output_angle", "temperature"),
-    "effort": ("time", "angle", "speed", "torque", "current", "voltage", "temperature"),
-}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.labels import Source, places_of
 from strainwave.files.tables import OpenTable
-from strainwave.files.units import convert, measures
+from strainwave.files.units import convert, counts, measures
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -160,7 +160,7 @@ def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMappin
 
 
 def _is_called(column: Column, channel: Channel | None) -> bool:
-    if channel is None or (channel.quantity, channel.commanded) != (column.channel.quantity, column.channel.commanded):
+    if channel is None or channel._replace(side=None) != column.channel._replace(side=None):
         return False
     return channel.side is None or column.channel.side in (None, channel.side)
 
@@ -176,8 +176,9 @@ def _in_si(table: OpenTable, column: Column, values: Array, unit: str) -> Array:
     except ValueError as error:
         what = "command" if column.channel.commanded else column.channel.quantity
         place = f"{table.file} column {quoted(column.name)}"
-        remedy = f"give its unit, with {as_option('unit', column.name, column.channel.unit)}"
-        raise ValueError(one_line(f"{place} cannot be a {what}: {error}; {remedy}")) from None
+        hint = as_option("unit", column.name, "counts/16384" if counts(unit) else column.channel.unit)
+        remedy = f"give its unit, with {hint}"
+        raise ValueError(one_line(f"{place} cannot be the {what}: {error}; {remedy}")) from None
     return found
 
 

@@ -58,7 +58,7 @@ def kind_of(columns: Sequence[Column], mapping: FileMapping) -> Found:
 
 
 def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
-    has = {column.channel.quantity for column in columns if not column.channel.commanded}
+    has = {column.channel.quantity for column in columns if column.channel.measured}
     timed = "time" in has or "rate" in mapping.constants
     effort, motion = has & {"torque", "current"}, has & {"angle", "speed"}
     commanded = any(column.channel.commanded for column in columns)
@@ -163,6 +163,7 @@ def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
         ("voltage", _measured(columns, "voltage") or _commanded(columns, "voltage")),
         ("command", _commanded(columns, "angle")),
         ("temperature", _measured(columns, "temperature")),
+        ("rigid_torque", [column for column in columns if column.channel.modelled]),
     ):
         for column in some:
             _put(found, name, column)
@@ -193,7 +194,7 @@ def _encoders(columns: Sequence[Column], mapping: FileMapping) -> Found:
 def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
     found: dict[str, Column] = {}
     for column in columns:
-        if not column.channel.commanded:
+        if column.channel.measured:
             _put(found, column.channel.quantity, column)
     effort = listed(found[name].name for name in ("torque", "current") if name in found)
     side = mapping.side or next((column.channel.side for column in found.values() if column.channel.side), None)
@@ -219,7 +220,7 @@ _READERS: dict[Kind, Callable[[Sequence[Column], FileMapping], Found]] = {
 
 
 def _measured(columns: Sequence[Column], quantity: Quantity) -> list[Column]:
-    return [column for column in columns if column.channel.quantity == quantity and not column.channel.commanded]
+    return [column for column in columns if column.channel.quantity == quantity and column.channel.measured]
 
 
 def _commanded(columns: Sequence[Column], quantity: Quantity) -> list[Column]:

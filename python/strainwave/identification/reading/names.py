@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from strainwave.files.labels import Label
-from strainwave.files.units import measures
+from strainwave.files.units import counts, measures
 
 Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature"]
 Side = Literal["input", "output"]
@@ -121,7 +121,7 @@ def meaning(label: Label) -> Meaning | None:
     quantity, at = _quantity(words, unit)
     if quantity is None and any(word in COMMANDED for word in words):
         quantity = "angle"
-    if quantity is None or (unit is not None and not measures(unit, UNITS[quantity])):
+    if quantity is None or (unit is not None and not measures(unit, UNITS[quantity]) and not counts(unit)):
         return None
     words = [BEHIND.get(word, word) if place > at else word for place, word in enumerate(words)]
     sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]

@@ -67,6 +67,16 @@ def test_counts_are_asked_for(tmp_path: Path) -> None:
     assert found.recording["input_angle"] == pytest.approx(counts / 65536 * 2.0 * np.pi)
 
 
+def test_counts_without_those_of_a_revolution_are_asked_for(tmp_path: Path) -> None:
+    header = "Position actual value [cnt],Velocity actual value [cnt/s],current [A]"
+    message = r'"Position actual value" cannot be the angle: unit "cnt" needs the counts of one revolution; write it like '
+    with pytest.raises(ValueError, match=message):
+        log(tmp_path, header, ANGLE, SPEED, SPEED)
+    units = {"Position actual value": "inc/4096", "Velocity actual value": "inc/4096/s"}
+    found = recognise(tmp_path / "log.csv", FileMapping(units=units, side="input"))
+    assert found.recording["input_speed"] == pytest.approx(SPEED / 4096 * 2.0 * np.pi)
+
+
 def test_what_is_said_goes_before_what_is_stated(tmp_path: Path) -> None:
     log(tmp_path, "theta_m [deg],i [A]", ANGLE, SPEED)
     found = recognise(tmp_path / "log.csv", FileMapping(units={"theta_m": "rad"}))

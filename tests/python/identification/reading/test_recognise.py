@@ -217,3 +217,10 @@ def test_a_file_without_a_header_is_read_by_numbers(tmp_path: Path) -> None:
 def test_signs_are_turned_where_that_is_said(tmp_path: Path) -> None:
     path = write(tmp_path / "log.csv", "t [s],q [rad],tau [N.m]", TIME, SWING, SWING)
     assert recognise(path, FileMapping(sign={"joint_torque": -1})).recording["joint_torque"] == pytest.approx(-SWING)
+
+
+def test_the_torque_that_a_model_of_the_arm_gives_is_taken_where_it_is_named(tmp_path: Path) -> None:
+    path = write(tmp_path / "log.csv", "t [s],q [rad],tau [N.m],model [N.m]", TIME, SWING, SWING, 2.0 * SWING)
+    found = recognise(path, FileMapping(columns={"rigid_torque": "model"}))
+    assert found.columns == {"time": "t", "output_angle": "q", "joint_torque": "tau", "rigid_torque": "model"}
+    assert found.recording["rigid_torque"] == pytest.approx(2.0 * SWING)
