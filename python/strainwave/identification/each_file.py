@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from strainwave import Drive, loads, motor
+from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion, regression
+from strainwave.identification.curves import curves_of, curves_of_orders
+from strainwave.identification.evidence.verdict import numbers
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
@@ -79,9 +82,10 @@ def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
 def _of_twin(file: Recognised, found: Twin) -> Finding:
     evidence = found.evidence[-1]
     remarks = (*file.remarks, *evidence.remarks)
+    curves = curves_of(evidence.fit)
     if doubts := evidence.doubts:
         refused = "; ".join(f"{doubt.what}. What to do: {doubt.remedy}" for doubt in doubts)
-        return Finding(file.path.name, file, evidence.candidates[0][0], (), np.nan, remarks, refused)
+        return Finding(file.path.name, file, evidence.candidates[0][0], (), np.nan, remarks, refused, curves=curves)
     own = {evidence.path(estimate) for estimate in evidence.fit.estimates}
     gear = found.gear_set.gear
     told = tuple(
@@ -90,7 +94,7 @@ def _of_twin(file: Recognised, found: Twin) -> Finding:
         if v.path in own
     )
     share = float(evidence.error[0] / np.std(evidence.fit.experiment.measured))
-    return Finding(file.path.name, file, evidence.candidates[0][0], told, share, remarks)
+    return Finding(file.path.name, file, evidence.candidates[0][0], told, share, remarks, curves=curves)
 
 
 def _with_gear(known: Known, gear: Any, found: Twin, parts: set[str], friction: Recording | None = None) -> Known:
@@ -112,10 +116,32 @@ def _law(path: str, gear: Any) -> str:
 
 
 def _encoders(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    found = transmission_error(file.recording, ratio=None)
-    return Finding(
-        file.path.name, file, "orders of the input", tuple(_orders(found)), np.nan, (*file.remarks, *found.remarks)
-    ), known
+    found = transmission_error(file.recording)
+    told = tuple(_orders(found))
+    remarks, curves = (*file.remarks, *found.remarks), curves_of_orders(found)
+    finding = Finding(file.path.name, file, "orders of the input", told, np.nan, remarks, curves=curves)
+    return finding, _with_error(known, found, file.path.name)
+
+
+def _with_error(known: Known, found: TransmissionError, name: str) -> Known:
+    """The set with a kinematic error, unless an earlier file has told it."""
+    law = found.law
+    if "kinematic_error" in known.told or not law.order:
+        return known
+    by_order = {each.order: each for each in found.orders if each.significant and each.shaft != "output"}
+    sigmas = {f"gear.kinematic_error.amplitude[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
+    sigmas |= {f"gear.kinematic_error.phase[{i}]": by_order[order].phase_sigma for i, order in enumerate(law.order)}
+    return _with_parts(known, {"kinematic_error": law}, sigmas, name)
+
+
+def _with_parts(known: Known, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> Known:
+    """The set with parts of the gear that a file tells."""
+    gear, names = known.gear_set.gear.replace(**parts), tuple(f"gear.{part}." for part in parts)
+    sources = {path: entry for path, entry in known.gear_set.sources.items() if not path.startswith(names)}
+    for path in (path for path in numbers(gear) if path.startswith(names)):
+        told = path in sigmas and np.isfinite(sigmas[path])
+        sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
+    return replace(known, gear_set=replace(known.gear_set, gear=gear, sources=sources), told=known.told | set(parts))
 
 
 def _orders(found: TransmissionError) -> Iterator[Told]:
@@ -146,19 +172,34 @@ def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
     if not before.share > EXPLAINED or before.inertia <= 0.0:
         raise ValueError(
             f"inertia, friction and gravity explain {100.0 * max(before.share, 0.0):.0f} % of the variation of {log.effort}: "
-            "the drive did more than one shaft does (give the torque of other joints as a column load_torque), or sides or units "
-            "are not what they are taken for"
+            "the drive did more than one shaft does (give the torque of other joints as a column load_torque), or sides or "
+            "units are not what they are taken for"
         )
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         remarks.append(f"{spoilt_rows} samples of {log.effort} are outliers or clipped, and left out")
     best, *_ = fit_motion({file.path.name: log}, drive)
-    told = list(_of_motion(best, known.gear_set, drive, in_current))
+    told = list(_of_motion(best, known.gear_set, drive, recording, in_current))
+    if not in_current:
+        known = _with_friction(known, best, told, file.path.name)
     if set(ANGLES) <= set(recording.names):
-        errors = transmission_error(recording, ratio=None)
+        errors = transmission_error(recording)
         told += _orders(errors)
         remarks += errors.remarks
-    return Finding(file.path.name, file, best.name, tuple(told), best.error, (*file.remarks, *remarks)), known
+        known = _with_error(known, errors, file.path.name)
+    every, curves = (*file.remarks, *remarks), curves_of(best.fit)
+    return Finding(file.path.name, file, best.name, tuple(told), best.error, every, curves=curves), known
+
+
+def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], name: str) -> Known:
+    """The set with the friction that a log tells, of places of which no earlier file has told any."""
+    gear = best.fit.parts[0].model.gear
+    sigmas = {each.path: each.sigma for each in told}
+    for part in ("friction_input", "friction_mesh"):
+        law = getattr(gear, part)
+        if part not in known.told and law != getattr(known.gear_set.gear, part):
+            known = _with_parts(known, {part: law}, sigmas, name)
+    return known
 
 
 def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:
@@ -181,7 +222,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current
 
 
-def _of_motion(best: MotionCandidate, gear_set: GearSet, drive: Drive, in_current: bool) -> Iterator[Told]:
+def _of_motion(best: MotionCandidate, gear_set: GearSet, drive: Drive, recorded: Recording, in_current: bool) -> Iterator[Told]:
     """The numbers of a log; each as uncertain as the torque constant, besides."""
     entry = gear_set.sources.get("motor.torque_constant")
     constant, ratio = getattr(gear_set.motor, "torque_constant", 0.0), drive.gear.kinematics.ratio
@@ -189,20 +230,15 @@ def _of_motion(best: MotionCandidate, gear_set: GearSet, drive: Drive, in_curren
         (entry.uncertainty / constant if entry.uncertainty else entry.spread or 0.0) if entry is not None and constant else 0.0
     )
     rotor = (drive.motor.inertia + drive.gear.input_inertia) * ratio**2
+    encoder = "of input_angle" if "input_angle" in recorded else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     for estimate in best.fit.estimates:
-        if estimate.path in nuisances or estimate.path.rpartition(".")[2] in (
-            "driving_reverse",
-            "backdriving_forward",
-            "backdriving_reverse",
-        ):
+        if estimate.path in nuisances or estimate.path in best.tied:
             continue
-        if estimate.path.endswith(".breakaway") and best.name in ("Coulomb and viscous", "with loss under load"):
-            continue  # it follows Coulomb's torque
         size = abs(estimate.value) + (rotor if estimate.path == "load.inertia" else 0.0)
         of_torque = estimate.unit.startswith(("N.m", "kg.m2"))
         sigma = float(np.hypot(estimate.sigma, relative * size if of_torque else 0.0))
         untold = "its standard deviation exceeds half the value" if sigma > 0.5 * abs(estimate.value) and of_torque else ""
         unit = estimate.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad") if in_current else estimate.unit
-        law = "in A" if in_current and of_torque else ""
+        law = "in A" if in_current and of_torque else encoder if estimate.path == "load.gravity_phase" else ""
         yield Told(estimate.path, unit, estimate.value, sigma, law, untold)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from strainwave.files.recording import Recording
 from strainwave.identification.reading.recognise import Recognised
 
 APART = 3.0  # standard deviations: two files contradict each other
@@ -46,6 +47,7 @@ class Finding:
         remarks: what to know of it, in short sentences
         refused: why nothing was found; empty where something was
         same_as: the file that shows the same measurement; empty where none does
+        curves: measured beside modelled, as `curves` of this package makes them; None where nothing was fitted
     """
 
     name: str
@@ -56,6 +58,7 @@ class Finding:
     remarks: tuple[str, ...] = ()
     refused: str = ""
     same_as: str = ""
+    curves: Recording | None = None
 
 
 @dataclass(frozen=True)
@@ -80,11 +83,13 @@ def numbers_of(findings: Sequence[Finding]) -> tuple[Number, ...]:
 
     Nothing is averaged: two files that disagree show that one of them, or the model, is wrong.
     """
-    by_path: dict[tuple[str, str], dict[str, Told]] = {}
+    by_path: dict[tuple[str, ...], dict[str, Told]] = {}
     for finding in findings:
         for told in finding.told:
             if not told.why and np.isfinite(told.sigma):
-                by_path.setdefault((told.path, told.law), {})[finding.name] = told
+                # what a drive carries may differ from one run to another, and is no number of the gear
+                run = (finding.same_as or finding.name) if told.path.startswith("load.") else ""
+                by_path.setdefault((told.path, told.law, run), {})[finding.name] = told
     copies = {finding.name for finding in findings if finding.same_as}
     return tuple(_number(each, copies) for each in by_path.values())
 

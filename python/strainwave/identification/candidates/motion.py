@@ -33,11 +33,13 @@ class MotionCandidate(ComparedByFields):
     Attributes:
         name: what it describes
         fit: the fit to the whole logs
+        tied: paths of numbers that follow others
         error: rms of each log's effort, held out, over the rms of its effort about its mean, all logs together [1]
     """
 
     name: str
     fit: Fit
+    tied: frozenset[str]
     error: float
 
 
@@ -220,7 +222,8 @@ def _candidate(
     held = fit(form.drive, dict(logs), paths, training=masks, **given)
     left = sum(float(np.sum(part.residuals[:, ~part.training] ** 2) / np.var(part.experiment.measured)) for part in held.parts)
     count = sum(int(np.sum(~part.training)) for part in held.parts)
-    return MotionCandidate(form.name, fit(held.model, dict(logs), paths, **given), float(np.sqrt(left / count)))
+    found = fit(held.model, dict(logs), paths, **given)
+    return MotionCandidate(form.name, found, frozenset(form.ties), float(np.sqrt(left / count)))
 
 
 def _training(log: MotionLog) -> NDArray[np.bool_]:
