@@ -3,6 +3,7 @@
 from strainwave.identification.candidates.torsion.beside import Friction, Nothing
 from strainwave.identification.candidates.torsion.candidate import TorsionCandidate
 from strainwave.identification.candidates.torsion.folds import held_out_blocks
+from strainwave.identification.candidates.torsion.ranking import Candidate, rank_loop
 from strainwave.identification.candidates.torsion.selection import fit_loop
 
-__all__ = ["Friction", "Nothing", "TorsionCandidate", "fit_loop", "held_out_blocks"]
+__all__ = ["Candidate", "Friction", "Nothing", "TorsionCandidate", "fit_loop", "held_out_blocks", "rank_loop"]

@@ -25,7 +25,7 @@ from strainwave.identification.candidates.torsion.candidate import (
 from strainwave.identification.candidates.torsion.folds import BLOCKS, FOLDS, block_of, held_out_blocks
 from strainwave.identification.candidates.torsion.memories import BESIDE_A_SPRING, WHOLE
 from strainwave.identification.candidates.torsion.selection import asked
-from strainwave.identification.candidates.torsion.springs import LINEAR, PLAIN, Backlash, Kind, Negligible
+from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Kind, Negligible
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.fitting.fit import Fit, fit
@@ -73,7 +73,7 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
     """Fits all kinds of spring and hysteresis to a loop, and ranks them by what they predict.
 
     In stages, not all with all: springs with Maxwell elements, then the other laws of hysteresis beside the best of these
-    springs, then the springs beside the best law. Each fit starts from a convex problem, without a guess.
+    springs and the simplest ones, then the springs beside the best law. Each fit starts from a convex problem, without a guess.
 
     What is held out are blocks of neighbours, each predicted by a fit to three quarters of the blocks. By how much a model is
     worse than the best is judged on the same blocks, so that what is hard to predict for both does not count. The simplest that
@@ -107,6 +107,7 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
         tried.add([Negligible()], WHOLE)
         if not tried.best.beside.whole_spring:
             tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.beside])
+        tried.add([LINEAR, CUBIC, tried.best.spring], BESIDE_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = BEHIND * min(_left(each) for each in candidates)
     found = [_judged(each, FOLDS if _left(each) < near else 1) for each in candidates]
