@@ -174,7 +174,7 @@ def _mapping(place: str, said: Mapping[str, Any]) -> FileMapping:
 
 def _constant(place: str, value: object) -> float:
     """A number in SI units, or a text with a unit."""
-    name = place.rpartition(".")[2]
+    name = place.replace(" ", ".").rpartition(".")[2]
     _check_known(place, name, CONSTANTS, "constants")
     if isinstance(value, str):
         number, _, unit = value.strip().partition(" ")
@@ -186,6 +186,15 @@ def _constant(place: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise ValueError(f"{place} = {shortened(value)} must be a number in {CONSTANTS[name]}, or a text with number and unit")
     return float(value)
+
+
+def constant_of(name: str, value: str) -> float:
+    """A constant as an option gives it, in SI units.
+
+    >>> constant_of("torque_constant", "75 mN.m/A")
+    0.075
+    """
+    return _constant(f"--constant {name}", value)
 
 
 def _text(place: str, value: object) -> str:

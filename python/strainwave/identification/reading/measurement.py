@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from strainwave import arguments
-from strainwave.files.labels import Label
+from strainwave.files.labels import Label, places_of
 from strainwave.files.recording import Recording
 from strainwave.files.tables import open_table
 from strainwave.files.units import convert, measures
@@ -52,7 +52,7 @@ def read_measurement(
     Args:
         kind: friction, torsion or log
         path: the file
-        columns: for each name wanted the name in the file, where it differs
+        columns: for each name wanted the name in the file, where it differs, or the number of the column, from 1
         units: units of columns whose header has none
 
     Returns:
@@ -114,8 +114,8 @@ def read_measurements(
 
 def columns_in(kind: Kind, path: str | Path, columns: Mapping[str, str]) -> dict[str, str]:
     """Those columns that a measurement of this kind can have, and the file has."""
-    there = {text for label in _labels(path) for text in (label.text, label.name)}
-    return {name: columns[name] for name in columns.keys() & COLUMNS[kind].keys() if columns[name] in there}
+    present = _labels(path)
+    return {name: columns[name] for name in columns.keys() & COLUMNS[kind].keys() if places_of(present, columns[name])}
 
 
 def unused_columns(kind: Kind, path: str | Path, columns: Mapping[str, str] | None = None) -> tuple[str, ...]:
@@ -128,8 +128,9 @@ def unused_columns(kind: Kind, path: str | Path, columns: Mapping[str, str] | No
         ValueError: the file cannot be read, or has no column of a name that `columns` gives
     """
     present = _labels(path)
-    used = {name_in_file for name, name_in_file in _found(kind, path, present, columns).items() if name not in NOT_FITTED}
-    return tuple(label.name for label in present if not used & {label.text, label.name})
+    found = _found(kind, path, present, columns)
+    used = {place for name in found.keys() - {*NOT_FITTED} for place in places_of(present, found[name])}
+    return tuple(label.name for place, label in enumerate(present) if place not in used)
 
 
 def _labels(path: str | Path) -> Sequence[Label]:
@@ -143,7 +144,7 @@ def _found(kind: Kind, path: str | Path, present: Sequence[Label], columns: Mapp
     if extra := named.keys() - COLUMNS[kind].keys():
         raise ValueError(f"a {kind} measurement has no column {quoted(min(extra))}; it has {listed(COLUMNS[kind])}")
     for name, wanted in named.items():
-        if not any(wanted in (label.text, label.name) for label in present):
+        if not places_of(present, wanted):
             there = listed(label.name for label in present)
             raise ValueError(one_line(f"{path} has no column {quoted(wanted)} to be the {name}; it has {there}"))
     found = {name: named.get(name) or _alike(path, present, name) for name in COLUMNS[kind]}
@@ -177,7 +178,8 @@ def _check_needed(kind: Kind, path: str | Path, present: Sequence[Label], found:
     if missing:
         wanted = " or ".join(" and ".join(needed) for needed in NEEDED[kind])
         needs = f"a {kind} measurement needs columns {wanted}; this file has {listed(label.name for label in present)}"
-        free = [label for label in present if not {label.text, label.name} & set(found.values())]
+        taken = {place for wanted in found.values() for place in places_of(present, wanted)}
+        free = [label for place, label in enumerate(present) if place not in taken]
         advice = " ".join(_advice(name, COLUMNS[kind][name], free) for name in missing)
         raise ValueError(one_line(f"{path}: {needs}. Name yours like {advice}"))
 

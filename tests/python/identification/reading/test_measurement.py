@@ -234,3 +234,15 @@ def test_what_a_file_holds_is_told_in_one_short_line(tmp_path: Path) -> None:
         read_measurement("friction", path)
     assert str(told.value).isprintable()
     assert len(str(told.value)) < 500
+
+
+def test_columns_of_a_table_without_a_header_are_named_by_their_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "table.txt"
+    path.write_text("7 10 0.1\n7 20 0.2\n")
+    columns, units = {"speed": "2", "torque": "3"}, {"speed": "rpm", "torque": "N.m"}
+    recording = read_measurement("friction", path, columns, units)
+    assert (recording["speed"].tolist(), recording["torque"].tolist()) == ([10.0, 20.0], [0.1, 0.2])
+    assert unused_columns("friction", path, columns) == ("column_1",)
+    assert read_measurements({"friction": path}, columns, units)["friction"] == recording
+    with pytest.raises(ValueError, match=r'has no column "4" to be the torque; it has column_1, column_2, column_3$'):
+        read_measurement("friction", path, {"speed": "2", "torque": "4"}, units)
