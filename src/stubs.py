@@ -13,8 +13,9 @@ from strainwave import _core
 
 PACKAGE = Path(strainwave.__file__).parent
 
-# Plain attributes carry no signature, so their types stand here.
+# Plain attributes carry no signature, and what Python adds is not the extension's own, so their types stand here.
 ATTRIBUTES = {
+    r"\.Gear\.from_datasheet$": "@staticmethod\ndef from_datasheet(ratio: float, **figures: Any) -> Gear: ...",
     r"\.fields$": "fields: tuple[dict[str, Any], ...]",
     r"\.quantities$": "quantities: tuple[tuple[str, str, str], ...]",
     r"\.families$": "families: dict[str, dict[str, type[Any]]]",
@@ -36,7 +37,7 @@ def stub(module: str) -> str:
 
 
 def pattern(name: str, declaration: str) -> ReplacePattern:
-    return ReplacePattern(re.compile(name), [r"\from typing import Any", declaration, ""], 0)
+    return ReplacePattern(re.compile(name), [r"\from typing import Any", *declaration.splitlines(), ""], 0)
 
 
 def main() -> None:

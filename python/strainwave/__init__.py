@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
     from strainwave.files.recording import Recording
     from strainwave.identification.fitting.fit import Fit, fit
+    from strainwave.identification.identify import Identified, identify
     from strainwave.identification.orders.ripple import Ripple, ripple
     from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
     from strainwave.identification.twin import Twin, twin
@@ -70,6 +71,7 @@ _LAZY = {
     "Fit": "identification.fitting.fit",
     "FrequencyResponse": "analysis.response",
     "GearSet": "files.gear_set",
+    "Identified": "identification.identify",
     "Linearisation": "analysis.linear",
     "Orders": "analysis.orders",
     "RatingCheck": "files.ratings",
@@ -90,6 +92,7 @@ _LAZY = {
     "equilibrium": "analysis.steady",
     "fit": "identification.fitting.fit",
     "frequency_response": "analysis.response",
+    "identify": "identification.identify",
     "linearise": "analysis.linear",
     "load": "files.gear_set",
     "modes": "analysis.linear",
@@ -122,6 +125,7 @@ __all__ = [
     "FrequencyResponse",
     "Gear",
     "GearSet",
+    "Identified",
     "Linearisation",
     "Orders",
     "PassivityWarning",
@@ -148,6 +152,7 @@ __all__ = [
     "frequency_response",
     "friction",
     "hysteresis",
+    "identify",
     "kinematic_error",
     "kinematics",
     "linearise",
@@ -177,6 +182,27 @@ __all__ = [
     "twin",
     "variation",
 ]
+
+
+def from_datasheet(ratio: float, **figures: Any) -> Gear:
+    """The gear of `GearSet.from_datasheet`; that set also has the source of each number.
+
+    Args:
+        ratio: that with the circular spline held, signed, or with `fixed`
+        figures: of the data sheet, as k1="31e3 N.m/rad"; `strainwave.files.datasheet.from_datasheet` describes all
+
+    Raises:
+        TypeError, ValueError: as there
+
+    >>> gear = Gear.from_datasheet(ratio=-100, size=25, k1="0.9 kgf.m/arcmin")
+    >>> round(gear.stiffness.k1)
+    26190
+    """
+    return import_module("strainwave.files.datasheet").from_datasheet(ratio, **figures).gear  # type: ignore[no-any-return]
+
+
+Gear.from_datasheet = staticmethod(from_datasheet)  # type: ignore[method-assign]
+del from_datasheet
 
 
 def __getattr__(name: str) -> Any:

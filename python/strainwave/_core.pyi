@@ -221,6 +221,9 @@ class Gear:
         Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of `trace`, to rounding, for every spring and hysteresis.
         """
 
+    @staticmethod
+    def from_datasheet(ratio: float, **figures: Any) -> Gear: ...
+
 class Sensors:
     """
     What the controller of a drive sees: one sensor for each quantity.

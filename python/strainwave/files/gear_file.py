@@ -37,9 +37,8 @@ class Contents(Protocol):
 _TEXTS = ("name", "maker", "note")
 
 
-def read(path: Path) -> dict[str, Any]:
+def read(content: Mapping[str, Any]) -> dict[str, Any]:
     """The members of the set in a file; `ValueError` says what is wrong in it, with table and key."""
-    content = document(path)
     checked(_head_form(), content)
     models, sources = _read_models(content)
     with at("[ratings]"):

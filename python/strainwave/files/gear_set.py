@@ -178,7 +178,8 @@ class GearSet:
         """Read a set of the catalogue by name, or a gear file by path.
 
         Args:
-            name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder
+            name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder.
+                A file with a table [datasheet] holds figures of a maker, as `from_datasheet` takes them
 
         Returns:
             The set, in SI units. A table left out is the part that does nothing, its sources say "not given".
@@ -188,7 +189,32 @@ class GearSet:
         """
         path = _file(name_or_path)
         with gear_file.at(f"{path}"):
-            return GearSet(**gear_file.read(path))
+            content = gear_file.document(path)
+            if "datasheet" in content:
+                from strainwave.files import datasheet
+
+                return datasheet.read(content)
+            return GearSet(**gear_file.read(content))
+
+    @staticmethod
+    def from_datasheet(ratio: float, **figures: Any) -> GearSet:
+        """The set of a gear in no catalogue, from what its maker's data sheet says.
+
+        Args:
+            ratio: that with the circular spline held, signed, or with `fixed`
+            figures: as k1="31e3 N.m/rad", starting_torque="3.4 cN.m", size=25; all are described at
+                `strainwave.files.datasheet.from_datasheet`
+
+        Raises:
+            TypeError, ValueError: as there
+
+        >>> printed = GearSet.from_datasheet(ratio=-80, rated_torque="44 N.m", starting_torque="0.5 N.m")
+        >>> printed.sources["gear.friction_input.breakaway"].source
+        'data sheet, starting torque'
+        """
+        from strainwave.files.datasheet import from_datasheet
+
+        return from_datasheet(ratio, **figures)
 
     def replace(self, **changes: Any) -> GearSet:
         """The same with the named members changed; `sources` and `ratings` are replaced as a whole.

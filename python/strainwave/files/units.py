@@ -47,6 +47,7 @@ _DEFINITIONS = (
     "revolution_per_minute = revolution / minute = rpm",
     "gram = 1e-3 kilogram = g",
     "newton = kilogram * meter / second ** 2 = N",
+    "kilogram_force = 9.80665 newton = kgf",
     "joule = newton * meter = J",
     "watt = joule / second = W",
     "volt = watt / ampere = V",
@@ -69,7 +70,7 @@ _CHARACTERS = str.maketrans(
 _WORDS = {
     "Nm": "N*m", "NM": "N*m", "Ncm": "N*cm", "Nmm": "N*mm", "mNm": "mN*m", "kNm": "kN*m", "Nms": "N*m*s", "kgm": "kg*m",
     "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "RPM": "rpm", "ohm": "Ohm", "sec": "s", "msec": "ms",
-    "Grad": "deg", "tr": "rev", "Umdr": "rev", "Upm": "rpm", "UPM": "rpm",
+    "cNm": "cN*m", "kgfm": "kgf*m", "kgfcm": "kgf*cm", "Grad": "deg", "tr": "rev", "Umdr": "rev", "Upm": "rpm", "UPM": "rpm",
 }  # fmt: skip
 
 # What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.

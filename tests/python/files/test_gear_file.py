@@ -156,7 +156,7 @@ SPRINGS = '"linear" or "piecewise" or "three_segment" or "cubic" or "multi_compl
 STIFFNESS = f"write model = {SPRINGS}"
 LAWS = (
     '"viscous" or "coulomb" or "stribeck" or "position_dependent" or "lugre" or "maxwell_slip_friction" or "load_dependent" '
-    'or "torque_efficiency" or "mixed_lubrication"'
+    'or "mixed_lubrication" or "curved_viscous" or "angle_speed_map" or "torque_efficiency" or "asymmetric"'
 )
 PARTS = (
     "name, maker, note, ratings, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, friction_input, "

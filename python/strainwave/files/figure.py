@@ -1,0 +1,68 @@
+"""A figure as people and data sheets write it: a number in SI units, a text such as "1.2 N·m/arcmin", or a quantity."""
+
+from __future__ import annotations
+
+import re
+
+from strainwave import arguments
+from strainwave.files.entries import Quantity
+from strainwave.files.units import check
+from strainwave.messages import quoted
+
+Figure = float | str | Quantity
+
+_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
+_WRITTEN = re.compile(
+    r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)"
+    r"(?:\s*[x×·*]?\s*10(?:\^(?P<power>[+-]?\d{1,3})|(?P<raised>[⁻⁰¹²³⁴-⁹]+)))?"
+    r"\s*(?P<unit>.*)"
+)
+
+
+def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
+    """A figure as a quantity in the unit it is written in.
+
+    Args:
+        name: what the figure is called
+        given: a number in `unit`; a text: the number, with a decimal point or comma and perhaps a power of ten, then the unit,
+            where "≤" may stand before it; or a quantity, which has a source of its own
+        unit: what it must measure
+        source: where it comes from
+
+    Raises:
+        TypeError: it is none of these
+        ValueError: the text is not written so, the comma is ambiguous, or the unit measures something else
+
+    >>> quantity_of("k1", "1.2 N·m/arcmin", "N.m/rad", "data sheet").to("N.m/rad").value
+    4125.296...
+    >>> quantity_of("k1", "3,1 × 10^4 Nm/rad", "N.m/rad", "data sheet").value
+    31000.0
+    """
+    if isinstance(given, Quantity):
+        found = given
+    elif isinstance(given, str):
+        found = _read(name, given, unit, source)
+    else:
+        found = Quantity(value=arguments.number(name, given, unit), unit=unit, source=source)
+    try:
+        found.to(unit)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    return found
+
+
+def _read(name: str, text: str, unit: str, source: str) -> Quantity:
+    written = _WRITTEN.fullmatch(text.strip().removeprefix("<").removeprefix("≤").strip())
+    if written is None:
+        raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')
+    number = written["number"]
+    if re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", number):
+        raise ValueError(f"{name} = {quoted(text)}: the comma may separate thousands or decimals; write a point, or none")
+    power = (written["raised"] or written["power"] or "0").translate(_RAISED)
+    value = float(f"{number.replace(',', '.')}e{power}") if "e" not in number.lower() else float(number) * 10.0 ** int(power)
+    if not written["unit"] and unit != "1":
+        raise ValueError(f'{name} = {quoted(text)} has no unit; write it as "{number} {unit}"')
+    try:
+        return Quantity(value=value, unit=check(written["unit"] or "1"), source=source)
+    except ValueError as error:
+        raise ValueError(f"{name} = {quoted(text)}: {error}") from None
