@@ -16,7 +16,7 @@ from strainwave.identification.orders.smooth_part import Moving
 Array = NDArray[np.float64]
 Kind = Literal["order", "time", "either"]
 
-MOST = 24  # lines that are looked for
+MOST = 16  # lines that are looked for
 DECIDED = 10.0  # natural logarithm of the likelihood, by which one kind must be better than the other
 DECIDED_SHARE = 0.05  # of the evidence, by which it must be so at the least: speeds are never quite constant
 LOWEST = 3.0  # lines of resolution, below which an order is a trend

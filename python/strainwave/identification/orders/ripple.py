@@ -18,7 +18,7 @@ from strainwave.identification.orders.comb import Candidate, candidates
 from strainwave.identification.orders.floor import Floor
 from strainwave.identification.orders.lines import BESIDE, LOWEST, Found, Kind, Line, find_lines, waves, weighed_fit
 from strainwave.identification.orders.smooth_part import Moving, moving
-from strainwave.identification.orders.turning import Evenly, evenly, unwrapped
+from strainwave.identification.orders.turning import Evenly, beginning, evenly, unwrapped
 
 Array = NDArray[np.float64]
 Side = Literal["input", "output"]
@@ -30,6 +30,7 @@ OUTPUT_HIGHEST = 8.0  # times the ratio, or as much where that is not known as m
 SAMPLED = 0.8  # of a half revolution of the line, that may lie between samples at a usual speed
 VARIES = 0.1  # of the speed or the load, above which ripple is told apart by it
 LEAST_ORDER = 0.5  # of the input: what repeats more slowly is not told from friction and gravity
+LONGEST = 2**19  # samples that are looked at
 PERIODS = 3.0  # of the slowest order, that a record needs
 
 
@@ -165,7 +166,7 @@ def ripple(
     arguments.one_of("side", side, ("input", "output"))
     false_alarm = arguments.number("false_alarm", false_alarm, low=0.0, high=1.0)
     size = None if ratio is None else abs(arguments.number("ratio", ratio))
-    record = evenly(recording, [column, angle], rate)
+    record = beginning(evenly(recording, [column, angle], rate), LONGEST)
     turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))
     if float(np.ptp(turned)) == 0.0:
         raise ValueError(f"{angle} does not change; orders need a shaft that turns")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, tau
 
 import numpy as np
@@ -70,6 +70,15 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
     if rate is not None:
         raise ValueError(f"rate = {rate:g} Hz is given, but the recording has a time; leave one of them out")
     return _placed(columns, recording.time)
+
+
+def beginning(record: Evenly, count: int) -> Evenly:
+    """The first samples of a long record, and that it is so; the record itself, where it is not longer."""
+    if len(record) <= count:
+        return record
+    said = f"the first {count} of {len(record)} samples are used, which is enough for orders"
+    columns = {name: values[:count] for name, values in record.columns.items()}
+    return replace(record, columns=columns, measured=record.measured[:count], remarks=(*record.remarks, said))
 
 
 def _placed(columns: dict[str, Array], time: Array) -> Evenly:

@@ -21,7 +21,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.identification.orders.stage import HIGHEST, Problem, Regressed
-from strainwave.identification.orders.turning import Evenly, direction, evenly, reach_of, smooth_speed, unwrapped
+from strainwave.identification.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
 from strainwave.messages import listed
 
 Array = NDArray[np.float64]
@@ -30,12 +30,13 @@ Shaft = Literal["input", "mesh", "output"]
 ORDERS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)  # of the input, looked for in every record
 MESH_ORDERS = (1.0, 2.0, 4.0)  # of the wave generator seen from the spline that turns: 2 z_c / z_f and its like
 OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gravity
-LONGEST = 2**17  # samples that are compared; of a longer record neighbours are averaged
+LONGEST = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
 INDEPENDENT = 10.0  # samples, of what load leaves unexplained of a ratio (assumed)
 WINDUP = 2e-3  # rad: standard deviation of what each load winds a gear up by, in the mean of a record (assumed)
 TINY = 1e-9  # rad, less than any encoder tells
 WINDUP_SPREAD = 0.2  # of the wind-up that load explains, which is no linear function of it (assumed)
 SETTLED = 3.0  # standard deviations within which a whole ratio may lie
+SWAPPED = 1.1  # times as far as the input no output of a gear turns
 LOOSE = 0.02  # of the angle of the output, above which the error is none of a gear
 SWING = 0.1  # rad of the output, above which gravity is told from a constant
 MOST_HARMONICS = 16  # of `kinematic_error.Fourier`
@@ -179,6 +180,7 @@ def transmission_error(
     load = next((name for name in ("torque", "current") if name in recording), None)
     names = ["input_angle", "output_angle", *([load] if load else [])]
     record = evenly(recording, names, rate)
+    record = beginning(record, LONGEST * _averaged(record, recording))
     theta = unwrapped("input_angle", convert(record.columns["input_angle"], recording.unit("input_angle"), "rad"))
     output = unwrapped("output_angle", convert(record.columns["output_angle"], recording.unit("output_angle"), "rad"))
     pair = _Pair(record, theta, output)
@@ -264,6 +266,11 @@ def _ratio(pair: _Pair, given: float | None) -> Ratio:
             f"input_angle and output_angle do not move together: {float(np.std(off)):.3g} rad of "
             f"{float(np.ptp(pair.output)):.3g} rad are left where one "
             "is a multiple of the other; check which columns they are, their units, and whether one wraps"
+        )
+    if abs(slope) > SWAPPED:
+        raise ValueError(
+            f"output_angle turns {abs(slope):.4g} times as far as input_angle: the two seem to be swapped; name "
+            "them the other way round"
         )
     value, sigma = _slow_ratio(pair, 1.0 / slope)
     if given is not None:
@@ -352,8 +359,7 @@ def _regressed(
 ) -> tuple[Regressed, int]:
     """The regression, and how many samples each that is compared is the mean of."""
     count = len(pair.input)
-    allowed = 2.0 * HIGHEST * pi / (max(ORDERS) * pair.fastest) if pair.fastest > 0.0 else inf
-    every = int(max(1.0, min(-(-count // LONGEST), allowed)))
+    every = min(-(-count // LONGEST), _mean_of(pair.fastest))
 
     def mean(series: Array) -> Array:
         means: Array = series[: count // every * every].reshape(-1, every).mean(axis=1)
@@ -366,6 +372,17 @@ def _regressed(
         loads=np.stack([mean(each) for each in loads], axis=1),
     )
     return problem.regress(dynamic=dynamic), every
+
+
+def _mean_of(fastest: float) -> int:
+    """How many neighbours may be averaged, that the highest order still is seen at the fastest speed [rad per sample]."""
+    return int(min(max(1.0, 2.0 * HIGHEST * pi / (max(ORDERS) * fastest)), 1e9)) if fastest > 0.0 else 10**9
+
+
+def _averaged(record: Evenly, recording: Recording) -> int:
+    """The same, of a record whose angle may still wrap."""
+    steps = np.abs(np.diff(convert(record.columns["input_angle"], recording.unit("input_angle"), "rad")))
+    return _mean_of(float(np.quantile(np.minimum(steps, np.abs(tau - steps)), 0.99)))
 
 
 def _order(order: float, shaft: Shaft, pair: Array, covariance: Array, freedom: int, tested: int, allowed: float) -> ErrorOrder:

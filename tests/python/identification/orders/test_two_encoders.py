@@ -118,6 +118,8 @@ def test_what_cannot_be_is_refused() -> None:
         told(columns, ratio=100.0)
     with pytest.raises(ValueError, match="do not move together"):
         told({**columns, "output_angle": np.random.default_rng(0).normal(size=len(columns["time"]))})
+    with pytest.raises(ValueError, match="the two seem to be swapped"):
+        told({**columns, "input_angle": columns["output_angle"], "output_angle": columns["input_angle"]})
     with pytest.raises(ValueError, match="does not change"):
         told({**columns, "output_angle": np.zeros(len(columns["time"]))})
 
@@ -126,3 +128,12 @@ def test_a_given_ratio_of_the_other_sign_says_that_an_encoder_counts_the_other_w
     found = told(slow(-80.0), ratio=80.0)
     assert found.ratio.used == -80.0
     assert any("counts the other way round" in each for each in found.remarks)
+
+
+def test_of_a_long_record_the_beginning_is_used_and_that_is_said() -> None:
+    time = np.arange(0.0, 400.0, 0.001)
+    theta = 60.0 * np.sin(0.9 * time)
+    scatter = np.random.default_rng(0).normal(0.0, 1e-5, len(time))
+    found = told({"time": time, "input_angle": theta, "output_angle": theta / 50.0 - 1e-4 * np.sin(2 * theta) + scatter})
+    assert any("samples are used" in each for each in found.remarks)
+    assert abs(order(found, 2.0).amplitude - 1e-4) < 4.0 * order(found, 2.0).amplitude_sigma
