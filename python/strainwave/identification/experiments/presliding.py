@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +12,13 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.branches import monotone, noise, thinned, turning_points
+from strainwave.identification.experiments.branches import noise, thinned, turning_points
 from strainwave.identification.experiments.experiment import sensible
 
 Array = NDArray[np.float64]
 
 SURE = 6.0  # standard deviations of the angle's noise, that a shaft must leave its place by
 FEWEST = 8  # samples of a ramp
-MOST = 20_000  # samples of a loop that are compared
 TRIES = 50  # of the line that a shaft follows while it sticks
 LATER = 4.0  # times as far: the second mark by which the beginning of the motion is found
 
@@ -46,19 +46,19 @@ class PreslidingLoop(ComparedByFields):
         """
         check_recording("recording", recording)
         angle, torque = sensible(recording, "angle", "rad"), sensible(recording, "torque", "N.m")
-        taken, held = thinned(angle, torque, samples=MOST)
+        taken, held = thinned(angle, torque)
         return cls.along(taken, held, len(angle))
 
     @classmethod
     def along(cls, angle: Array, torque: Array, samples: int = 0) -> PreslidingLoop:
-        """Along a path as measured, with what its noise takes back left out."""
+        """Along a path as measured, each of its branches made one-way by least squares, which noise shifts neither way."""
         turns = turning_points(angle)
         if len(turns) < 2:
             raise ValueError(
                 f"the angle turns back {len(turns)} times; a presliding loop must go to and fro at least once, best with "
                 "several amplitudes, so that its torque over the way since the last reversal is seen"
             )
-        return cls(monotone(angle), torque, samples or len(angle))
+        return cls(one_way(angle, turns), torque, samples or len(angle))
 
     @cached_property
     def turns(self) -> list[int]:
@@ -111,6 +111,24 @@ def breakaways(recording: Recording, *, motion: float | None = None) -> list[Bre
             "to rest, and repeat; columns are time, torque and angle"
         )
     return found
+
+
+def one_way(path: Array, turns: list[int]) -> Array:
+    """The path with each branch between its turning points monotone, as near to it as can be (isotonic regression).
+
+    The running extreme would run ahead of noise on every branch, and so make every reversal longer than it was.
+
+    >>> one_way(np.array([0.0, 1.0, 0.8, 2.0, 1.0, 1.2, 0.0]), [3]).tolist()
+    [0.0, 0.9, 0.9, 2.0, 1.1, 1.1, 0.0]
+    """
+    from scipy.optimize import isotonic_regression
+
+    smooth = path.copy()
+    ends = [0, *turns, len(path) - 1]
+    for first, last in pairwise(ends):
+        branch = slice(first if first == 0 else first + 1, last + 1)
+        smooth[branch] = isotonic_regression(path[branch], increasing=bool(path[last] > path[first])).x
+    return smooth
 
 
 def _resolution(angle: Array) -> float:

@@ -110,6 +110,17 @@ def test_the_law_traces_the_loop_that_it_was_found_in() -> None:
     assert bent.quasistatic(angle) == pytest.approx(bristle(angle, 50.0, 0.055), abs=1e-6)
 
 
+def test_a_coarse_encoder_makes_the_stiffness_smaller_by_what_is_said() -> None:
+    """A step of a tenth of the reach of the stiffer element: some three percent, and the level within one."""
+    angle, random = path(4e-3, 200), np.random.default_rng(0)
+    torque = elements(angle, np.array([30.0, 10.0]), np.array([0.03, 0.025])) + 5e-4 * random.normal(size=len(angle))
+    step = 1e-4
+    read = np.round((angle + 2e-5 * random.normal(size=len(angle))) / step) * step
+    found = next(each for each in fit_presliding(PreslidingLoop.along(read, torque), elements=2) if len(each.estimates) == 4)
+    assert 0.95 * 40.0 < found.stiffness < 40.0
+    assert found.breakaway == pytest.approx(0.055, rel=0.01)
+
+
 def test_a_loop_that_never_slides_says_so() -> None:
     angle = path(2e-4)
     small = fit_presliding(PreslidingLoop.along(angle, elements(angle, np.array([30.0]), np.array([0.03]))))
