@@ -140,15 +140,32 @@ def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
 
 
 def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    torques, currents, remarks = _efforts(columns)
     found: dict[str, Column] = {}
-    why = [f"it holds {_names(columns)}, {len(columns[0].si)} rows in time: {KINDS['log']}"]
-    for column in _measured(columns, "time"):
-        _put(found, "time", column)
+    for name, some in (
+        ("time", _measured(columns, "time")),
+        ("command", _commanded(columns, "angle")),
+        ("voltage", _measured(columns, "voltage") or _commanded(columns, "voltage")),
+        ("current", currents),
+        ("temperature", _measured(columns, "temperature")),
+        ("rigid_torque", [column for column in columns if column.channel.modelled]),
+    ):
+        for column in some:
+            _put(found, name, column)
+    sides, why = _put_sided(found, columns, torques, mapping)
+    first = f"it holds {_names(columns)}, {len(columns[0].si)} rows in time: {KINDS['log']}"
+    return Found("log", found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
+
+
+def _put_sided(
+    found: dict[str, Column], columns: Sequence[Column], torques: Sequence[Column], mapping: FileMapping
+) -> tuple[set[Side], list[str]]:
+    """Puts motions and torques of a log on their sides; returns the sides that move, and what tells them."""
     motions = [*_measured(columns, "angle"), *_measured(columns, "speed")]
     if not motions:
         raise UndecidedError(f"a log needs an angle or a speed; it holds {_names(columns)}")
-    torques, currents, remarks = _efforts(columns)
     sides: set[Side] = set()
+    why = []
     for column in motions:
         side, told = side_of_motion(column, (*motions, *torques), found.get("time"), mapping.side)
         sides.add(side)
@@ -158,16 +175,7 @@ def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
         side, told = side_of_torque(column, sides, mapping.side)
         why.append(told)
         _put(found, "joint_torque" if side == "output" else "input_torque", column)
-    for name, some in (
-        ("current", currents),
-        ("voltage", _measured(columns, "voltage") or _commanded(columns, "voltage")),
-        ("command", _commanded(columns, "angle")),
-        ("temperature", _measured(columns, "temperature")),
-        ("rigid_torque", [column for column in columns if column.channel.modelled]),
-    ):
-        for column in some:
-            _put(found, name, column)
-    return Found("log", found, next(iter(sides)) if len(sides) == 1 else None, tuple(filter(None, why)), remarks)
+    return sides, [told for told in why if told]
 
 
 def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tuple[str, ...]]:
