@@ -124,7 +124,7 @@ def _of_file(finding: Finding) -> Iterator[str]:
         yield f"  NOT USED: {finding.refused}"
         return
     held_out = (
-        f"; error on data held out: {100.0 * finding.error:.2g} % of what varies" if finding.error == finding.error else ""
+        f"; error on data held out: {100.0 * finding.error:.2g} % of what varies" if math.isfinite(finding.error) else ""
     )
     yield f"  {finding.model}{held_out}"
     yield from (f"  {remark}" for remark in finding.remarks[:ANEW])

@@ -14,8 +14,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import strainwave as sw
 from numpy.typing import NDArray
+from strainwave.identification.candidates.motion import fit_motion
 from strainwave.identification.dynamics.inverse_dynamics import PARAMETERS, RigidDrive, regression, rigid_drive
+from strainwave.identification.experiments.motion_log import MotionLog
 
 Array = NDArray[np.float64]
 Report = Callable[[str, object], None]
@@ -160,3 +163,30 @@ def test_pulses_are_a_voltage_added_to_the_controller_output(identification: Log
     without = regression(validation.position, command, validation.time)
     assert relative(with_pulses.torque - with_pulses.matrix @ PUBLISHED, with_pulses.torque) < 0.1
     assert relative(without.torque - without.matrix @ PUBLISHED, without.torque) > 0.5
+
+
+def test_the_best_friction_predicts_the_second_record_better_than_coulombs(
+    identification: Log, validation: Log, report: Report
+) -> None:
+    """The axis as a gear of ratio -100 whose output it is: a metre for a radian, a newton for a newton metre."""
+    gear = sw.load("hfuc-20-100").replace(input_inertia=0.0)
+    axis = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-12), load=sw.loads.Inertia(inertia=1.0))
+    log, other = (MotionLog.of(as_joint(each), axis, cutoff=100.0) for each in (identification, validation))
+    ranked = fit_motion({"identification": log}, axis)
+    errors = {}
+    for each in ranked:
+        (part,) = each.fit.parts
+        nuisances = np.array([e.value for e in each.fit.estimates[-len(part.experiment.nuisances) :]])
+        same = other.with_delay() if len(nuisances) == 2 else other
+        predicted, _ = same.predict(part.model, [], nuisances)
+        errors[each.name] = relative(other.measured - predicted, other.measured)
+        report(f"relative rms force error, {each.name}", f"{errors[each.name]:.2%}")
+    inertia = next(e.value for e in ranked[0].fit.estimates if e.path == "load.inertia")
+    report("mass", f"{inertia:.2f} kg")
+    assert inertia == pytest.approx(PUBLISHED[0], rel=0.01)
+    assert errors[ranked[0].name] < 0.9 * errors["Coulomb and viscous"]
+
+
+def as_joint(log: Log) -> sw.Recording:
+    columns = {"time": log.time, "output_angle": log.position, "joint_torque": log.force}
+    return sw.Recording(columns, {"time": "s", "output_angle": "rad", "joint_torque": "N.m"})

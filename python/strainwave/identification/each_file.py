@@ -23,6 +23,7 @@ from strainwave.identification.twin import Twin, twin
 
 EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and friction explain less tells neither
 FRICTION = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law that has them
+NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
 ANGLES = ("input_angle", "output_angle")
 
 
@@ -216,7 +217,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         remarks.append("the inertia of the motor is not known: that of the load has it inside, times the ratio squared")
     motor_there = motor.CurrentSource(
         torque_constant=1.0 if constant is None else constant,
-        inertia=0.0 if inertia is None or in_current else inertia,
+        inertia=NO_ROTOR if inertia is None or in_current else inertia,
         resistance=constants.get("resistance", getattr(given, "resistance", 0.0)),
     )
     return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current

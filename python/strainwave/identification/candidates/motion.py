@@ -19,8 +19,10 @@ Array = NDArray[np.float64]
 BLOCKS = 10  # of a log, every second of which is held out while models are compared
 QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
-FALL = ("gear.friction_input.breakaway", "gear.friction_input.stribeck_speed")
-FOLLOWS = {FALL[0]: "gear.friction_input.coulomb"}
+COULOMB = ("gear.friction_input.coulomb", "gear.friction_input.viscous")
+CURVED = ("gear.friction_input.coulomb", "gear.friction_input.viscous_torque", "gear.friction_input.exponent")
+FALL = (*COULOMB, "gear.friction_input.breakaway", "gear.friction_input.stribeck_speed")
+FOLLOWS = {"gear.friction_input.breakaway": "gear.friction_input.coulomb"}
 CLEARLY = 0.98  # of an error held out: what is not smaller than that is chance
 TOLD = 2.5  # standard deviations: what is nearer to nothing is left out
 SMALL = 1e-3  # of the largest torque: a friction from which a fit can start
@@ -126,9 +128,10 @@ def fit_motion(
     start, free = _start(drive, found, inertia)
     load = [path for path in free if path.startswith("load.")] if own_load else []
     logs = _with_delay(logs, start, free, load)
-    tried = [_candidate(each, logs, free, load, kept, priors or {}) for each in _frictions(start)]
-    straight, better = tried[0], [each for each in tried[1:] if each.error < CLEARLY * tried[0].error]
-    if len(better) == len(tried) - 1:  # each of them tells something of its own, so that both together may tell more
+    fastest = max(float(np.abs(log.motion.speed).max()) for log in logs.values())
+    tried = [_candidate(each, logs, free, load, kept, priors or {}) for each in _frictions(start, fastest)]
+    straight, falling, lossy, _ = tried
+    if max(falling.error, lossy.error) < CLEARLY * straight.error:  # each tells something of its own; both may tell more
         tried.append(_candidate(_together(straight.fit.model), logs, free, load, kept, priors or {}))
     best = min(each.error for each in tried)
     return tuple(sorted(tried, key=lambda each: (each.error > best / CLEARLY, len(each.fit.estimates), each.error)))
@@ -145,24 +148,20 @@ def _start(drive: Drive, found: Mapping[str, Regression], inertia: str) -> tuple
         coulomb=max(middle["coulomb"], least), breakaway=max(middle["coulomb"], least), viscous=max(middle["viscous"], 0.0)
     )
     drive = drive.replace(gear=drive.gear.replace(friction_input=law))
-    free = ["gear.friction_input.coulomb", "gear.friction_input.viscous"]
     total = max(middle["inertia"], 1e-9)
     if inertia == "load.inertia":
         carried = max(total - drive.motor.inertia - drive.gear.input_inertia, 0.02 * total) * ratio**2
         load: Any = loads.Pendulum(inertia=carried, gravity_torque=heaviest.gravity, gravity_phase=heaviest.phase)
-        drive, free = drive.replace(load=load), [*free, inertia, "load.gravity_torque", "load.gravity_phase"]
-    else:
-        rest = total - drive.gear.input_inertia - inertia_of(drive) / ratio**2
-        drive = drive.replace(motor=drive.motor.replace(inertia=max(rest, 0.02 * total)))
-        free = [*free, inertia]
-    return drive, free
+        return drive.replace(load=load), [inertia, "load.gravity_torque", "load.gravity_phase"]
+    rest = total - drive.gear.input_inertia - inertia_of(drive) / ratio**2
+    return drive.replace(motor=drive.motor.replace(inertia=max(rest, 0.02 * total))), [inertia]
 
 
 def _with_delay(logs: Mapping[str, MotionLog], drive: Drive, free: Sequence[str], load: Sequence[str]) -> dict[str, MotionLog]:
     """The logs, with a delay as an unknown of those where it is found."""
     found = {}
     for name, log in logs.items():
-        tried = fit(drive, log.with_delay(), free)
+        tried = fit(drive, log.with_delay(), [*free, *COULOMB])
         delay = next(each for each in tried.estimates if each.path == "delay")
         found[name] = log.with_delay() if abs(delay.value) > TOLD * delay.sigma else log
     return found
@@ -170,7 +169,7 @@ def _with_delay(logs: Mapping[str, MotionLog], drive: Drive, free: Sequence[str]
 
 @dataclass(frozen=True, eq=False)
 class _Form(ComparedByFields):
-    """A friction to be tried: its name, the drive that has it, and what is free and tied beside the rest."""
+    """A friction to be tried: its name, the drive that has it, what is free of it, and what follows."""
 
     name: str
     drive: Drive
@@ -178,9 +177,9 @@ class _Form(ComparedByFields):
     ties: Mapping[str, str]
 
 
-def _frictions(drive: Drive) -> list[_Form]:
-    """Coulomb's friction alone, with a fall at low speed, and with a loss under load."""
-    return [_Form("Coulomb and viscous", drive, (), FOLLOWS), _falling(drive), _lossy(drive)]
+def _frictions(drive: Drive, fastest: float) -> list[_Form]:
+    """Coulomb's friction alone, with a fall at low speed, with a loss under load, and with a viscous part that bends."""
+    return [_Form("Coulomb and viscous", drive, COULOMB, FOLLOWS), _falling(drive), _lossy(drive), _curved(drive, fastest)]
 
 
 def _falling(drive: Drive) -> _Form:
@@ -192,16 +191,24 @@ def _falling(drive: Drive) -> _Form:
 def _lossy(drive: Drive) -> _Form:
     lossy = friction.LoadDependent(**dict.fromkeys(QUADRANTS, 0.02))
     alike = dict.fromkeys(LOSSES[1:], LOSSES[0])  # one for each quadrant cannot be told from inertia and gravity
-    return _Form(
-        "with loss under load", drive.replace(gear=drive.gear.replace(friction_mesh=lossy)), LOSSES[:1], FOLLOWS | alike
-    )
+    changed = drive.replace(gear=drive.gear.replace(friction_mesh=lossy))
+    return _Form("with loss under load", changed, (*COULOMB, LOSSES[0]), FOLLOWS | alike)
+
+
+def _curved(drive: Drive, fastest: float) -> _Form:
+    law: Any = drive.gear.friction_input
+    curved = friction.CurvedViscous(
+        coulomb=law.coulomb, breakaway=law.coulomb, viscous_torque=max(law.viscous * fastest, 1e-3 * law.coulomb),
+        exponent=0.9, reference_speed=fastest,
+    )  # fmt: skip
+    return _Form("with a curved viscous part", drive.replace(gear=drive.gear.replace(friction_input=curved)), CURVED, FOLLOWS)
 
 
 def _together(drive: Drive) -> _Form:
     falling = _falling(drive)
     lossy = _lossy(falling.drive)
     ties = {path: other for path, other in lossy.ties.items() if path not in FOLLOWS}
-    return _Form("with loss under load and a fall at low speed", lossy.drive, (*FALL, *lossy.free), ties)
+    return _Form("with loss under load and a fall at low speed", lossy.drive, (*FALL, LOSSES[0]), ties)
 
 
 def _candidate(
