@@ -412,7 +412,7 @@ def main() -> None:
     except MISUSED as error:
         _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
         code = REFUSED
-    except (ValueError, TypeError, OSError, FloatingPointError, MemoryError) as error:
+    except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
         _print(f"strainwave: {one_line(with_options(str(error), names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
         code = REFUSED
     finally:

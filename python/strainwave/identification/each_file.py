@@ -60,12 +60,22 @@ def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
 
 
 def _friction(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    found = twin(known.gear_set, friction=file.recording, side=file.side, sources={"friction": file.path.name})
+    found = twin(known.gear_set, friction=_with_torque(file, known.gear_set), side=file.side, sources={"friction": file.path.name})
     finding = _of_twin(file, found)
     if finding.refused:
         return finding, known
     gear = known.gear_set.gear.replace(friction_input=found.gear_set.gear.friction_input)
     return finding, _with_gear(known, gear, found, {"friction_input"}, friction=file.recording)
+
+
+def _with_torque(file: Recognised, gear_set: GearSet) -> Recording:
+    """A friction table with the torque of the motor, where only its current was measured."""
+    if "torque" in file.recording:
+        return file.recording
+    constant = file.constants.get("torque_constant", getattr(gear_set.motor, "torque_constant", None))
+    if constant is None:
+        raise ValueError("it tells the current alone; give the torque constant of the motor, with --constant torque_constant=…")
+    return file.recording.with_column("torque", constant * file.recording["current"], "N.m")
 
 
 def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
