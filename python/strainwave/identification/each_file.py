@@ -60,12 +60,13 @@ def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
 
 
 def _friction(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    found = twin(known.gear_set, friction=_with_torque(file, known.gear_set), side=file.side, sources={"friction": file.path.name})
+    table = _with_torque(file, known.gear_set)
+    found = twin(known.gear_set, friction=table, side=file.side, sources={"friction": file.path.name})
     finding = _of_twin(file, found)
     if finding.refused:
         return finding, known
     gear = known.gear_set.gear.replace(friction_input=found.gear_set.gear.friction_input)
-    return finding, _with_gear(known, gear, found, {"friction_input"}, friction=file.recording)
+    return finding, _with_gear(known, gear, found, {"friction_input"}, friction=table)
 
 
 def _with_torque(file: Recognised, gear_set: GearSet) -> Recording:
