@@ -65,7 +65,7 @@ def map_figure(ripple: Ripple, name: str) -> str:
         rows.append(2.0 / window.sum() * np.abs(turned @ (window * (wave[block] - wave[block].mean()))))
     amplitude = np.array(rows)
     middle = np.array([float(curves["time"][block].mean()) for block in blocks])
-    share = amplitude / amplitude.max()
+    share = np.minimum(amplitude / np.quantile(amplitude, 0.995), 1.0)  # where friction turns over, all orders are large
 
     def draw(figure: Figure) -> None:
         axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))

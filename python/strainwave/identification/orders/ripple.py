@@ -59,7 +59,8 @@ class RippleLine:
         kind: `order` follows the angle, `time` the time (mains, a resonance, a beat of the sampling); `either` where the speed
             is too constant to tell
         order: per revolution of the shaft whose angle it is; of a time line that at the usual speed
-        order_sigma: its standard deviation
+        order_sigma: its standard deviation by noise; a line whose phase changes with the speed, as near a resonance, moves by
+            up to a tenth of the resolution more
         per_input: the same per revolution of the input; None where the ratio is not known
         frequency: at the usual speed [Hz]; None where neither time nor rate is known
         amplitude: the larger one of both directions, in the unit of the series
