@@ -114,6 +114,8 @@ def _turning(recording: Recording, side: Side | None, rate: float | None) -> tup
                 f"{name} tells an angle only over time; give the samples per second with --rate, or a column of time"
             )
         speed = recording.values(name, "rad/s")
+        if rate is not None:
+            rate = arguments.number("rate", rate, "Hz", low=0.0)
         step = np.diff(recording.time) if "time" in recording else np.full(len(speed) - 1, 1.0 / float(rate or 1.0))
         angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * step)])
         said = f"there is no angle: {name} is summed up over time; its errors widen the lines"

@@ -9,6 +9,7 @@ from math import pi, tau
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.messages import quoted
@@ -62,6 +63,8 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
     """
     columns = {name: recording[name] for name in names}
     count = len(recording)
+    if rate is not None:
+        rate = arguments.number("rate", rate, "Hz", low=0.0)
     if count < FEWEST:
         raise ValueError(f"the recording has {count} samples; orders need {FEWEST} or more")
     if "time" not in recording:
