@@ -17,6 +17,7 @@ import typer
 from strainwave.identify_command import identify
 from strainwave.messages import listed, one_line, pairs, quoted, unquoted, with_options
 from strainwave.orders_command import orders
+from strainwave.rank_command import rank
 from strainwave.rig_command import rig
 from strainwave.study_command import study
 
@@ -43,6 +44,7 @@ app = typer.Typer(
 app.add_typer(study, name="study")
 app.add_typer(rig, name="rig")
 app.command()(identify)
+app.command()(rank)
 app.command()(orders)
 
 
@@ -348,7 +350,7 @@ def _write_run(run: Recording, out: Path | None, plot: Path | None) -> None:
 
 def _names_columns(words: list[str]) -> bool:
     """Whether a command has the options --column and --unit."""
-    return words[1:2] in (["twin"], ["identify"], ["orders"]) or words[1:3] == ["rig", "analyse"]
+    return words[1:2] in (["twin"], ["identify"], ["rank"], ["orders"]) or words[1:3] == ["rig", "analyse"]
 
 
 def _write(folder: Path, gear_set: GearSet | None, report: str) -> None:

@@ -55,7 +55,7 @@ def identify(
     from strainwave.report.identify import identify_files, identify_report
     from strainwave.report.provenance import Provenance
 
-    said = _said(mapping, column or [], unit or [], constant or [], side, joint)
+    said = said_of(mapping, column, unit, constant, side, joint)
     with Console(stderr=True).status("reading") as status:
         found = identified(gear, paths, mapping=said, progress=status.update)
         status.update("report")
@@ -72,8 +72,13 @@ def identify(
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
 
 
-def _said(
-    mapping: Path | None, column: list[str], unit: list[str], constant: list[str], side: Any, joint: str | None
+def said_of(
+    mapping: Path | None,
+    column: list[str] | None,
+    unit: list[str] | None,
+    constant: list[str] | None,
+    side: Any,
+    joint: str | None,
 ) -> Callable[[Path], FileMapping]:
     """What the options say of a file: of columns that it has; over what the mapping file says."""
     from strainwave.files.tables import open_table
@@ -123,9 +128,7 @@ def _of_file(finding: Finding) -> Iterator[str]:
     if finding.refused:
         yield f"  NOT USED: {finding.refused}"
         return
-    held_out = (
-        f"; error on data held out: {100.0 * finding.error:.2g} % of what varies" if math.isfinite(finding.error) else ""
-    )
+    held_out = f"; error on data held out: {100.0 * finding.error:.2g} % of what varies" if math.isfinite(finding.error) else ""
     yield f"  {finding.model}{held_out}"
     yield from (f"  {remark}" for remark in finding.remarks[:ANEW])
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from strainwave import Drive, loads, motor
+from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
@@ -60,7 +61,7 @@ def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
 
 
 def _friction(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    table = _with_torque(file, known.gear_set)
+    table = with_torque(file, known.gear_set)
     found = twin(known.gear_set, friction=table, side=file.side, sources={"friction": file.path.name})
     finding = _of_twin(file, found)
     if finding.refused:
@@ -69,7 +70,7 @@ def _friction(file: Recognised, known: Known) -> tuple[Finding, Known]:
     return finding, _with_gear(known, gear, found, {"friction_input"}, friction=table)
 
 
-def _with_torque(file: Recognised, gear_set: GearSet) -> Recording:
+def with_torque(file: Recognised, gear_set: GearSet) -> Recording:
     """A friction table with the torque of the motor, where only its current was measured."""
     if "torque" in file.recording:
         return file.recording
@@ -171,7 +172,31 @@ def _orders(found: TransmissionError) -> Iterator[Told]:
 # ---- Logs -----------------------------------------------------------------------------------------------------------
 
 
-def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
+@dataclass(frozen=True, eq=False)
+class Taken(ComparedByFields):
+    """A log as it is taken.
+
+    Attributes:
+        log: the experiment
+        drive: as far as it is known
+        recording: with the torque in the sense of the motion
+        remarks: what was assumed, put right or left out
+        in_current: whether torques are in A, as the torque constant is not known
+    """
+
+    log: MotionLog
+    drive: Drive
+    recording: Recording
+    remarks: tuple[str, ...]
+    in_current: bool
+
+
+def log_of(file: Recognised, known: Known) -> Taken:
+    """A log along its motion, with the torque in the sense of the motion.
+
+    Raises:
+        ValueError: inertia, friction and gravity do not explain it
+    """
     drive, remarks, in_current = _drive(file, known.gear_set)
     recording = file.recording
     log = MotionLog.of(recording, drive)
@@ -190,6 +215,13 @@ def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         remarks.append(f"{spoilt_rows} samples of {log.effort} are outliers or clipped, and left out")
+    return Taken(log, drive, recording, tuple(remarks), in_current)
+
+
+def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
+    taken = log_of(file, known)
+    drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
+    log = taken.log
     best, *_ = fit_motion({file.path.name: log}, drive)
     told = list(_of_motion(best, known.gear_set, drive, recording, in_current))
     if not in_current:
