@@ -101,7 +101,7 @@ def friction_table(evidence: Evidence) -> str:
         torque, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))
         _friction_points(torque, evidence)
         _friction_law(torque, evidence, evidence.fit.gear.friction_input, "model", color=LIGHT["model"])
-        _residual(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["held-out"])
+        residual_curve(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["held-out"])
         label_axes(torque, "friction torque", "N.m")
         label_axes(residual, "measured − predicted from the others", "N.m", "input speed", "rad/s")
         legend(figure, torque)
@@ -116,8 +116,8 @@ def torsion_loop(evidence: Evidence) -> str:
         loop, residual = figure.subplots(2, 1, height_ratios=(2.8, 1.0))
         point, held_out = np.arange(1.0, len(evidence.fit.training) + 1.0), ~evidence.fit.training
         _loop(loop, evidence)
-        _residual(residual, point, evidence.fit.residuals[0], color=LIGHT["ink"])
-        _shade(residual, point, held_out)
+        residual_curve(residual, point, evidence.fit.residuals[0], color=LIGHT["ink"])
+        shade(residual, point, held_out)
         for gap in gaps(_torsion(evidence)):
             residual.axvline(float(gap) + 0.5, color=LIGHT["muted"], linestyle=":", linewidth=0.8)
         _label_loop(loop, evidence)
@@ -138,9 +138,9 @@ def drive_log(evidence: Evidence, channel: int) -> str:
         measured, predicted = log.measured[channel], fit.predicted[channel]
         curve(values, log.time, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
         curve(values, log.time, predicted, color=LIGHT["model"], linewidth=1.0, label="model")
-        _residual(residual, log.time, fit.residuals[channel], color=LIGHT["ink"])
+        residual_curve(residual, log.time, fit.residuals[channel], color=LIGHT["ink"])
         for axes in (values, residual):
-            _shade(axes, log.time, ~fit.training)
+            shade(axes, log.time, ~fit.training)
         label_axes(values, name, unit)
         label_axes(residual, "measured − modelled", unit, "time", "s")
         legend(figure, values)
@@ -232,8 +232,13 @@ def _friction_points(axes: Axes, evidence: Evidence) -> None:
     order = np.argsort(table.speed, kind="stable")
     speed, torque = envelope(table.speed[order], table.torque[order], MARKED)
     axes.plot(speed, torque, "o", color=LIGHT["measured"], label="measured", zorder=3)
+    speed_axis(axes, speed)
+
+
+def speed_axis(axes: Axes, speed: Array) -> None:
+    """Sets the axis of speeds: logarithmic, for either direction by itself, where they lie far apart."""
     slowest, fastest = np.abs(speed[speed != 0.0]).min(), np.abs(speed).max()
-    if fastest > WIDE * slowest and speed[0] > 0.0:
+    if fastest > WIDE * slowest and np.all(speed > 0.0):
         axes.set_xscale("log")
     elif fastest > WIDE * slowest:
         decades = 10.0 ** np.arange(np.ceil(np.log10(slowest)), np.log10(fastest))
@@ -294,7 +299,7 @@ def curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
     axes.plot(*envelope(x, y, STRETCHES), **style)
 
 
-def _residual(axes: Axes, x: Array, residual: Array, color: str) -> None:
+def residual_curve(axes: Axes, x: Array, residual: Array, color: str) -> None:
     """Each by itself where there are few, else as a curve."""
     axes.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
     if len(x) <= MARKED:
@@ -304,7 +309,7 @@ def _residual(axes: Axes, x: Array, residual: Array, color: str) -> None:
         curve(axes, x, residual, color=color, linewidth=0.8)
 
 
-def _shade(axes: Axes, x: Array, held_out: Mask) -> None:
+def shade(axes: Axes, x: Array, held_out: Mask) -> None:
     """Marks what took no part in the fit."""
     between = np.concatenate((x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]))
     label = "held out"

@@ -1,0 +1,372 @@
+"""The page of what files tell of a gear, and its numbers as files."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from importlib import metadata
+from io import StringIO
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from strainwave import Drive
+from strainwave.files.entries import NOT_GIVEN
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.evidence import verdict
+from strainwave.identification.findings import APART, Finding, Number, Told, distance
+from strainwave.identification.identify import Identified
+from strainwave.identification.reading.channels import KINDS
+from strainwave.report import figures
+from strainwave.report import identify_figures as plots
+from strainwave.report.page import render
+from strainwave.report.provenance import Provenance
+from strainwave.report.rig_files import results_json
+from strainwave.report.typeset import number, quantity, uncertain, unit
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+COLUMNS = (
+    "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
+    "not_told_because",
+)  # fmt: skip
+
+
+def identify_report(found: Identified, provenance: Provenance | None = None) -> str:
+    """The page, as one HTML file that needs nothing else.
+
+    Args:
+        found: what files tell
+        provenance: how the page came to be, if that is to be shown
+
+    Returns:
+        HTML; the same for the same arguments
+    """
+    anchors = {id(finding): f"file-{place}" for place, finding in enumerate(found.findings)}
+    return render(
+        "identify.html.jinja",
+        {
+            "start": found.start,
+            "counts": _counts(found),
+            "contradictions": [_contradiction(each, other) for each in found.numbers for other in each.contradicts],
+            "apart": number(APART),
+            "refused": [(each.name, each.refused) for each in found.findings if each.refused],
+            "files": [_file(each, anchors[id(each)]) for each in found.findings],
+            "numbers": [_number(each, found) for each in found.numbers],
+            "comparisons": list(_comparisons(found)),
+            "untold": _untold(found),
+            "kept": _kept(found),
+            "absent": _absent(found),
+            "plates": list(_plates(found, anchors)),
+            "provenance": provenance or Provenance(),
+            "version": metadata.version("strainwave"),
+            "light": figures.variables(figures.LIGHT),
+            "dark": figures.variables(figures.DARK),
+        },
+    )
+
+
+def _counts(found: Identified) -> str:
+    """How many files came to what: "5 files: 3 tell 17 numbers, 1 shows what another one shows, 1 is refused"."""
+    refused = sum(bool(each.refused) for each in found.findings)
+    copies = sum(bool(each.same_as) and not each.refused for each in found.findings)
+    telling = sum(_tells(each) and not each.same_as for each in found.findings)
+    files, numbers = len(found.findings), len(found.numbers)
+    parts = [f"{telling} {'tells' if telling == 1 else 'tell'} {numbers} {'number' if numbers == 1 else 'numbers'}"]
+    for count, one, several in (
+        (copies, "shows what another one shows", "show what another one shows"),
+        (files - telling - copies - refused, "tells none", "tell none"),
+        (refused, "is refused", "are refused"),
+    ):
+        parts += [f"{count} {one if count == 1 else several}"] if count else []
+    return f"{files} {'file' if files == 1 else 'files'}: {', '.join(parts)}"
+
+
+def _tells(finding: Finding) -> bool:
+    return any(not told.why for told in finding.told)
+
+
+def _contradiction(each: Number, other: str) -> dict[str, str]:
+    told = each.others[other]
+    return {
+        "title": name_of(each.told),
+        "path": each.told.path,
+        "unit": unit(each.told.unit),
+        "taken": uncertain(each.told.value, each.told.sigma),
+        "source": each.source,
+        "value": uncertain(told.value, told.sigma),
+        "other": other,
+        "distance": number(distance(each.told, told), 2),
+    }
+
+
+# ---- Files -----------------------------------------------------------------------------------------------------------
+
+
+def _file(finding: Finding, anchor: str) -> dict[str, Any]:
+    read = finding.recognised
+    return {
+        "name": finding.name,
+        "anchor": anchor if finding.curves is not None else "",
+        "kind": KINDS[read.kind] if read is not None else "not read",
+        "why": read.why if read is not None else (),
+        "columns": list(_columns(finding)),
+        "model": finding.model,
+        "error": f"{number(100.0 * finding.error, 2)} %" if np.isfinite(finding.error) else "",
+        "told": sum(not each.why for each in finding.told),
+        "same_as": finding.same_as,
+        "refused": finding.refused,
+        "remarks": finding.remarks,
+    }
+
+
+def _columns(finding: Finding) -> Iterator[str]:
+    """Each channel with its column and unit in the file: "speed: Drehzahl [1/min]"."""
+    read = finding.recognised
+    if read is None:
+        return
+    for channel, name in read.columns.items():
+        of = unit(read.units.get(channel, "1"))
+        yield f"{channel.replace('_', ' ')}: {name}" + (f" [{of}]" if of else "")
+    if read.side is not None:
+        yield f"side: {read.side}"
+    for name, value in read.constants.items():
+        yield f"{name.replace('_', ' ')} given: {number(value)}"
+
+
+def _plates(found: Identified, anchors: dict[int, str]) -> Iterator[dict[str, Any]]:
+    from markupsafe import Markup
+
+    for finding in found.findings:
+        if finding.curves is not None:
+            anchor = anchors[id(finding)]
+            yield {
+                "name": finding.name,
+                "anchor": anchor,
+                "caption": _caption(finding),
+                "svg": Markup(plots.file_figure(finding, f"{anchor}-figure")),
+            }
+
+
+def _caption(finding: Finding) -> str:
+    curves = finding.curves
+    assert curves is not None
+    error, of = float(np.sqrt(np.mean(plots.residual_of(curves) ** 2))), curves.unit(curves.names[1])
+    words = [f"Model: {finding.model}. Root mean square of what is left: {quantity(error, of)}."]
+    if "held_out" in curves and curves["held_out"].any():
+        words.append("Shaded: held out from the fit.")
+    if finding.refused:
+        words.append("This file is refused; its model is not used.")
+    return " ".join(words)
+
+
+# ---- Numbers ---------------------------------------------------------------------------------------------------------
+
+
+def name_of(told: Told) -> str:
+    """What a number is, in words, as its law has it.
+
+    >>> name_of(Told("gear.friction_input.coulomb", "N.m", 0.05, 0.001, "")).lower()
+    'kinetic friction torque f_c'
+    >>> name_of(Told("gear.kinematic_error.amplitude of order 2", "rad", 6e-5, 1e-6, "fourier"))
+    'Amplitude of each harmonic, of order 2'
+    """
+    path, _, order = told.path.partition(" of order ")
+    path, _, place = path.removesuffix("]").partition("[")
+    *parts, last = path.split(".")
+    owners: list[Any] = [Drive]
+    for part in parts:
+        fields = [field for owner in owners for field in owner.fields if field["name"] == part and field["kind"] == "part"]
+        owners = list(dict.fromkeys(option for field in fields for option in _options(field)))
+    owners.sort(key=lambda owner: getattr(owner, "name", "") != told.law)  # the law that it belongs to comes first
+    docs = [field["doc"] for owner in owners for field in owner.fields if field["name"] == last]
+    words = docs[0] if docs else last.replace("_", " ").capitalize()
+    if place:
+        words += f", no. {int(place) + 1}"
+    return f"{words}, of order {order}" if order else words
+
+
+def _options(field: dict[str, Any]) -> list[Any]:
+    """The laws that a part may have; one that has no choice is what it is by default."""
+    return list(field["options"].values()) if field["options"] else [type(field["default"])]
+
+
+def _number(each: Number, found: Identified) -> dict[str, Any]:
+    told, same_as = each.told, {finding.name: finding.same_as for finding in found.findings}
+    return {
+        "path": told.path,
+        "name": name_of(told),
+        "law": told.law if told.law.startswith(("in ", "of ")) else "",
+        "unit": unit(told.unit),
+        "value": uncertain(told.value, told.sigma),
+        "source": each.source,
+        "start": _start(found.start, told),
+        "others": [
+            {
+                "file": name,
+                "value": uncertain(other.value, other.sigma),
+                "distance": number(distance(told, other), 2),
+                "same_as": same_as[name],
+                "contradicts": name in each.contradicts,
+            }
+            for name, other in each.others.items()
+        ],
+    }
+
+
+def _start(start: GearSet, told: Told) -> str:
+    """The number as the set had it that was started from; nothing where it had none, or one of another meaning."""
+    if "[" in told.path or told.law == "in A":  # elements of a sequence that was fitted anew, or torque without a constant
+        return ""
+    try:
+        value = float(attrgetter(told.path)(start))
+    except AttributeError:
+        return ""
+    entry = start.sources.get(told.path)
+    if entry is None:
+        return number(value)
+    if entry.spread is not None:
+        return f"{number(value)} ± {number(100.0 * entry.spread, 2)} %"
+    return number(value) if entry.uncertainty is None else uncertain(value, entry.uncertainty)
+
+
+def _untold(found: Identified) -> list[tuple[str, str, list[dict[str, str]]]]:
+    """What was fitted to a file, and is not told by it: the file, why, and the numbers."""
+    untold: dict[tuple[str, str], list[dict[str, str]]] = {}
+    for finding in found.findings:
+        for told in finding.told:
+            if told.why or not np.isfinite(told.sigma):
+                why = told.why or "the file does not determine it"
+                value = f"{uncertain(told.value, told.sigma)} {unit(told.unit)}".strip()
+                number_there = {"name": name_of(told), "path": told.path, "value": value}
+                untold.setdefault((finding.name, why), []).append(number_there)
+    return [(*place, numbers) for place, numbers in untold.items()]
+
+
+def _kept(found: Identified) -> dict[str, list[str]]:
+    """The numbers of the gear of which no file tells anything, by where the set has them from."""
+    told = {each.told.path for each in found.numbers}
+    kept: dict[str, list[str]] = {}
+    for path, (value, of) in verdict.numbers(found.gear_set.gear).items():
+        entry = found.start.sources.get(path)
+        unchanged = entry is not None and found.gear_set.sources.get(path) == entry
+        if entry is not None and unchanged and path not in told and entry.source != NOT_GIVEN:
+            kept.setdefault(entry.source, []).append(f"{path} = {number(value)} {unit(of)}".strip())
+    return kept
+
+
+def _absent(found: Identified) -> str:
+    """What the model does without, as neither the set nor a file says anything of it."""
+    sources = found.gear_set.sources
+    parts = [path.rpartition(".")[0] for path, entry in sources.items() if entry.source == NOT_GIVEN]
+    return ", ".join(part.removeprefix("gear.").replace("_", " ") for part in dict.fromkeys(parts))
+
+
+# ---- Files beside each other -----------------------------------------------------------------------------------------
+
+
+def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
+    """A drawing for each part of the drive of which more than one file tells a number."""
+    from markupsafe import Markup
+
+    copies = {finding.name for finding in found.findings if finding.same_as}
+    parts: dict[str, list[Number]] = {}
+    for each in found.numbers:
+        if each.others and (each.told.value != 0.0 or _is_phase(each.told)):
+            parts.setdefault(each.told.path.partition(" of ")[0].rpartition(".")[0], []).append(each)
+    for place, (part, numbers) in enumerate(parts.items()):
+        rows = [(name_of(each.told), list(_rows(each, copies))) for each in numbers]
+        yield part.removeprefix("gear.").replace("_", " ").capitalize(), Markup(plots.comparison(rows, f"comparison-{place}"))
+
+
+def _is_phase(told: Told) -> bool:
+    """Whether a number is an angle that begins anew with each turn, so that its size means nothing."""
+    return told.unit == "rad" and "phase" in told.path
+
+
+def _rows(each: Number, copies: set[str]) -> Iterator[plots.Row]:
+    taken, phase = each.told, _is_phase(each.told)
+    scale = 1.0 if phase else abs(taken.value)  # a phase has no size: of it, 1 rad is 100 %
+    yield plots.Row(each.source, 0.0, 100.0 * taken.sigma / scale, "value taken")
+    for name, other in each.others.items():
+        off = other.value - taken.value
+        if phase:
+            off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
+        look = "contradicts" if name in each.contradicts else "same measurement as another" if name in copies else "agrees"
+        yield plots.Row(name, 100.0 * off / scale, 100.0 * other.sigma / scale, look)
+
+
+# ---- As files --------------------------------------------------------------------------------------------------------
+
+
+def identify_files(found: Identified) -> dict[str, str]:
+    """All that was found as JSON, and every number as every file tells it as CSV; in SI units, each beside its number."""
+    text = StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(_csv_rows(found))
+    return {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
+
+
+def _results(found: Identified) -> dict[str, Any]:
+    return {
+        "made_by": f"strainwave {metadata.version('strainwave')}",
+        "start": found.start.name,
+        "files": [_file_results(each) for each in found.findings],
+        "numbers": [
+            {
+                **_told_results(each.told),
+                "name": name_of(each.told),
+                "file": each.source,
+                "others": [
+                    {"file": name, **_told_results(other), "sigmas_apart": distance(each.told, other)}
+                    for name, other in each.others.items()
+                ],
+                "contradicts": each.contradicts,
+            }
+            for each in found.numbers
+        ],
+    }
+
+
+def _told_results(told: Told) -> dict[str, Any]:
+    return {"path": told.path, "law": told.law, "unit": told.unit, "value": told.value, "sigma": told.sigma}
+
+
+def _file_results(finding: Finding) -> dict[str, Any]:
+    read = finding.recognised
+    return {
+        "name": finding.name,
+        "kind": None if read is None else read.kind,
+        "why": [] if read is None else read.why,
+        "columns": {} if read is None else read.columns,
+        "units": {} if read is None else read.units,
+        "side": None if read is None else read.side,
+        "constants": {} if read is None else read.constants,
+        "model": finding.model,
+        "error_on_data_held_out": finding.error,
+        "same_as": finding.same_as or None,
+        "refused": finding.refused or None,
+        "remarks": finding.remarks,
+        "told": [{**_told_results(each), "not_told_because": each.why or None} for each in finding.told],
+    }
+
+
+def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
+    """What each file says of each number, the value taken first; then what files do not tell."""
+    copies = {finding.name for finding in found.findings if finding.same_as}
+    for each in found.numbers:
+        for name, told in {each.source: each.told, **each.others}.items():
+            yield _told_results(told) | {
+                "file": name,
+                "taken": "yes" if name == each.source else "no",
+                "same_measurement": "yes" if name in copies else "no",
+                "sigmas_apart": distance(each.told, told),
+                "contradicts": "yes" if name in each.contradicts else "no",
+            }
+    for finding in found.findings:
+        for told in finding.told:
+            if told.why:
+                yield _told_results(told) | {"file": finding.name, "taken": "no", "not_told_because": told.why}

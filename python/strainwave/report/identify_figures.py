@@ -1,0 +1,223 @@
+"""Figures of what files tell: each number as each file has it, and each file measured against modelled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.recording import Recording
+from strainwave.identification.findings import Finding
+from strainwave.report import figures
+from strainwave.report.figures import LIGHT, WIDTH
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+NINETY_FIVE = 1.959963984540054  # standard deviations that hold 95 % of a normal distribution
+POINTS = 600  # of a loop that are drawn, at most
+BLOCKS = 200  # of a band over time
+ROW = 0.19  # inches that a row of a comparison takes
+LONGEST = 22  # letters of a file's name that stand beside a drawing
+SEEN = 0.8  # of the intervals that are drawn whole; longer ones reach the edge
+LOOKS = {  # of a file in a comparison: mark, colour, whether filled
+    "value taken": ("o", "measured", True),
+    "agrees": ("o", "ink", True),
+    "same measurement as another": ("o", "muted", False),
+    "contradicts": ("D", "model", True),
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one file says of a number, against the value taken.
+
+    Attributes:
+        file: its name
+        off: how far it lies from the value taken [%]
+        sigma: its standard deviation [%]
+        look: one of `LOOKS`
+    """
+
+    file: str
+    off: float
+    sigma: float
+    look: str
+
+
+def comparison(numbers: Sequence[tuple[str, Sequence[Row]]], name: str) -> str:
+    """Numbers as files have them, each with its interval of 95 %.
+
+    Args:
+        numbers: of each what it is called, and what each file says, the value taken first
+        name: of the drawing
+    """
+    count = sum(1 + len(rows) for _, rows in numbers)
+
+    def draw(figure: Figure) -> None:
+        axes, place = figure.subplots(), 0
+        ticks: list[tuple[int, str]] = []
+        every = [row for _, rows in numbers for row in rows]
+        reach = _reach(every)
+        axes.axvline(0.0, color=LIGHT["muted"], linewidth=0.8)
+        for title, rows in numbers:
+            axes.text(-0.98 * reach, place, title, va="center", fontsize="small", fontweight="bold", color=LIGHT["ink"])
+            ticks.append((place, ""))
+            for row in rows:
+                place += 1
+                ticks.append((place, _short(row.file)))
+                _interval(axes, row, place)
+            place += 1
+        axes.set_yticks([where for where, _ in ticks], [label for _, label in ticks], fontsize="small")
+        axes.tick_params(axis="y", length=0.0)
+        axes.grid(visible=False, axis="y")
+        axes.set_ylim(count - 0.4, -0.7)
+        axes.set_xlim(-reach, reach)
+        axes.set_xlabel("difference from the value taken [%]")
+        _looks_legend(figure, axes, every)
+
+    return figures.inline(
+        draw, (WIDTH, 0.75 + ROW * count), name, "Each number as each file tells it, with its interval of 95 %"
+    )
+
+
+def _reach(rows: Sequence[Row]) -> float:
+    """Where the axis ends: beyond all values, and most of their intervals."""
+    values = max(abs(row.off) for row in rows)
+    ends = np.quantile([abs(row.off) + NINETY_FIVE * row.sigma for row in rows], SEEN, method="higher")
+    return 1.15 * max(values, float(ends), 1e-6)
+
+
+def _interval(axes: Axes, row: Row, place: int) -> None:
+    mark, colour, filled = LOOKS[row.look]
+    half = NINETY_FIVE * row.sigma
+    axes.plot([row.off - half, row.off + half], [place, place], "-", color=LIGHT[colour], linewidth=1.4, solid_capstyle="butt")
+    style: dict[str, Any] = {"markerfacecolor": LIGHT[colour] if filled else "none", "markeredgecolor": LIGHT[colour]}
+    axes.plot([row.off], [place], mark, color=LIGHT[colour], markersize=4.4, **style)
+
+
+def _looks_legend(figure: Figure, axes: Axes, rows: Sequence[Row]) -> None:
+    for look, (mark, colour, filled) in LOOKS.items():
+        if any(row.look == look for row in rows):
+            style: dict[str, Any] = {"markerfacecolor": LIGHT[colour] if filled else "none", "markeredgecolor": LIGHT[colour]}
+            axes.plot([], [], mark, color=LIGHT[colour], markersize=4.4, label=look, **style)
+    figures.legend(figure, axes)
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= LONGEST else f"{name[: LONGEST // 2 - 1]}…{name[-LONGEST // 2 :]}"
+
+
+# ---- One file --------------------------------------------------------------------------------------------------------
+
+
+def file_figure(finding: Finding, name: str) -> str:
+    """Measured against modelled, and below what is left, with two bands of 95 %: of the model, and of the residuals."""
+    curves = finding.curves
+    assert curves is not None
+
+    def draw(figure: Figure) -> None:
+        over = curves.names[0]
+        whole, left = figure.subplots(2, 1, sharex=over != "twist", height_ratios=(2.2, 1.0))
+        draw_file = {"speed": _table, "twist": _loop}.get(over, _series)
+        draw_file(whole, left, curves, _words(finding))
+        figures.legend(figure, whole)
+
+    return figures.inline(draw, (WIDTH, 3.9), name, f"Measured against modelled, {finding.name}")
+
+
+def residual_of(curves: Recording) -> Array:
+    """What is left of a file: measured less modelled, or what neither orders nor loads explain."""
+    left: Array = curves["residual"] if "residual" in curves else curves[curves.names[1]] - curves["modelled"]
+    return left
+
+
+def _words(finding: Finding) -> str:
+    """What was measured in a file, in words."""
+    curves = finding.curves
+    assert curves is not None
+    over, channel = curves.names[:2]
+    if over == "speed":
+        return "friction torque, at the input"
+    if over == "twist":
+        at_input = finding.recognised is not None and "input_angle" in finding.recognised.recording
+        return "torque, referred to the output" if at_input else "torque at the output"
+    return channel.replace("_", " ")
+
+
+def _table(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+    """Torque over speed; the band of the model is where it lies, as the law between the speeds."""
+    order = np.argsort(curves["speed"], kind="stable")
+    speed, torque = curves["speed"][order], curves.names[1]
+    whole.plot(speed, curves[torque][order], "o", color=LIGHT["measured"], label="measured", zorder=3)
+    for side in (speed < 0.0, speed > 0.0):
+        rows = order[side]
+        whole.plot(speed[side], curves["modelled"][rows], color=LIGHT["model"], label="model" if side[-1] else "")
+    figures.speed_axis(whole, speed)
+    residual = residual_of(curves)[order]
+    figures.residual_curve(left, speed, residual, LIGHT["ink"])
+    _bands(left, speed, residual, _sigma(curves, order))
+    figures.label_axes(whole, words, curves.unit(torque))
+    figures.label_axes(left, "measured − modelled", curves.unit(torque), "input speed", "rad/s")
+
+
+def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+    """Torque over twist, as points: samples are left out behind reversals. Below, in the order measured."""
+    twist, torque = curves["twist"], curves.names[1]
+    rows = np.unique(np.linspace(0, len(twist) - 1, POINTS).astype(int))
+    whole.plot(twist[rows], curves[torque][rows], "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
+    whole.plot(twist[rows], curves["modelled"][rows], "o", color=LIGHT["model"], markersize=1.2, label="model")
+    point, residual = np.arange(1.0, len(twist) + 1.0), residual_of(curves)
+    figures.residual_curve(left, point, residual, LIGHT["ink"])
+    _bands(left, point, residual, _sigma(curves))
+    _held_out((left,), point, curves)
+    figures.label_axes(whole, words, curves.unit(torque), "twist" + words.removeprefix("torque"), "rad")
+    figures.label_axes(left, "measured − modelled", curves.unit(torque), "point compared, in the order measured", "1")
+
+
+def _series(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+    """Over time, or over the angle where there is no time."""
+    over, channel = curves.names[:2]
+    x, unit, residual = curves[over], curves.unit(channel), residual_of(curves)
+    figures.curve(whole, x, curves[channel], color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
+    figures.curve(whole, x, curves["modelled"], color=LIGHT["model"], linewidth=0.9, label="model")
+    figures.residual_curve(left, x, residual, LIGHT["ink"])
+    _bands(left, x, residual, _sigma(curves))
+    _held_out((whole, left), x, curves)
+    figures.label_axes(whole, words, unit)
+    below = "left by orders and loads" if "residual" in curves else "measured − modelled"
+    figures.label_axes(left, below, unit, over.replace("_", " "), curves.unit(over))
+
+
+def _sigma(curves: Recording, order: NDArray[np.intp] | None = None) -> Array | None:
+    if "sigma" not in curves:
+        return None
+    return curves["sigma"] if order is None else curves["sigma"][order]
+
+
+def _bands(axes: Axes, x: Array, residual: Array, sigma: Array | None) -> None:
+    """Where 95 % of the residuals lie if they are normal, and where the model itself may lie."""
+    level = NINETY_FIVE * float(np.sqrt(np.mean(residual**2)))
+    for side in (-level, level):
+        axes.axhline(side, color=LIGHT["earlier"], linestyle="--", linewidth=0.9)
+    if sigma is not None:
+        where, half = zip(*_blocks(x, NINETY_FIVE * sigma), strict=True)
+        band = np.array(half)
+        axes.fill_between(where, -band, band, facecolor=LIGHT["model"], alpha=0.35, linewidth=0.0)
+
+
+def _blocks(x: Array, half: Array) -> Iterator[tuple[float, float]]:
+    """A band to draw: of a long record the largest of each of many stretches."""
+    for rows in np.array_split(np.arange(len(x)), min(len(x), BLOCKS)):
+        yield float(np.mean(x[rows])), float(np.max(half[rows]))
+
+
+def _held_out(axes: Sequence[Axes], x: Array, curves: Recording) -> None:
+    if "held_out" in curves:
+        for each in axes:
+            figures.shade(each, x, curves["held_out"] > 0.0)
