@@ -26,7 +26,7 @@ from strainwave.identification.evidence.influence import Influence, influence
 from strainwave.identification.evidence.plausible import doubts_of_loop, doubts_of_table, hint_of_ratio
 from strainwave.identification.evidence.verdict import MOST_TOLD, Verdict, estimated, judged, known, numbers, verdicts
 from strainwave.identification.experiments.drive_log import DriveLog
-from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.friction_table import BESIDE, FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, student
 from strainwave.identification.fitting.fit import Fit
@@ -214,7 +214,9 @@ def _from_friction(gear: Gear, recording: Recording, source: str, side: str | No
     remarks = [f"valid between {low:.4g} and {high:.4g} rad/s at the input; validated by leaving out speeds in turn"]
     if best.name == "Coulomb and viscous":
         remarks.append("no fall of torque towards low speed within this range: breakaway and Stribeck speed are not seen")
-    remarks += [*_thinned(table.samples, len(table.speed)), *_unused(recording, ("speed", "torque"))]
+    remarks += [*_thinned(table.samples, len(table.speed)), *_unused(recording, ("speed", "torque", *BESIDE))]
+    if (left_out := int(np.sum(~best.fit.training))) > 0:
+        remarks.append(f"{left_out} of {len(table.speed)} rows are outliers, and left out")
     doubts = [] if side == "input" else [*doubts_of_table(recording, best.fit, start, side)]
     doubts = doubts or [*_not_explained(best.fit)]
     return Evidence(

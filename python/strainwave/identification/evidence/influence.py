@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 SUSPECT = 0.3  # of the residuals' power: a kept parameter that accounts for more of it is wrong
 NEARLY = 0.8  # of the largest share: which parameter accounts for a little more is chance
 EXACT = ("control.", "gear.kinematics.", "kinematics.")  # nobody measures what was designed
+DEFINED = (".reference_temperature", ".reference_speed")  # nor what a law's other numbers are told for
 DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
 GUESSED = 0.5  # of a kept value that is assumed
 
@@ -125,4 +126,4 @@ def influence(found: Fit) -> Influence:
 
 
 def _is_exact(path: str) -> bool:
-    return path.startswith(EXACT) or ".order[" in path
+    return path.startswith(EXACT) or path.endswith(DEFINED) or ".order[" in path
