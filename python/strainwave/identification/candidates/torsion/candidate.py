@@ -26,6 +26,7 @@ from strainwave.identification.fitting.fit import Fit, fit
 Array = NDArray[np.float64]
 SLIPPING = 0.9  # of half the span: an element that slips later is a spring for all that the loop tells
 ALIKE = 1.1  # ratio of two slip twists; elements that are closer are one
+ROUNDS = 8  # of leaving out elements; an element at the edge of what a loop tells may come and go for ever
 MINIMA = 6  # of one kind that are looked at
 OFF_CENTRE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
 DRIFTS = ("torque_drift", "twist_drift")
@@ -192,10 +193,12 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
     half, span = half_span(loop), float(np.ptp(loop.torque))
     least = half * (SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING)
     stiff: set[int] = set()
-    while True:
+    for last in [*(ROUNDS - 1) * [False], True]:
         free = spring.free(gear) + beside.free(gear, stiff)
         found = _in_order(fit(gear, loop, free, training=training), spring)
         fitted = beside.elements(found.gear)
+        if last:
+            break
         slipping = [(k, f) for k, f in fitted if NEGLIGIBLE * span < f < SLIPPING * half * k]
         if len(slipping) < len(fitted):
             stuck = sum(k for k, f in fitted if f >= SLIPPING * half * k)
@@ -208,7 +211,8 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
             slower = [(f / least if i in stiff else k, f) for i, (k, f) in enumerate(fitted)]
             gear = found.gear.replace(hysteresis=maxwell(slower))
         else:
-            return found
+            break
+    return found
 
 
 def merged(gear: Gear) -> Gear:
