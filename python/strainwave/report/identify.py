@@ -23,7 +23,7 @@ from strainwave.report import identify_figures as plots
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
-from strainwave.report.typeset import number, quantity, uncertain, unit
+from strainwave.report.typeset import fixed, number, quantity, uncertain, unit
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -98,8 +98,13 @@ def _contradiction(each: Number, other: str) -> dict[str, str]:
         "source": each.source,
         "value": uncertain(told.value, told.sigma),
         "other": other,
-        "distance": number(distance(each.told, told), 2),
+        "distance": _sigmas(distance(each.told, told)),
     }
+
+
+def _sigmas(distance: float) -> str:
+    """Standard deviations, to a tenth where they are few."""
+    return fixed(distance, 1 if distance < 10.0 else 0) if np.isfinite(distance) else "∞"
 
 
 # ---- Files -----------------------------------------------------------------------------------------------------------
@@ -207,7 +212,7 @@ def _number(each: Number, found: Identified) -> dict[str, Any]:
             {
                 "file": name,
                 "value": uncertain(other.value, other.sigma),
-                "distance": number(distance(told, other), 2),
+                "distance": _sigmas(distance(told, other)),
                 "same_as": same_as[name],
                 "contradicts": name in each.contradicts,
             }
@@ -294,7 +299,7 @@ def _rows(each: Number, copies: set[str]) -> Iterator[plots.Row]:
         off = other.value - taken.value
         if phase:
             off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
-        look = "contradicts" if name in each.contradicts else "same measurement as another" if name in copies else "agrees"
+        look = "contradicts" if name in each.contradicts else "copy of another" if name in copies else "agrees"
         yield plots.Row(name, 100.0 * off / scale, 100.0 * other.sigma / scale, look)
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 NINETY_FIVE = 1.959963984540054  # standard deviations that hold 95 % of a normal distribution
 POINTS = 600  # of a loop that are drawn, at most
+GAP = 2.5  # median intervals: over a longer one no line is drawn
 BLOCKS = 200  # of a band over time
 ROW = 0.19  # inches that a row of a comparison takes
 LONGEST = 22  # letters of a file's name that stand beside a drawing
@@ -28,7 +29,7 @@ SEEN = 0.8  # of the intervals that are drawn whole; longer ones reach the edge
 LOOKS = {  # of a file in a comparison: mark, colour, whether filled
     "value taken": ("o", "measured", True),
     "agrees": ("o", "ink", True),
-    "same measurement as another": ("o", "muted", False),
+    "copy of another": ("o", "muted", False),
     "contradicts": ("D", "model", True),
 }
 
@@ -184,14 +185,23 @@ def _series(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
     """Over time, or over the angle where there is no time."""
     over, channel = curves.names[:2]
     x, unit, residual = curves[over], curves.unit(channel), residual_of(curves)
-    figures.curve(whole, x, curves[channel], color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
-    figures.curve(whole, x, curves["modelled"], color=LIGHT["model"], linewidth=0.9, label="model")
-    figures.residual_curve(left, x, residual, LIGHT["ink"])
+    places, measured, modelled, rest = _broken(x, curves[channel], curves["modelled"], residual)
+    figures.curve(whole, places, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
+    figures.curve(whole, places, modelled, color=LIGHT["model"], linewidth=0.9, label="model")
+    figures.residual_curve(left, places, rest, LIGHT["ink"])
     _bands(left, x, residual, _sigma(curves))
     _held_out((whole, left), x, curves)
     figures.label_axes(whole, words, unit)
     below = "left by orders and loads" if "residual" in curves else "measured − modelled"
     figures.label_axes(left, below, unit, over.replace("_", " "), curves.unit(over))
+
+
+def _broken(x: Array, *series: Array) -> tuple[Array, ...]:
+    """Series that no line joins over what was left out, unless there are so many samples that they are drawn by extremes."""
+    gaps = np.flatnonzero(np.abs(np.diff(x)) > GAP * np.median(np.abs(np.diff(x)))) + 1 if len(x) > 1 else np.zeros(0, int)
+    if len(x) + len(gaps) > 4 * figures.STRETCHES:
+        return x, *series
+    return np.insert(x, gaps, x[gaps]), *(np.insert(each, gaps, np.nan) for each in series)
 
 
 def _sigma(curves: Recording, order: NDArray[np.intp] | None = None) -> Array | None:

@@ -107,7 +107,7 @@ def test_each_number_stands_with_its_file_the_initial_set_and_the_others(page: s
     assert "warm.csv" in row.text
     assert f"{numbers(START.gear)[COULOMB][0]:.4g}" in row.text
     assert "cold.csv: 0.0800 ± 0.0020 (13 σ apart: contradiction)" in row.text
-    assert "copy.csv: 0.0500 ± 0.0010 (0 σ apart; the same measurement as warm.csv)" in row.text
+    assert "copy.csv: 0.0500 ± 0.0010 (0.0 σ apart; the same measurement as warm.csv)" in row.text
 
 
 def test_what_is_not_told_stands_with_its_reason(page: str) -> None:
