@@ -107,7 +107,7 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
         tried.add([Negligible()], WHOLE)
         if not tried.best.beside.whole_spring:
             tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.beside])
-        tried.add([LINEAR, CUBIC, tried.best.spring], BESIDE_A_SPRING)
+        tried.add([LINEAR, CUBIC], BESIDE_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = BEHIND * min(_left(each) for each in candidates)
     found = [_judged(each, FOLDS if _left(each) < near else 1) for each in candidates]
