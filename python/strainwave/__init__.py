@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from strainwave.files.gear_set import GearSet, catalogue, load, save
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
     from strainwave.files.recording import Recording
+    from strainwave.identification.excitation.plan import ExperimentPlan, plan_experiments
     from strainwave.identification.fitting.fit import Fit, fit
     from strainwave.identification.identify import Identified, identify
     from strainwave.identification.orders.ripple import Ripple, ripple
@@ -68,6 +69,7 @@ _LAZY = {
     "Ensemble": "simulation.ensemble",
     "Entry": "files.entries",
     "EnsembleWarning": "simulation.ensemble",
+    "ExperimentPlan": "identification.excitation.plan",
     "Fit": "identification.fitting.fit",
     "FrequencyResponse": "analysis.response",
     "GearSet": "files.gear_set",
@@ -98,6 +100,7 @@ _LAZY = {
     "modes": "analysis.linear",
     "order_spectrum": "analysis.orders",
     "orders": "analysis.orders",
+    "plan_experiments": "identification.excitation.plan",
     "rig": "rig",
     "ripple": "identification.orders.ripple",
     "save": "files.gear_set",
@@ -121,6 +124,7 @@ __all__ = [
     "Ensemble",
     "EnsembleWarning",
     "Entry",
+    "ExperimentPlan",
     "Fit",
     "FrequencyResponse",
     "Gear",
@@ -163,6 +167,7 @@ __all__ = [
     "motor",
     "order_spectrum",
     "orders",
+    "plan_experiments",
     "rig",
     "ripple",
     "save",
