@@ -1,0 +1,1 @@
+"""What to measure next, to know chosen parameters best."""

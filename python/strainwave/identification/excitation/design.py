@@ -1,0 +1,99 @@
+"""Which of many possible measurements tell most, by their Fisher information.
+
+Fedorov, "Theory of Optimal Experiments" (1972); Atkinson, Donev and Tobias, "Optimum Experimental Designs" (2007), chapters 10
+(criteria) and 12 (exchange).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Criterion = Literal["A", "D"]
+NOTHING = 1e-4  # information in relative units, a standard deviation of 100 times the value: as good as not known
+ENOUGH = 1e-9  # a smaller gain of a criterion is rounding
+PASSES = 50  # of exchanges; a handful suffice
+
+
+def without_nuisances(slopes: Array, of_nuisances: Array) -> Array:
+    """Information about parameters where the nuisances are unknown, too: the Schur complement, shape (p, p).
+
+    Args:
+        slopes: derivatives of what is measured by the parameters, over the noise, shape (n, p)
+        of_nuisances: the same by the nuisances, shape (n, q)
+    """
+    if of_nuisances.shape[1]:
+        slopes = slopes - of_nuisances @ (np.linalg.pinv(of_nuisances) @ slopes)
+    information: Array = slopes.T @ slopes
+    return information
+
+
+def score(information: Array, wanted: Sequence[int], criterion: Criterion) -> Array:
+    """What a design is judged by, the smaller the better, of one information matrix or of many, shape (…, p, p).
+
+    A: logarithm of the sum of the variances of the wanted parameters. D: logarithm of the determinant of their covariance.
+    """
+    p = information.shape[-1]
+    covariance = np.linalg.inv(information + NOTHING * np.eye(p))[..., wanted, :][..., wanted]
+    if criterion == "D":
+        scored: Array = np.linalg.slogdet(covariance)[1]
+        return scored
+    return np.asarray(np.log(np.trace(covariance, axis1=-2, axis2=-1)))
+
+
+def best(
+    information: Array, cost: Array, budget: float, before: Array, wanted: Sequence[int], criterion: Criterion
+) -> list[int]:
+    """Which measurements to take, each as often as it is named: greedy by gain over cost, then by exchange.
+
+    Args:
+        information: of each candidate, in relative units, shape (m, p, p)
+        cost: of each, shape (m,)
+        budget: what all together may cost
+        before: what is known before, shape (p, p)
+        wanted: places of the parameters that count
+    """
+    taken: list[int] = []
+    total, left = before.copy(), budget
+    while (affordable := np.flatnonzero(cost <= left * (1.0 + 1e-12))).size:
+        gain = score(total, wanted, criterion) - score(total + information[affordable], wanted, criterion)
+        place = int(np.argmax(gain / cost[affordable]))
+        if gain[place] <= ENOUGH:
+            break
+        taken.append(int(affordable[place]))
+        total, left = total + information[taken[-1]], left - cost[taken[-1]]
+    return _exchanged(taken, information, cost, left, before, wanted, criterion)
+
+
+def _exchanged(
+    taken: list[int], information: Array, cost: Array, left: float, before: Array, wanted: Sequence[int], criterion: Criterion
+) -> list[int]:
+    """The same with single measurements replaced by others, as long as that makes it better."""
+    for _ in range(PASSES):
+        improved = False
+        for place, one in enumerate(taken):
+            rest = before + information[[*taken[:place], *taken[place + 1 :]]].sum(axis=0)
+            possible = np.flatnonzero(cost <= (left + cost[one]) * (1.0 + 1e-12))
+            scores = score(rest + information[possible], wanted, criterion)
+            other = int(possible[np.argmin(scores)])
+            if scores.min() < score(rest + information[one], wanted, criterion) - ENOUGH:
+                left += float(cost[one] - cost[other])
+                taken[place], improved = other, True
+        if not improved:
+            break
+    return sorted(taken)
+
+
+def covariance_of(information: Array) -> Array:
+    """Covariance in relative units; infinite variance of parameters of which a combination is not known, shape (p, p)."""
+    values, directions = np.linalg.eigh(information)
+    dead = values < np.maximum(NOTHING, 1e-13 * values.max(initial=0.0))
+    root = directions[:, ~dead] / np.sqrt(values[~dead])
+    covariance: Array = root @ root.T
+    for place in np.flatnonzero((np.abs(directions[:, dead]) > 1e-6).any(axis=1)):
+        covariance[place, place] = np.inf
+    return covariance

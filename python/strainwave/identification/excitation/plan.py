@@ -1,0 +1,392 @@
+"""Which experiments to make next, to know chosen parameters best within the limits of the gear."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, Gear, arguments
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.excitation import candidates as possible
+from strainwave.identification.excitation.candidates import Candidate, Limits, Noise
+from strainwave.identification.excitation.design import Criterion, best, covariance_of
+from strainwave.identification.fitting.fit import Fit
+from strainwave.messages import listed, shortened
+from strainwave.parameters import Parameter, every
+from strainwave.parameters import parameters as chosen
+from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.signals import outputs
+
+Array = NDArray[np.float64]
+KINDS = ("friction", "torsion", "motion")
+DURATIONS = {"friction": 20.0, "torsion": 300.0}  # s: to settle and be averaged; of a slow loop (assumed)
+SLOWEST = 1e-3  # of the largest speed: the lowest that is held steady, if it is not given
+SAMPLE = 2e-3  # s, of the samples of a run
+POOR = 0.1  # relative: what is known less well is named
+RELATED = 0.9  # correlation: estimates that cannot be told apart
+
+Known = GearSet | Fit | Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One measurement of a plan.
+
+    Attributes:
+        kind: friction, torsion or motion
+        words: what to do
+        settings: the same as numbers and words, with units in the names
+        repeats: how often
+        duration: of all repeats [s]
+    """
+
+    kind: str
+    words: str
+    settings: Mapping[str, float | str]
+    repeats: int
+    duration: float
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """How well a parameter is known before and after a plan.
+
+    Attributes:
+        path, unit, value: the parameter in the model
+        before, after: standard deviation, in its unit; infinite where it is not known
+        wanted: whether the plan was made for it
+        why: what keeps it from being known better, where it is known to less than 10 %; else empty
+    """
+
+    path: str
+    unit: str
+    value: float
+    before: float
+    after: float
+    wanted: bool
+    why: str
+
+
+@dataclass(frozen=True)
+class ExperimentPlan:
+    """What to measure, and what will be known then.
+
+    Attributes:
+        steps: the measurements
+        expectations: of each parameter that is not known
+        notes: what the numbers rest on
+    """
+
+    steps: tuple[Step, ...]
+    expectations: tuple[Expectation, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def duration(self) -> float:
+        """What all measurements take [s]."""
+        return sum(step.duration for step in self.steps)
+
+    def __getitem__(self, path: str) -> Expectation:
+        """What is expected of a parameter."""
+        for each in self.expectations:
+            if each.path == path:
+                return each
+        raise KeyError(f"{path} is none of {listed(each.path for each in self.expectations)}")
+
+    def summary(self) -> str:
+        """The plan in words and numbers, to print."""
+        lines = [f"measure for {self.duration / 60.0:.3g} min:"] if self.steps else ["nothing that may be measured tells more"]
+        lines += [f"  {step.repeats} x {step.words}" for step in self.steps]
+        lines.append(f"{'parameter':40} {'value':>12} {'sigma before':>13} {'and after':>12}  unit")
+        for each in self.expectations:
+            before = "not known" if np.isinf(each.before) else f"{each.before:.3g}"
+            after = "not known" if np.isinf(each.after) else f"{each.after:.3g}"
+            lines.append(f"{each.path:40} {each.value:12.5g} {before:>13} {after:>12}  {each.unit}")
+        lines += [f"{each.path}: {each.why}" for each in self.expectations if each.why]
+        return "\n".join([*lines, *self.notes])
+
+
+def plan_experiments(
+    model: GearSet | Drive | Gear,
+    wanted: Sequence[str],
+    *,
+    experiments: Sequence[str] = ("friction", "torsion"),
+    time: float = 1800.0,
+    criterion: Criterion = "A",
+    unknown: Sequence[str] | None = None,
+    known: Known | None = None,
+    speed_limit: float | None = None,
+    lowest_speed: float | None = None,
+    torque_limit: float | None = None,
+    noise: Noise | None = None,
+    durations: Mapping[str, float] | None = None,
+    commands: Mapping[str, Scenario] | None = None,
+    sample: float = SAMPLE,
+) -> ExperimentPlan:
+    """Which measurements tell chosen parameters best in a given time.
+
+    Each possible measurement has a Fisher information: the derivatives of what the model predicts for it over its noise, less
+    what the unknowns of the measurement take of it. Measurements are added by gain over duration, then exchanged one by one, as
+    long as that makes the criterion smaller. The information is that at the numbers of the model: the better these are, the
+    better the plan, so plan anew after each measurement. The noise is taken to be white, and the kind of model to be right.
+
+    Args:
+        model: a set, whose spreads, uncertainties and ratings count; a drive, for motion too; or a gear
+        wanted: paths of the parameters to know, as "gear.friction_input.coulomb" of a set or a drive, "friction_input.coulomb"
+            of a gear
+        experiments: what can be made: "friction" (steady speeds), "torsion" (loops at either side), "motion" (runs of the
+            drive)
+        time: what all measurements may take together [s]
+        criterion: "A", the sum of the relative variances of the wanted parameters; "D", the determinant of their covariance
+        unknown: paths of what else is not known; if not given, the other numbers of the parts of the wanted ones
+        known: what is known before: a set, a fit, or standard deviations by path; of a set as model its own, if not given
+        speed_limit: of the input [rad/s]; with ratings of a set the smaller counts
+        lowest_speed: that can be held steady [rad/s]; a thousandth of the limit if not given
+        torque_limit: at the output [N.m]; with ratings of a set the smaller counts
+        noise: standard deviations: "friction" of the torque at one speed, at the input [N.m]; "torsion" and "input_torsion" of
+            a sample of a loop at the output and at the input [N.m]; of a sample of each column of a log by its name, which
+            also says which columns are recorded, "input_angle" and "current" if none. 1 % of the largest value where not given
+        durations: of one "friction" speed one way and one "torsion" loop [s]; 20 s and 300 s if not given
+        commands: for motion, by name: from rest, what the drive's control takes; shares of them are tried
+        sample: distance of the samples of a run [s]
+
+    Raises:
+        TypeError: an argument is not of its kind
+        ValueError: an unknown path or kind of experiment, no limit where one is needed, motion without drive or commands
+
+    >>> import strainwave as sw
+    >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
+    >>> plan = plan_experiments(gear, ["friction_input.viscous"], unknown=["friction_input.coulomb"], experiments=["friction"],
+    ...     speed_limit=100.0, lowest_speed=1.0, noise={"friction": 1e-3}, time=80.0)
+    >>> [round(step.settings["input_speed_rad_s"], 9) for step in plan.steps]
+    [1.0, 100.0]
+    >>> f"{plan['friction_input.viscous'].after:.3g}"  # 1e-3 N.m / 99 rad/s
+    '1.01e-05'
+    """
+    kinds = [arguments.one_of("experiments", each, KINDS) for each in arguments.names("experiments", experiments)]
+    arguments.one_of("criterion", criterion, ("A", "D"))
+    whole = _whole(model, "motion" in kinds)
+    budget = arguments.seconds("time", time)
+    unknowns = _unknowns(whole, wanted, unknown)
+    scale = np.array([abs(each.value) or 1.0 for each in unknowns])
+    limits = _limits(model, kinds, speed_limit, lowest_speed, torque_limit)
+    noise = _noise(noise or {}, whole)
+    found = list(_candidates(whole, [each.path for each in unknowns], kinds, limits, noise, durations or {}, commands, sample))
+    if not found:
+        raise ValueError("none of the commands keeps the limits; give smaller ones, or other experiments")
+    information = np.stack([each.information for each in found]) * np.outer(scale, scale)
+    before = _information_before(model, known, unknowns, scale)
+    asked = {each.path for each in _named("wanted", whole, wanted)}
+    everything = before + information.sum(axis=0)
+    reach = np.isfinite(np.diag(covariance_of(everything)))  # what cannot be told at all must not stop the rest
+    places = [place for place, each in enumerate(unknowns) if each.path in asked and reach[place]]
+    cost = np.array([each.duration for each in found])
+    taken = best(information, cost, budget, before, places, criterion) if places else []
+    after = before + information[taken].sum(axis=0)
+    expectations = _expectations(unknowns, scale, before, after, everything, asked, kinds)
+    return ExperimentPlan(_steps(found, taken), expectations, _notes(kinds, limits, noise))
+
+
+def _whole(model: object, moves: bool) -> Any:
+    """The drive of a set that has one, or must have one; else its gear as a drive's, so that paths begin as in its sources."""
+    if isinstance(model, GearSet):
+        return model.drive if moves or (model.motor is not None and model.load is not None) else Drive(gear=model.gear)
+    if isinstance(model, Drive | Gear):
+        return model
+    raise TypeError(f"model must be a GearSet, a Drive or a Gear, not {shortened(model)}")
+
+
+def _unknowns(whole: Any, wanted: Sequence[str], unknown: Sequence[str] | None) -> list[Parameter]:
+    named = _named("wanted", whole, wanted)
+    if not named:
+        raise ValueError("wanted must name at least one parameter")
+    if unknown is None:
+        parts = tuple({each.path.rpartition(".")[0] + "." for each in named if "." in each.path.removeprefix("gear.")})
+        others = {path for path in every(whole) if path.startswith(parts)} if parts else set()
+    else:
+        others = {each.path for each in _named("unknown", whole, unknown)}
+    paths = others | {each.path for each in named}
+    return [each for path, each in every(whole).items() if path in paths]
+
+
+def _named(name: str, whole: Any, paths: Sequence[str]) -> list[Parameter]:
+    """The parameters that an argument names by themselves, by their sequence or by the part that they stand in."""
+    wanted: list[str] = []
+    for path in arguments.names(name, paths):
+        inside = [each for each in every(whole) if each.startswith(f"{path}.")]
+        wanted += inside or [path]
+    return chosen(name, whole, wanted)
+
+
+def _noise(noise: Mapping[str, float], whole: Any) -> dict[str, float]:
+    """Standard deviations that are given, by names that are known."""
+    arguments.mapping("noise", noise, '{"friction": 1e-3}')
+    known = ["friction", "torsion", "input_torsion", *(outputs(whole) if isinstance(whole, Drive) else ())]
+    for name in noise:
+        if name not in known:
+            raise ValueError(f"noise: {name} is none of {listed(known)}")
+    return {name: arguments.number(f"noise: {name}", sigma, low=0.0) for name, sigma in noise.items()}
+
+
+def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: float | None, torque: float | None) -> Limits:
+    """The limits that are given, or those of the ratings where they are smaller."""
+    ratings = model.ratings if isinstance(model, GearSet) else {}
+    speeds = [] if speed is None else [arguments.number("speed_limit", speed, "rad/s", low=0.0)]
+    torques = [] if torque is None else [arguments.number("torque_limit", torque, "N.m", low=0.0)]
+    steady = ("maximum_input_speed", "average_input_speed")  # a table runs at each speed for long
+    speeds += [ratings[name].to("rad/s").value for name in steady if name in ratings]
+    strong = ("peak_torque", "momentary_torque", "ratcheting_torque", "buckling_torque")
+    torques += [ratings[name].to("N.m").value for name in strong if name in ratings]
+    if "friction" in kinds and not speeds:
+        raise ValueError("speed_limit is needed for friction: the model has no rating of the input speed")
+    if "torsion" in kinds and not torques:
+        raise ValueError("torque_limit is needed for torsion: the model has no rating of the torque")
+    highest = min(speeds, default=np.inf)
+    slowest = SLOWEST * highest if lowest is None else arguments.number("lowest_speed", lowest, "rad/s", low=0.0, high=highest)
+    return Limits(highest, min(torques, default=np.inf), slowest)
+
+
+def _candidates(
+    whole: Any,
+    paths: Sequence[str],
+    kinds: Sequence[str],
+    limits: Limits,
+    noise: Noise,
+    durations: Mapping[str, float],
+    commands: Mapping[str, Scenario] | None,
+    sample: float,
+) -> list[Candidate]:
+    lasting = {kind: arguments.seconds(f"durations: {kind}", durations.get(kind, usual)) for kind, usual in DURATIONS.items()}
+    gear = whole.gear if isinstance(whole, Drive) else whole
+    of_gear = [path.removeprefix("gear.") if isinstance(whole, Drive) else path for path in paths]
+    found: list[Candidate] = []
+    if "friction" in kinds:
+        found += possible.friction(gear, of_gear, limits, noise, lasting["friction"])
+    if "torsion" in kinds:
+        found += possible.torsion(gear, of_gear, limits, noise, lasting["torsion"])
+    if "motion" in kinds:
+        if not isinstance(whole, Drive) or not commands:
+            raise ValueError('motion needs a drive, and commands for it, as commands={"chirp": sw.scenario.chirp(…)}')
+        found += possible.motion(whole, paths, limits, noise, commands, arguments.seconds("sample", sample))
+    return found
+
+
+def _information_before(model: object, known: Known | None, unknowns: Sequence[Parameter], scale: Array) -> Array:
+    """What is known before, in relative units, shape (p, p)."""
+    source = model if known is None and isinstance(model, GearSet) else known
+    before = np.zeros((len(unknowns), len(unknowns)))
+    if isinstance(source, Fit):
+        return _of_fit(source, unknowns, scale)
+    if source is not None and not isinstance(source, GearSet):
+        paths = [each.path for each in unknowns]
+        for path in source:
+            if path not in paths:
+                raise ValueError(f"known: {path} is none of the unknown parameters, {listed(paths)}")
+    for place, each in enumerate(unknowns):
+        if isinstance(source, GearSet):
+            sigma = _sigma_of(source, _in_gear(each.path), each.value)
+        else:
+            sigma = (source or {}).get(each.path)
+        if sigma is not None and sigma != 0.0:
+            before[place, place] = (scale[place] / arguments.number(f"known: {each.path}", sigma, low=0.0)) ** 2
+    return before
+
+
+def _in_gear(path: str) -> str:
+    """The path of a number in a set: that of a gear alone begins inside the gear."""
+    return path if path.split(".")[0] in ("gear", "motor", "load", "control", "sensors", "thermal", "meter") else f"gear.{path}"
+
+
+def _sigma_of(gear_set: GearSet, path: str, value: float) -> float | None:
+    entry = gear_set.sources.get(path)
+    if entry is None:
+        return None
+    return entry.uncertainty if entry.uncertainty is not None else None if entry.spread is None else entry.spread * abs(value)
+
+
+def _of_fit(fit: Fit, unknowns: Sequence[Parameter], scale: Array) -> Array:
+    """What a fit told, with its correlations; what it did not determine is not known."""
+    before = np.zeros((len(unknowns), len(unknowns)))
+    told = {_in_gear(each.path): row for row, each in enumerate(fit.estimates) if np.isfinite(each.sigma) and each.sigma > 0.0}
+    pairs = [(place, told[_in_gear(each.path)]) for place, each in enumerate(unknowns) if _in_gear(each.path) in told]
+    if pairs:
+        here, there = (np.array(side) for side in zip(*pairs, strict=True))
+        covariance = fit.covariance[np.ix_(there, there)] / np.outer(scale[here], scale[here])
+        before[np.ix_(here, here)] = np.linalg.inv(covariance)
+    return before
+
+
+def _steps(found: Sequence[Candidate], taken: Sequence[int]) -> tuple[Step, ...]:
+    counted = Counter(taken)
+    steps = [(found[place], often) for place, often in sorted(counted.items())]
+    return tuple(Step(each.kind, each.words, each.settings, often, often * each.duration) for each, often in steps)
+
+
+def _expectations(
+    unknowns: Sequence[Parameter],
+    scale: Array,
+    before: Array,
+    after: Array,
+    everything: Array,
+    wanted: set[str],
+    kinds: Sequence[str],
+) -> tuple[Expectation, ...]:
+    covariance = covariance_of(after)
+    sigma_before, sigma_after = (np.sqrt(np.diag(each)) for each in (covariance_of(before), covariance))
+    reasons = _reasons([each.path for each in unknowns], covariance, everything, kinds)
+    return tuple(
+        Expectation(
+            each.path,
+            each.unit,
+            each.value,
+            float(sigma_before[place] * scale[place]),
+            float(sigma_after[place] * scale[place]),
+            each.path in wanted,
+            reasons[place] if sigma_after[place] > POOR else "",
+        )
+        for place, each in enumerate(unknowns)
+    )
+
+
+def _reasons(paths: Sequence[str], covariance: Array, everything: Array, kinds: Sequence[str]) -> list[str]:
+    """What keeps each parameter from being known, if it is not."""
+    reach = np.diag(covariance_of(everything))
+    values, directions = np.linalg.eigh(everything)
+    sigma = np.sqrt(np.diag(covariance))
+    with np.errstate(invalid="ignore"):
+        related = np.abs(covariance) / np.outer(sigma, sigma)
+    reasons = []
+    for place, _ in enumerate(paths):
+        others = [other for other in range(len(paths)) if other != place]
+        if everything[place, place] == 0.0:
+            reasons.append(f"nothing that {listed(kinds)} measures depends on it; another kind of experiment must tell it")
+        elif np.isinf(reach[place]):
+            dead = np.abs(directions[place]) * (values < 1e-13 * values.max() + 1e-4)
+            direction = np.abs(directions[:, int(np.argmax(dead))])
+            beside = [paths[other] for other in others if direction[other] > 1e-3]
+            reasons.append(f"told only together with {listed(beside)}" if beside else f"{listed(kinds)} hardly depend on it")
+        elif np.isinf(sigma[place]):
+            reasons.append(
+                "the plan has no measurement that tells it: it is of no concern for what is wanted, or time is short"
+            )
+        elif beside := [paths[other] for other in others if related[place, other] > RELATED]:
+            reasons.append(f"hard to tell from {listed(beside)}; more time, or knowledge of these, makes it better")
+        else:
+            reasons.append("the noise leaves so much; more time makes it better")
+    return reasons
+
+
+def _notes(kinds: Sequence[str], limits: Limits, noise: Noise) -> tuple[str, ...]:
+    notes = []
+    if "friction" in kinds:
+        notes.append(f"input speed from {limits.lowest_speed:.4g} to {limits.speed:.4g} rad/s")
+    if "torsion" in kinds:
+        notes.append(f"output torque to {limits.torque:.4g} N.m")
+    if not noise:
+        notes.append("noise assumed: 1 % of the largest value of each channel; give noise for standard deviations that count")
+    return tuple(notes)
