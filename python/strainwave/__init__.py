@@ -49,7 +49,10 @@ if TYPE_CHECKING:
     from strainwave.files.ratings import RatingCheck, RatingWarning, check_ratings
     from strainwave.files.recording import Recording
     from strainwave.identification.excitation.plan import ExperimentPlan, plan_experiments
+    from strainwave.identification.fitting.bootstrap import Bootstrap, bootstrap
+    from strainwave.identification.fitting.combinations import Combination, combinations
     from strainwave.identification.fitting.fit import Fit, fit
+    from strainwave.identification.fitting.profile import Profile, profile
     from strainwave.identification.identify import Identified, identify
     from strainwave.identification.orders.ripple import Ripple, ripple
     from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
@@ -64,6 +67,8 @@ if TYPE_CHECKING:
 _LAZY = {
     "Agreement": "analysis.agreement",
     "BearingOrders": "analysis.orders",
+    "Bootstrap": "identification.fitting.bootstrap",
+    "Combination": "identification.fitting.combinations",
     "Difference": "analysis.difference",
     "Derivatives": "analysis.sensitivity",
     "Ensemble": "simulation.ensemble",
@@ -76,6 +81,7 @@ _LAZY = {
     "Identified": "identification.identify",
     "Linearisation": "analysis.linear",
     "Orders": "analysis.orders",
+    "Profile": "identification.fitting.profile",
     "RatingCheck": "files.ratings",
     "RatingWarning": "files.ratings",
     "Quantity": "files.entries",
@@ -87,8 +93,10 @@ _LAZY = {
     "TransmissionError": "identification.orders.two_encoders",
     "Twin": "identification.twin",
     "bearing_orders": "analysis.orders",
+    "bootstrap": "identification.fitting.bootstrap",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
+    "combinations": "identification.fitting.combinations",
     "compare": "analysis.compare",
     "derivatives": "analysis.sensitivity",
     "equilibrium": "analysis.steady",
@@ -101,6 +109,7 @@ _LAZY = {
     "order_spectrum": "analysis.orders",
     "orders": "analysis.orders",
     "plan_experiments": "identification.excitation.plan",
+    "profile": "identification.fitting.profile",
     "rig": "rig",
     "ripple": "identification.orders.ripple",
     "save": "files.gear_set",
@@ -118,6 +127,8 @@ _LAZY = {
 __all__ = [
     "Agreement",
     "BearingOrders",
+    "Bootstrap",
+    "Combination",
     "Derivatives",
     "Difference",
     "Drive",
@@ -133,6 +144,7 @@ __all__ = [
     "Linearisation",
     "Orders",
     "PassivityWarning",
+    "Profile",
     "Quantity",
     "RatingCheck",
     "RatingWarning",
@@ -145,8 +157,10 @@ __all__ = [
     "TransmissionError",
     "Twin",
     "bearing_orders",
+    "bootstrap",
     "catalogue",
     "check_ratings",
+    "combinations",
     "compare",
     "control",
     "derivatives",
@@ -168,6 +182,7 @@ __all__ = [
     "order_spectrum",
     "orders",
     "plan_experiments",
+    "profile",
     "rig",
     "ripple",
     "save",

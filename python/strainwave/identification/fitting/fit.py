@@ -20,6 +20,7 @@ from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.loss import LOSSES, Linear
 from strainwave.identification.fitting.problem import Problem, Record
 from strainwave.identification.fitting.unknowns import AT, Plan, plan
 from strainwave.messages import listed, quoted, shortened
@@ -28,7 +29,8 @@ from strainwave.simulation.resolution import warn_of_bristles
 Array = NDArray[np.float64]
 TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps end far below it where residuals are small
 ROUGH = 1e-3  # the same of the pass that finds how the channels weigh
-NOISE = 0.01  # of the size of a channel, before a first pass has told it (assumed)
+PASSES = 5  # at most, of those that are exact
+SETTLED = 0.2  # relative change of weights that calls for no further pass
 OF_GEAR = (FrictionTable, TorsionLoop)  # what is measured on a gear, also where the model is of a drive
 OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "input_torque"})
 
@@ -74,6 +76,8 @@ class Fit(ComparedByFields):
             has its name behind an @
         covariance: of the estimates, shape (p, p), infinite in directions that the data do not determine
         parts: of each record its experiment, its model, what it predicts, and what it leaves
+        plan: what was looked for, and what was known before
+        loss: what the residuals cost
         evaluations: how often the model was run
     """
 
@@ -81,6 +85,8 @@ class Fit(ComparedByFields):
     estimates: tuple[Estimate, ...]
     covariance: Array
     parts: tuple[Part, ...]
+    plan: Plan
+    loss: Literal["linear", "soft_l1"]
     evaluations: int
 
     @property
@@ -228,13 +234,24 @@ def fit(
         experiment_of(own, each, channels, dt, initial) if isinstance(each, Recording) else each
         for own, each in zip(models, records.values(), strict=True)
     ]
-    problem = _problem(asked, list(records), models, experiments, _masks(training, list(records)))
+    problem = problem_of(asked, list(records), models, experiments, _masks(training, list(records)))
     return _solved(problem, loss)
 
 
-def _problem(
+def solved_problem(found: Fit) -> tuple[Problem, Array]:
+    """The least squares of a fit, and the unknowns that solve it."""
+    models = [_core.with_numbers(found.model, list(numbers)) for numbers in found.plan.numbers]
+    experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
+    problem = problem_of(found.plan, [part.name for part in found.parts], models, experiments, masks)
+    known, tied = len(found.plan.unknowns), len(found.plan.tied)
+    values = [each.value for each in found.estimates]
+    return problem, np.array(values[:known] + values[known + tied :])
+
+
+def problem_of(
     asked: Plan, names: list[str], models: Sequence[Any], experiments: Sequence[Experiment], masks: Sequence[Mask]
 ) -> Problem:
+    """The least squares of a plan on experiments, with the models before the fit and the samples that take part."""
     first, built = len(asked.unknowns), []
     for experiment, mask, own, moves in zip(experiments, masks, models, asked.moves, strict=True):
         _check_branch(experiment, [move.path for move in moves])
@@ -244,34 +261,36 @@ def _problem(
     return Problem(asked, built, names)
 
 
-def _solved(problem: Problem, loss: Literal["linear", "soft_l1"]) -> Fit:
-    """The fit, in passes: the residuals of each say how much its rows weigh in the next."""
-    start, records = problem.start(), problem.records
-    for record, (predicted, _) in zip(records, problem.predict(start), strict=True):
+def _solved(problem: Problem, named: Literal["linear", "soft_l1"]) -> Fit:
+    """The fit, in passes: the residuals of each say how much its channels weigh in the next."""
+    loss = LOSSES[named]
+    x, records, weights = problem.start(), problem.records, problem.first_weights()
+    for record, (predicted, _) in zip(records, problem.predict(x), strict=True):
         _check_motion(record.experiment, predicted)
-    weights = [1.0 / (NOISE * _scale(record.experiment.measured[:, record.training])) for record in records]
-    single = len(records) == len(records[0].experiment.channels) == 1 and not problem.plan.priors
-    for tolerance in (TOLERANCE,) if single else (ROUGH, TOLERANCE):
-        start = problem.solve(start, weights, loss, tolerance)
-        weights = [
-            1.0 / np.maximum(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)), 1e-12 * _scale(record.experiment.measured))
-            for record, residual in zip(records, problem.residuals(start), strict=True)
-        ]
-    estimates, covariance = problem.estimates(start, weights)
+    channels = sum(len(record.experiment.channels) for record in records)
+    alone = channels == 1 and not problem.plan.priors and isinstance(loss, Linear)  # where weights change nothing
+    for tolerance in (TOLERANCE,) if alone else (ROUGH, *PASSES * (TOLERANCE,)):
+        before, x = weights, problem.solve(x, weights, loss, tolerance)
+        weights = problem.weights(x, before, loss)
+        if tolerance == TOLERANCE and all(
+            np.abs(np.log(new.rows / old.rows)).max() < SETTLED for new, old in zip(weights, before, strict=True)
+        ):
+            break
+    estimates, covariance = problem.estimates(x, weights, loss)
     parts = tuple(
-        Part(name, record.model(start), record.experiment, predicted, record.training)
-        for name, record, (predicted, _) in zip(problem.names, records, problem.predict(start), strict=True)
+        Part(name, record.model(x), record.experiment, predicted, record.training)
+        for name, record, (predicted, _) in zip(problem.names, records, problem.predict(x), strict=True)
     )
     for part in parts:
         if isinstance(part.experiment, DriveLog):
             warn_of_bristles(part.model, part.experiment.step(part.model))
-    return Fit(parts[0].model, estimates, covariance, parts, problem.evaluations)
+    return Fit(parts[0].model, estimates, covariance, parts, problem.plan, named, problem.evaluations)
 
 
 def _check_kinds(model: object, loss: object) -> None:
     if not isinstance(model, Gear | Drive):
         raise TypeError(f"model must be a Gear or a drive, not {shortened(model)}")
-    arguments.one_of("loss", loss, ("linear", "soft_l1"))
+    arguments.one_of("loss", loss, LOSSES)
 
 
 def _records(recordings: object) -> dict[str, Any]:
@@ -352,10 +371,3 @@ def experiment_of(
         f"columns {', '.join(recording.names)} are no experiment on a gear; a friction table has speed and torque, "
         "a torsion loop twist and torque or input_angle and input_torque"
     )
-
-
-def _scale(measured: Array) -> Array:
-    """How large each channel is, shape (channels, 1)."""
-    spread = np.std(measured, axis=1, keepdims=True)
-    size = np.max(np.abs(measured), axis=1, keepdims=True)
-    return np.where(spread > 0.0, spread, np.where(size > 0.0, size, 1.0))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,39 @@ from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.fitting.covariance import posterior_of
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.loss import Linear, Loss, bend, slope
+from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.fitting.unknowns import AT, Move, Plan
 
 Array = NDArray[np.float64]
+NOISE = 0.01  # of the size of a channel, before a first pass has told it (assumed)
+SMALLEST = 1e-12  # of the size of a channel: less noise has no measurement
 TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
+
+
+@dataclass(frozen=True)
+class Weights:
+    """How much the channels of a record weigh.
+
+    Attributes:
+        own: reciprocal standard deviation of the noise of each channel, shape (channels, 1)
+        together: how many samples of it hang together, shape (channels, 1)
+    """
+
+    own: Array
+    together: Array
+
+    @property
+    def rows(self) -> Array:
+        """What residuals are multiplied by in a sum of squares, shape (channels, 1)."""
+        return self.own / np.sqrt(self.together)
+
+
+def scale(measured: Array) -> Array:
+    """How large each channel is, shape (channels, 1)."""
+    spread = np.std(measured, axis=1, keepdims=True)
+    size = np.max(np.abs(measured), axis=1, keepdims=True)
+    return np.where(spread > 0.0, spread, np.where(size > 0.0, size, 1.0))
 
 
 class Record:
@@ -28,6 +58,9 @@ class Record:
         moves: which numbers of it move with which unknown
         of_gear: whether the experiment is one of the gear in the drive alone
         first: place of its first nuisance among the unknowns
+
+    Attributes:
+        measured: what the fit compares with, shape (channels, n); that of the experiment
     """
 
     def __init__(
@@ -40,7 +73,8 @@ class Record:
         first: int,
     ) -> None:
         self.experiment, self.moves, self.of_gear = experiment, moves, of_gear
-        n = experiment.measured.shape[1]
+        self.measured = experiment.measured
+        n = self.measured.shape[1]
         self.training = np.ones(n, bool) if training is None else np.asarray(training)
         if self.training.dtype != bool:
             raise TypeError(f"training must hold True or False for each sample, not {self.training.dtype}")
@@ -73,8 +107,8 @@ class Record:
         model = self.seen(self.model(x))
         predicted, by_numbers = self.experiment.predict(model, [number for number, _ in self._seen_moves], x[self.nuisances])
         slopes = np.zeros((len(x), *predicted.shape))
-        for (_, move), slope in zip(self._seen_moves, by_numbers, strict=False):
-            slopes[move.unknown] += move.factor * slope
+        for (_, move), by_number in zip(self._seen_moves, by_numbers, strict=False):
+            slopes[move.unknown] += move.factor * by_number
         slopes[self.nuisances] = by_numbers[len(self._seen_moves) :]
         if not (np.isfinite(predicted).all() and np.isfinite(slopes).all()):
             raise FloatingPointError(
@@ -102,12 +136,18 @@ class Problem:
             if record.samples == 0:
                 raise ValueError(f"training leaves no sample of {name}; leave the record out")
         self.evaluations = 0
+        self._drawn = np.zeros(len(plan.priors))
         self._last: tuple[bytes, list[tuple[Array, Array]]] | None = None
 
     def start(self) -> Array:
         """Where the fit starts, within the limits of its parameters."""
         nuisances = [each.start for record in self.records for each in record.experiment.nuisances]
         return np.array([each.start for each in self.plan.unknowns] + nuisances)
+
+    def limits(self) -> Array:
+        """What each unknown may be, shape (unknowns, 2)."""
+        endless = [(-np.inf, np.inf)] * (self.size - len(self.plan.unknowns))
+        return np.array([(each.low, each.high) for each in self.plan.unknowns] + endless).reshape(-1, 2)
 
     def predict(self, x: Array) -> list[tuple[Array, Array]]:
         """Predictions and derivatives of each record; the last are remembered, as solvers ask for one after the other."""
@@ -120,16 +160,16 @@ class Problem:
     def residuals(self, x: Array) -> list[Array]:
         """Measured less predicted of the samples that take part, of each record, shape (channels, samples)."""
         return [
-            (record.experiment.measured - predicted)[:, record.training]
+            (record.measured - predicted)[:, record.training]
             for record, (predicted, _) in zip(self.records, self.predict(x), strict=True)
         ]
 
-    def jacobian(self, x: Array, weights: Sequence[Array]) -> Array:
+    def jacobian(self, x: Array, weights: Sequence[Weights]) -> Array:
         """Derivatives of what is predicted, times the weights, shape (numbers that take part, unknowns)."""
         return np.concatenate(
             [
-                (slopes * weight)[:, :, record.training].reshape(self.size, -1).T
-                for record, weight, (_, slopes) in zip(self.records, weights, self.predict(x), strict=True)
+                (slopes * each.rows)[:, :, record.training].reshape(self.size, -1).T
+                for record, each, (_, slopes) in zip(self.records, weights, self.predict(x), strict=True)
             ]
         )
 
@@ -138,46 +178,127 @@ class Problem:
         matrix, right = np.zeros((len(self.plan.priors), self.size)), np.zeros(len(self.plan.priors))
         for row, prior in enumerate(self.plan.priors):
             matrix[row, prior.unknown] = prior.factor / prior.sigma
-            right[row] = prior.value / prior.sigma
+            right[row] = prior.value / prior.sigma + self._drawn[row]
         return matrix, right
 
-    def solve(self, start: Array, weights: Sequence[Array], loss: Literal["linear", "soft_l1"], tolerance: float) -> Array:
+    def draw_priors(self, random: np.random.Generator) -> None:
+        """Moves what is known before by as much as it is uncertain, at random."""
+        self._drawn = random.normal(size=len(self.plan.priors))
+
+    def first_weights(self) -> list[Weights]:
+        """Weights before residuals tell them: noise is taken to be a share of what was measured."""
+        scales = [NOISE * scale(record.measured[:, record.training]) for record in self.records]
+        return [Weights(1.0 / each, np.ones_like(each)) for each in scales]
+
+    def weights(self, x: Array, before: Sequence[Weights], loss: Loss) -> list[Weights]:
+        """Weights of the channels of each record, by the residuals that a fit left.
+
+        Each sample counts by its standard deviation, and all together as though only as many were there as are independent. The
+        residuals are smaller than the noise by what the fit took of it, the leverage. Channels of a record are taken to hang
+        together alike: one that is fitted worse than the others hangs together longer, and would lose weight in every pass.
+        """
+        columns = np.concatenate((self.jacobian(x, before), self.prior_rows()[0]))
+        size = np.linalg.norm(columns, axis=0)
+        leverage = np.sum(np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))[0] ** 2, axis=1)
+        found, first = [], 0
+        for record, residual in zip(self.records, self.residuals(x), strict=True):
+            channels, n = residual.shape
+            taken = leverage[first : first + channels * n].reshape(channels, n).sum(axis=1, keepdims=True)
+            first += channels * n
+            sigma = loss.sigma(residual) * np.sqrt(n / np.maximum(n - taken, 1.0))
+            sigma = np.maximum(sigma, SMALLEST * scale(record.measured))
+            together = float(np.exp(np.mean([np.log(correlation_length(slope(loss, row))) for row in residual / sigma])))
+            found.append(Weights(1.0 / sigma, np.full((channels, 1), together)))
+        return found
+
+    def solve(self, start: Array, weights: Sequence[Weights], loss: Loss, tolerance: float, held: Sequence[int] = ()) -> Array:
+        """The unknowns of least cost; those held stay where they start."""
         from scipy.optimize import least_squares
 
-        free_ends = [(-np.inf, np.inf)] * (self.size - len(self.plan.unknowns))
-        low, high = np.array([(each.low, each.high) for each in self.plan.unknowns] + free_ends).reshape(-1, 2).T
-        inside = np.clip(start, low, high)
+        low, high = self.limits().T
+        whole = np.clip(start, low, high)
+        whole[list(held)] = start[list(held)]
+        free = np.setdiff1d(np.arange(self.size), held)
+        if len(free) == 0:
+            return whole
         of_priors, right = self.prior_rows()
+        together = self._together(weights)
 
-        def residuals(x: Array) -> Array:
+        def with_free(part: Array) -> Array:
+            x = whole.copy()
+            x[free] = part
+            return x
+
+        def residuals(part: Array) -> Array:
+            x = with_free(part)
             try:
-                of_data = [-weight * residual for weight, residual in zip(weights, self.residuals(x), strict=True)]
+                of_data = [-each.rows * residual for each, residual in zip(weights, self.residuals(x), strict=True)]
             except (ValueError, FloatingPointError):  # out of the domain, or diverged: SciPy takes a quarter of such a step
                 of_data = [np.full(record.samples, np.inf) for record in self.records]
             return np.concatenate([*map(np.ravel, of_data), of_priors @ x - right])
 
-        def jacobian(x: Array) -> Array:
-            return np.concatenate((self.jacobian(x, weights), of_priors))
+        def jacobian(part: Array) -> Array:
+            return np.concatenate((self.jacobian(with_free(part), weights), of_priors))[:, free]
+
+        def cost(squares: Array) -> Array:
+            """Of samples in units of their own noise, times the share of them that is independent; of priors the square."""
+            of_data, of_prior = squares[: len(together)], squares[len(together) :]
+            value, first, second = loss.cost(of_data * together)
+            return np.concatenate((np.stack((value / together, first, second * together)), Linear().cost(of_prior)), axis=1)
 
         with np.errstate(over="ignore"):  # SciPy takes a smaller step where its model of the residuals is infinite
             solution = least_squares(
                 residuals,
-                inside,
+                whole[free],
                 jac=jacobian,
-                bounds=(low, high),
+                bounds=(low[free], high[free]),
                 x_scale="jac",
-                loss=loss,
+                loss="linear" if isinstance(loss, Linear) else cost,  # type: ignore[arg-type]  # stubs ask for more than SciPy
                 xtol=tolerance,
                 ftol=tolerance,
                 gtol=tolerance,
                 max_nfev=TRIALS,
             )
-        return np.asarray(solution.x)
+        return with_free(np.asarray(solution.x))
 
-    def estimates(self, x: Array, weights: Sequence[Array]) -> tuple[tuple[Estimate, ...], Array]:
+    def cost(self, x: Array, weights: Sequence[Weights], loss: Loss) -> float:
+        """Twice what a fit makes small: costs of samples, as though only the independent ones were there, and of priors."""
+        of_data = [
+            np.sum(loss.cost((each.own * residual).ravel() ** 2)[0].reshape(residual.shape) / each.together)
+            for each, residual in zip(weights, self.residuals(x), strict=True)
+        ]
+        of_priors, right = self.prior_rows()
+        return float(sum(of_data) + np.sum((of_priors @ x - right) ** 2))
+
+    def information(self, x: Array, weights: Sequence[Weights], loss: Loss) -> Array:
+        """Rows whose products are half the second derivatives of `cost`, by Gauss and Newton, shape (rows, unknowns)."""
+        bends = np.concatenate(
+            [bend(loss, each.own * residual).ravel() for each, residual in zip(weights, self.residuals(x), strict=True)]
+        )
+        return np.concatenate((self.jacobian(x, weights) * np.sqrt(bends)[:, np.newaxis], self.prior_rows()[0]))
+
+    def naive_sigma(self, x: Array, weights: Sequence[Weights], loss: Loss) -> Array:
+        """Standard deviations that the second derivatives of the cost state; infinite where it does not change."""
+        rows = self.information(x, weights, loss)
+        size = np.linalg.norm(rows, axis=0)
+        size = np.where(size > 0.0, size, 1.0)
+        _, singular, directions = np.linalg.svd(rows / size, full_matrices=False)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            variance = np.sum(np.where(directions == 0.0, 0.0, (directions / singular[:, np.newaxis]) ** 2), axis=0)
+        return np.asarray(np.sqrt(variance) / size)
+
+    def _together(self, weights: Sequence[Weights]) -> Array:
+        """How many samples hang together, for each that takes part."""
+        return np.concatenate(
+            [np.repeat(each.together, record.training.sum()) for each, record in zip(weights, self.records, strict=True)]
+        )
+
+    def estimates(self, x: Array, weights: Sequence[Weights], loss: Loss) -> tuple[tuple[Estimate, ...], Array]:
         """The unknowns, behind those of the model what follows them, with what is known of each, and their covariance."""
-        residual = [row for weight, each in zip(weights, self.residuals(x), strict=True) for row in weight * each]
-        covariance, freedom = posterior_of(self.jacobian(x, weights), residual, self.prior_rows()[0])
+        units = [each.own * residual for each, residual in zip(weights, self.residuals(x), strict=True)]
+        scores = [slope(loss, unit) / np.sqrt(each.together) for each, unit in zip(weights, units, strict=True)]
+        bends = np.concatenate([bend(loss, unit).ravel() for unit in units])
+        covariance, freedom = posterior_of(self.jacobian(x, weights), scores, self.prior_rows()[0], bends)
         known, tied = self.plan.unknowns, self.plan.tied
         order = [*range(len(known)), *(each.unknown for each in tied), *range(len(known), self.size)]
         factors = np.ones(len(order))

@@ -324,7 +324,10 @@ def test_noise_that_grows_with_the_torque_widens_what_it_spoils() -> None:
         table = sw.Recording({"speed": speed, "torque": LAW.steady(speed) + noise}, {"speed": "rad/s", "torque": "N.m"})
         found.append(fit(gear(), table, FREE).estimates[1])
     scatter = np.std([estimate.value for estimate in found])
-    assert np.median([estimate.sigma for estimate in found]) == pytest.approx(scatter, rel=0.25)
+    assert np.sqrt(np.mean([estimate.sigma**2 for estimate in found])) == pytest.approx(scatter, rel=0.25)
+    assert np.median([estimate.freedom for estimate in found]) < 15.0  # few samples count
+    held = [low < LAW.viscous < high for low, high in (estimate.interval() for estimate in found)]
+    assert np.mean(held) > 0.85
 
 
 def test_a_model_that_never_moves_is_refused_and_not_given_back() -> None:

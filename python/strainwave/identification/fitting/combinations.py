@@ -1,0 +1,167 @@
+"""What the data tell only together: combinations of parameters that are known far better than the parameters themselves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.identification.fitting.fit import Fit, solved_problem
+from strainwave.identification.fitting.loss import LOSSES
+
+Array = NDArray[np.float64]
+UNTOLD = 0.1  # relative standard deviation of a direction that the data leave open (assumed)
+TAKES_PART = 0.02  # of the largest change in a direction: what changes less takes no part
+WHOLE = 0.03  # how near exponents must come to a ratio of small whole numbers
+RATIOS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
+SMALLEST = 1e-9  # share of the largest singular value below which a direction changes nothing
+
+
+@dataclass(frozen=True, eq=False)
+class Combination(ComparedByFields):
+    """Parameters that the data do not tell one by one.
+
+    Attributes:
+        paths: of the parameters, those first that change most
+        open: relative change of each that the data leave open: they can change together by any multiple of it; the largest is 1
+        relative: standard deviation of that change of all, infinite where nothing changes
+        told: what of two parameters the data do tell, as a formula; empty for one, or for more
+        value: of the formula
+        sigma: its standard deviation
+        unit: its unit; empty where parameters of different units multiply
+    """
+
+    paths: tuple[str, ...]
+    open: tuple[float, ...]
+    relative: float
+    told: str = ""
+    value: float = np.nan
+    sigma: float = np.nan
+    unit: str = ""
+
+    def __str__(self) -> str:
+        if len(self.paths) == 1:
+            return f"{self.paths[0]} is not told" + (f": ± {100.0 * self.relative:.0f} %" if np.isfinite(self.relative) else "")
+        if self.told:
+            names = " and ".join(self.paths)
+            return f"of {names} only {self.told} is told: {self.value:.4g} ± {self.sigma:.1g} {self.unit}".rstrip()
+        changes = ", ".join(f"{path} by {100.0 * part:+.0f} %" for path, part in zip(self.paths, self.open, strict=True))
+        return f"{len(self.paths)} parameters are told only together: what the data say hardly changes with {changes}"
+
+
+def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ...]:
+    """Which parameters of the model a fit tells only in combination, the least known first.
+
+    Directions in which the parameters can change, each relative to its size, without a change of what is predicted that the
+    noise would not hide: eigenvectors of the second derivatives of the cost in logarithmic parameters, with the unknowns of the
+    measurement fitted along. Of a direction in which two parameters change, the data tell what it leaves as it is: a sum or a
+    difference where both have one unit, a product of powers where the exponents are near ratios of whole numbers up to 3.
+
+    Args:
+        found: what `fit` found; parameters that are 0 take no part
+        untold: relative standard deviation above which a direction counts as not told
+
+    Valid near the estimates: to first order, sum and product of two parameters cannot be told apart.
+
+    Source: Gutenkunst et al., PLoS Computational Biology 3 (2007) 1871-1878.
+
+    >>> import strainwave as sw
+    >>> law = sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4)
+    >>> speed = np.linspace(1.0, 50.0, 60)
+    >>> torque = law.steady(speed) + 1e-4 * np.random.default_rng(0).normal(size=60)
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> gear = sw.Gear(friction_input=law, damping=3.0)
+    >>> for each in combinations(sw.fit(gear, table, ["friction_input.coulomb", "damping"])):
+    ...     print(each)
+    damping is not told
+    """
+    untold = arguments.number("untold", untold, low=0.0)
+    problem, best = solved_problem(found)
+    loss = LOSSES[found.loss]
+    weights = problem.weights(best, problem.first_weights(), loss)
+    rows = problem.information(best, weights, loss)
+    known = len(found.plan.unknowns)
+    estimates = found.estimates[:known]
+    size = np.array([max(abs(value), abs(each.start)) for value, each in zip(best, estimates, strict=False)])
+    chosen = [place for place in range(known) if best[place] != 0.0]
+    if not chosen:
+        return ()
+    size = size[chosen]  # a fit may have gone far in an open direction: where it began tells the size too
+    wider = _wider(found, problem.naive_sigma(best, weights, loss))
+    directions, sigmas = _directions(rows, chosen, size, wider)
+    told = []
+    for direction, sigma in zip(directions, sigmas, strict=True):
+        if sigma > untold:
+            order = [i for i in np.argsort(-np.abs(direction)) if abs(direction[i]) > TAKES_PART * np.abs(direction).max()]
+            told.append((order, direction / direction[order[0]], sigma))
+    spread = _spread(directions, sigmas, untold)
+    made = []
+    for order, direction, sigma in told:
+        paths = tuple(estimates[chosen[i]].path for i in order)
+        units = [estimates[chosen[i]].unit for i in order]
+        values = best[[chosen[i] for i in order]]
+        changes = direction[order]
+        formula = _formula(paths, units, values, changes * size[order]) if len(order) == 2 else None
+        if formula is None:
+            made.append(Combination(paths, tuple(changes.tolist()), float(sigma)))
+            continue
+        words, value, slopes, unit = formula
+        gradient = np.zeros(len(chosen))
+        gradient[order] = slopes * size[order]
+        deviation = float(np.sqrt(gradient @ spread @ gradient))
+        made.append(Combination(paths, tuple(changes.tolist()), float(sigma), words, value, deviation, unit))
+    return tuple(made)
+
+
+def _wider(found: Fit, naive: Array) -> float:
+    """How much larger standard deviations are than the second derivatives of the cost say, as residuals hang together."""
+    known = len(found.plan.unknowns)
+    stated = np.array([each.sigma for each in found.estimates[:known]])
+    both = np.isfinite(stated) & np.isfinite(naive[:known]) & (naive[:known] > 0.0)
+    return float(np.median(stated[both] / naive[:known][both])) if both.any() else 1.0
+
+
+def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tuple[Array, Array]:
+    """Directions of relative change, shape (k, k), and the standard deviation of the change in each, the largest first."""
+    others = np.delete(rows, chosen, axis=1)
+    columns = rows[:, chosen] * size
+    length = np.linalg.norm(others, axis=0)
+    if (length > 0.0).any():  # what the others can make up for is not told
+        basis = np.linalg.svd((others / np.where(length > 0.0, length, 1.0))[:, length > 0.0], full_matrices=False)[0]
+        columns = columns - basis @ (basis.T @ columns)
+    _, singular, directions = np.linalg.svd(columns, full_matrices=True)
+    singular = np.append(singular, np.zeros(len(chosen) - len(singular)))
+    dead = singular <= SMALLEST * singular.max(initial=0.0)
+    with np.errstate(divide="ignore"):
+        sigmas = np.where(dead, np.inf, wider / np.where(dead, 1.0, singular))
+    order = np.argsort(-sigmas, kind="stable")
+    return directions[order], sigmas[order]
+
+
+def _spread(directions: Array, sigmas: Array, untold: float) -> Array:
+    """Covariance of relative changes in the directions that are told."""
+    told = sigmas <= untold
+    return np.asarray((directions[told].T * sigmas[told] ** 2) @ directions[told])
+
+
+def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Array) -> tuple[str, float, Array, str] | None:
+    """What of two parameters it leaves as it is when both move: words, value, derivatives by the parameters, unit."""
+    if units[0] == units[1] and abs(moves[0]) > abs(moves[1]):  # the larger factor is 1
+        swapped = _formula(paths[::-1], units[::-1], values[::-1], moves[::-1])
+        return None if swapped is None else (*swapped[:2], swapped[2][::-1], swapped[3])
+    power = -(moves[0] / values[0]) / (moves[1] / values[1])  # of the second, where the first has 1
+    nearest = min(RATIOS, key=lambda ratio: abs(ratio - power))
+    whole = abs(nearest - power) <= WHOLE * abs(nearest)
+    if units[0] == units[1] and not (whole and nearest < 0.0):
+        factor = -moves[0] / moves[1]
+        share = "" if abs(abs(factor) - 1.0) < WHOLE else f"{abs(factor):.3g} "
+        words = f"{paths[0]} {'+' if factor > 0.0 else '-'} {share}{paths[1]}"
+        return words, float(values[0] + factor * values[1]), np.array([1.0, factor]), units[0]
+    if not whole:
+        return None
+    value = float(abs(values[0]) * abs(values[1]) ** nearest)
+    words = f"{paths[0]} {'*' if nearest > 0.0 else '/'} {paths[1]}" + ("" if abs(nearest) == 1.0 else f"^{abs(nearest):.3g}")
+    return words, value, value * np.array([1.0, nearest]) / values, "1" if units[0] == units[1] and nearest == -1.0 else ""

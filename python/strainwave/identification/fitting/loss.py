@@ -1,0 +1,62 @@
+"""How much residuals cost: all by their square, or large ones less."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+NORMAL_MAD = 0.6744897501960817  # median of the absolute value of a standard normal variable
+
+
+class Loss(Protocol):
+    """Cost of residuals, in units of their standard deviation; half of `cost(residual**2)` is what a fit makes small."""
+
+    def sigma(self, residual: Array) -> Array:
+        """Standard deviation of the noise of each channel, shape (channels, 1), from residuals, shape (channels, n)."""
+        ...
+
+    def cost(self, squares: Array) -> Array:
+        """Cost over the square of a residual, and its first and second derivative, shape (3, n)."""
+        ...
+
+
+class Linear:
+    """The square itself: best where noise is normal."""
+
+    def sigma(self, residual: Array) -> Array:
+        return np.asarray(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)))
+
+    def cost(self, squares: Array) -> Array:
+        return np.stack((squares, np.ones_like(squares), np.zeros_like(squares)))
+
+
+class SoftL1:
+    """Like the square for residuals within their standard deviation, like the absolute value far beyond: outliers pull little.
+
+    Cost 2 (sqrt(1 + z) - 1): Charbonnier et al., IEEE Trans. Image Process. 6 (1997) 298-311. The standard deviation is that of
+    normal noise with the same median absolute value, which outliers hardly change (Hampel 1974).
+    """
+
+    def sigma(self, residual: Array) -> Array:
+        return np.asarray(np.median(np.abs(residual), axis=1, keepdims=True) / NORMAL_MAD)
+
+    def cost(self, squares: Array) -> Array:
+        root = np.sqrt(1.0 + squares)
+        return np.stack((2.0 * (root - 1.0), 1.0 / root, -0.5 / root**3))
+
+
+LOSSES: dict[str, Loss] = {"linear": Linear(), "soft_l1": SoftL1()}
+
+
+def slope(loss: Loss, residual: Array) -> Array:
+    """Derivative of half the cost by the residual: what a sample weighs with."""
+    return np.asarray(residual * loss.cost(residual**2)[1])
+
+
+def bend(loss: Loss, residual: Array) -> Array:
+    """Its second derivative."""
+    _, first, second = loss.cost(residual**2)
+    return np.asarray(first + 2.0 * residual**2 * second)
