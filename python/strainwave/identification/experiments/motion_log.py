@@ -22,6 +22,7 @@ EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltag
 SLID = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
 OUTLYING = 6.0  # standard deviations
 CLIPPED = 20  # samples of one level at the end of the range
+FEWEST = 10  # samples of each direction, in the pass band (assumed)
 STEP = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
 
 
@@ -73,7 +74,10 @@ class MotionLog(ComparedByFields):
         arguments.drive(drive)
         effort = _effort(recording, effort)
         time, angle = recording.time, _input_angle(recording, drive)
+        if np.ptp(angle) == 0.0:
+            raise ValueError("the angle never changes: a log tells inertia and friction of a shaft that moves")
         motion = motion_of(time, angle, cutoff, SLID)
+        _check_both_ways(motion)
 
         def on_grid(values: Array) -> Array:
             return np.interp(motion.time, time, values)
@@ -247,6 +251,17 @@ def per_torque(drive: Drive, effort: str, motion: Motion) -> float:
     constant = float(getattr(drive.motor, "torque_constant", 1.0))
     per = {"current": 1.0 / constant, "input_torque": 1.0, "joint_torque": drive.gear.kinematics.ratio}
     return per[effort] if effort in per else float(getattr(drive.motor, "resistance", 0.0)) / constant
+
+
+def _check_both_ways(motion: Motion) -> None:
+    forward, backward = (int(np.sum(way * motion.speed[motion.rows] > 0.0)) for way in (1.0, -1.0))
+    if forward + backward == 0:
+        raise ValueError("the shaft hardly moves: all of the log is rest, reversals or gaps; record a larger motion")
+    if min(forward, backward) < FEWEST:
+        raise ValueError(
+            f"the shaft moves forward in {forward} and backward in {backward} of the samples compared; {FEWEST} of each are "
+            "needed to tell Coulomb's friction from a constant torque: record motion both ways"
+        )
 
 
 def spoilt(values: Array) -> NDArray[np.bool_]:

@@ -166,6 +166,10 @@ def test_a_log_that_does_not_tell_the_torque_or_the_motion_is_refused() -> None:
     current = sw.Recording({"time": TIME, "current": torque(TRUTH)}, {"time": "s", "current": "A"})
     with pytest.raises(ValueError, match="needs an angle"):
         MotionLog.of(current, drive())
+    with pytest.raises(ValueError, match="never changes"):
+        MotionLog.of(current.with_column("input_angle", np.ones_like(TIME), "rad"), drive())
+    with pytest.raises(ValueError, match="record motion both ways"):
+        MotionLog.of(current.with_column("input_angle", 10.0 * TIME + np.sin(TIME), "rad"), drive())
     braked = drive().replace(load=sw.loads.TorsionSpring(inertia=0.1, stiffness=1.0))
     with pytest.raises(ValueError, match="inertia or pendulum"):
         MotionLog.of(record(TRUTH), braked).predict(braked, [], np.zeros(1))
