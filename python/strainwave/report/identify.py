@@ -176,7 +176,7 @@ def name_of(told: Told) -> str:
     >>> name_of(Told("gear.friction_input.coulomb", "N.m", 0.05, 0.001, "")).lower()
     'kinetic friction torque f_c'
     >>> name_of(Told("gear.kinematic_error.amplitude of order 2", "rad", 6e-5, 1e-6, "fourier"))
-    'Amplitude of each harmonic, of order 2'
+    'Amplitude A_h at the output, of order 2'
     """
     path, _, order = told.path.partition(" of order ")
     path, _, place = path.removesuffix("]").partition("[")
