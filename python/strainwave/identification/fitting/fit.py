@@ -20,7 +20,7 @@ from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.loss import LOSSES, Linear
+from strainwave.identification.fitting.loss import LOSSES, Squared
 from strainwave.identification.fitting.problem import Problem, Record
 from strainwave.identification.fitting.unknowns import AT, Plan, plan
 from strainwave.messages import listed, quoted, shortened
@@ -268,7 +268,7 @@ def _solved(problem: Problem, named: Literal["linear", "soft_l1"]) -> Fit:
     for record, (predicted, _) in zip(records, problem.predict(x), strict=True):
         _check_motion(record.experiment, predicted)
     channels = sum(len(record.experiment.channels) for record in records)
-    alone = channels == 1 and not problem.plan.priors and isinstance(loss, Linear)  # where weights change nothing
+    alone = channels == 1 and not problem.plan.priors and isinstance(loss, Squared)  # where weights change nothing
     for tolerance in (TOLERANCE,) if alone else (ROUGH, *PASSES * (TOLERANCE,)):
         before, x = weights, problem.solve(x, weights, loss, tolerance)
         weights = problem.weights(x, before, loss)

@@ -23,7 +23,7 @@ class Loss(Protocol):
         ...
 
 
-class Linear:
+class Squared:
     """The square itself: best where noise is normal."""
 
     def sigma(self, residual: Array) -> Array:
@@ -48,7 +48,7 @@ class SoftL1:
         return np.stack((2.0 * (root - 1.0), 1.0 / root, -0.5 / root**3))
 
 
-LOSSES: dict[str, Loss] = {"linear": Linear(), "soft_l1": SoftL1()}
+LOSSES: dict[str, Loss] = {"linear": Squared(), "soft_l1": SoftL1()}
 
 
 def slope(loss: Loss, residual: Array) -> Array:
