@@ -160,6 +160,8 @@ def _caption(finding: Finding) -> str:
     assert curves is not None
     error, of = float(np.sqrt(np.mean(plots.residual_of(curves) ** 2))), curves.unit(curves.names[1])
     words = [f"Model: {finding.model}. Root mean square of what is left: {quantity(error, of)}."]
+    if "residual" in curves:
+        words.append("The slow part above is what load and lost motion add; it is taken out below, too.")
     if "held_out" in curves and curves["held_out"].any():
         words.append("Shaded: held out from the fit.")
     if finding.refused:

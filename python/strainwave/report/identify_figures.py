@@ -187,7 +187,8 @@ def _series(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
     x, unit, residual = curves[over], curves.unit(channel), residual_of(curves)
     places, measured, modelled, rest = _broken(x, curves[channel], curves["modelled"], residual)
     figures.curve(whole, places, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
-    figures.curve(whole, places, modelled, color=LIGHT["model"], linewidth=0.9, label="model")
+    label = "orders found" if "residual" in curves else "model"
+    figures.curve(whole, places, modelled, color=LIGHT["model"], linewidth=0.9, label=label)
     figures.residual_curve(left, places, rest, LIGHT["ink"])
     _bands(left, x, residual, _sigma(curves))
     _held_out((whole, left), x, curves)
