@@ -97,7 +97,7 @@ def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ..
         if sigma > untold:
             order = [i for i in np.argsort(-np.abs(direction)) if abs(direction[i]) > TAKES_PART * np.abs(direction).max()]
             told.append((order, direction / direction[order[0]], sigma))
-    spread = _spread(directions, sigmas, untold)
+    roots = (directions.T * np.where(sigmas <= untold, sigmas, 0.0)).T  # of the covariance of what is told
     made = []
     for order, direction, sigma in told:
         paths = tuple(estimates[chosen[i]].path for i in order)
@@ -111,7 +111,7 @@ def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ..
         words, value, slopes, unit = formula
         gradient = np.zeros(len(chosen))
         gradient[order] = slopes * size[order]
-        deviation = float(np.sqrt(gradient @ spread @ gradient))
+        deviation = float(np.linalg.norm(roots @ gradient))
         made.append(Combination(paths, tuple(changes.tolist()), float(sigma), words, value, deviation, unit))
     return tuple(made)
 
@@ -139,12 +139,6 @@ def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tu
         sigmas = np.where(dead, np.inf, wider / np.where(dead, 1.0, singular))
     order = np.argsort(-sigmas, kind="stable")
     return directions[order], sigmas[order]
-
-
-def _spread(directions: Array, sigmas: Array, untold: float) -> Array:
-    """Covariance of relative changes in the directions that are told."""
-    told = sigmas <= untold
-    return np.asarray((directions[told].T * sigmas[told] ** 2) @ directions[told])
 
 
 def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Array) -> tuple[str, float, Array, str] | None:

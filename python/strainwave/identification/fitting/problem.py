@@ -13,7 +13,7 @@ from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.fitting.covariance import posterior_of
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.loss import Linear, Loss, bend, slope
+from strainwave.identification.fitting.loss import Loss, Squared, bend, slope
 from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.fitting.unknowns import AT, Move, Plan
 
@@ -186,9 +186,16 @@ class Problem:
         self._drawn = random.normal(size=len(self.plan.priors))
 
     def first_weights(self) -> list[Weights]:
-        """Weights before residuals tell them: noise is taken to be a share of what was measured."""
-        scales = [NOISE * scale(record.measured[:, record.training]) for record in self.records]
-        return [Weights(1.0 / each, np.ones_like(each)) for each in scales]
+        """Weights before residuals tell them: noise is a share of what was measured, and all records count as the shortest.
+
+        Were each sample of a long record counted, the first pass would follow its drift, and it would not show that it drifts.
+        """
+        lengths = [int(record.training.sum()) for record in self.records]
+        return [
+            Weights(1.0 / (NOISE * size), np.full_like(size, n / min(lengths)))
+            for n, record in zip(lengths, self.records, strict=True)
+            for size in [scale(record.measured[:, record.training])]
+        ]
 
     def weights(self, x: Array, before: Sequence[Weights], loss: Loss) -> list[Weights]:
         """Weights of the channels of each record, by the residuals that a fit left.
@@ -244,7 +251,7 @@ class Problem:
             """Of samples in units of their own noise, times the share of them that is independent; of priors the square."""
             of_data, of_prior = squares[: len(together)], squares[len(together) :]
             value, first, second = loss.cost(of_data * together)
-            return np.concatenate((np.stack((value / together, first, second * together)), Linear().cost(of_prior)), axis=1)
+            return np.concatenate((np.stack((value / together, first, second * together)), Squared().cost(of_prior)), axis=1)
 
         with np.errstate(over="ignore"):  # SciPy takes a smaller step where its model of the residuals is infinite
             solution = least_squares(
@@ -253,7 +260,7 @@ class Problem:
                 jac=jacobian,
                 bounds=(low[free], high[free]),
                 x_scale="jac",
-                loss="linear" if isinstance(loss, Linear) else cost,  # type: ignore[arg-type]  # stubs ask for more than SciPy
+                loss="linear" if isinstance(loss, Squared) else cost,  # type: ignore[arg-type]  # stubs ask for more than SciPy
                 xtol=tolerance,
                 ftol=tolerance,
                 gtol=tolerance,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
+from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.covariance import covariance_of, posterior_of
 from strainwave.identification.fitting.estimate import ONE_SIGMA, student
 from strainwave.identification.fitting.noise import autoregression, correlation_length, spectrum
@@ -107,6 +108,24 @@ def test_samples_hang_together_as_long_as_their_autoregression_says() -> None:
     assert np.median(lengths) == pytest.approx(9.0, rel=0.2)  # (1 + 0.8) / (1 - 0.8)
     white = [correlation_length(np.random.default_rng(seed).normal(size=N)) for seed in range(40)]
     assert np.median(white) == 1.0
+
+
+def test_a_long_record_that_drifts_does_not_drown_a_short_table() -> None:
+    """3000 samples that hang together by hundreds tell as little as a dozen: the table tells more."""
+    from scipy.signal import lfilter
+
+    speed, short = np.linspace(1.0, 60.0, 3000), np.linspace(1.0, 60.0, 26)
+    errors = []
+    for seed in range(40):
+        random = np.random.default_rng(seed)
+        drift = 3e-3 * np.sqrt(1.0 - 0.995**2) * lfilter([1.0], [1.0, -0.995], random.normal(size=6000))[3000:]
+        log = FrictionTable(speed, LAW.steady(speed) + drift)
+        table = FrictionTable(short, LAW.steady(short) + 1e-3 * random.normal(size=26))
+        found = [sw.fit(START, records, FREE).estimates[0].value - LAW.coulomb for records in ([log, table], table, log)]
+        errors.append(found)
+    both, by_table, by_log = np.abs(errors).T
+    assert np.median(both) < 1.3 * np.median(by_table)
+    assert np.sqrt(np.mean(both**2)) < 0.5 * np.sqrt(np.mean(by_log**2))
 
 
 LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
