@@ -17,6 +17,7 @@ import typer
 from strainwave.identify_command import identify
 from strainwave.messages import listed, one_line, pairs, quoted, unquoted, with_options
 from strainwave.orders_command import orders
+from strainwave.plan_command import plan_experiments
 from strainwave.rank_command import rank
 from strainwave.rig_command import rig
 from strainwave.study_command import study
@@ -46,6 +47,7 @@ app.add_typer(rig, name="rig")
 app.command()(identify)
 app.command()(rank)
 app.command()(orders)
+app.command()(plan_experiments)
 
 
 def _show_version(wanted: bool) -> None:

@@ -85,6 +85,8 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     name it like --column speed=v
     >>> print(with_options('side = "middle" must be one of input, output'))
     --side middle must be one of input, output
+    >>> print(with_options("speed_limit is needed for friction"))
+    --speed-limit is needed for friction
     >>> print(with_options("rtol = 1.0 must lie in [1e-11, 0.01]"))
     --tolerance 1.0 must lie in [1e-11, 0.01]
     """
@@ -94,6 +96,7 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     told = re.sub(r" \(in Python \w+=\{.*?\}\)", "", told)
     told = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", told)
     told = re.sub(r"^rtol = ", "--tolerance ", told)
+    told = re.sub(r"^(speed_limit|lowest_speed|torque_limit)\b", lambda found: "--" + found[1].replace("_", "-"), told)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
     return told.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
 

@@ -25,6 +25,7 @@ from strainwave.simulation.signals import outputs
 Array = NDArray[np.float64]
 KINDS = ("friction", "torsion", "motion")
 DURATIONS = {"friction": 20.0, "torsion": 300.0}  # s: to settle and be averaged; of a slow loop (assumed)
+IN_A_LOOP = ("stiffness", "hysteresis", "friction_input")  # what a torsion loop may depend on
 SLOWEST = 1e-3  # of the largest speed: the lowest that is held steady, if it is not given
 SAMPLE = 2e-3  # s, of the samples of a run
 POOR = 0.1  # relative: what is known less well is named
@@ -143,7 +144,8 @@ def plan_experiments(
             drive)
         time: what all measurements may take together [s]
         criterion: "A", the sum of the relative variances of the wanted parameters; "D", the determinant of their covariance
-        unknown: paths of what else is not known; if not given, the other numbers of the parts of the wanted ones
+        unknown: paths of what else is not known; if not given, the other numbers of the parts of the wanted ones, and with
+            torsion loops spring, hysteresis and friction at the input
         known: what is known before: a set, a fit, or standard deviations by path; of a set as model its own, if not given
         speed_limit: of the input [rad/s]; with ratings of a set the smaller counts
         lowest_speed: that can be held steady [rad/s]; a thousandth of the limit if not given
@@ -172,7 +174,7 @@ def plan_experiments(
     arguments.one_of("criterion", criterion, ("A", "D"))
     whole = _whole(model, "motion" in kinds)
     budget = arguments.seconds("time", time)
-    unknowns = _unknowns(whole, wanted, unknown)
+    unknowns = _unknowns(whole, wanted, unknown, kinds)
     scale = np.array([abs(each.value) or 1.0 for each in unknowns])
     limits = _limits(model, kinds, speed_limit, lowest_speed, torque_limit)
     noise = _noise(noise or {}, whole)
@@ -201,13 +203,15 @@ def _whole(model: object, moves: bool) -> Any:
     raise TypeError(f"model must be a GearSet, a Drive or a Gear, not {shortened(model)}")
 
 
-def _unknowns(whole: Any, wanted: Sequence[str], unknown: Sequence[str] | None) -> list[Parameter]:
+def _unknowns(whole: Any, wanted: Sequence[str], unknown: Sequence[str] | None, kinds: Sequence[str]) -> list[Parameter]:
     named = _named("wanted", whole, wanted)
     if not named:
         raise ValueError("wanted must name at least one parameter")
     if unknown is None:
-        parts = tuple({each.path.rpartition(".")[0] + "." for each in named if "." in each.path.removeprefix("gear.")})
-        others = {path for path in every(whole) if path.startswith(parts)} if parts else set()
+        gear = "gear." if isinstance(whole, Drive) else ""
+        beside = [f"{gear}{part}." for part in IN_A_LOOP] if "torsion" in kinds else []
+        inside = {each.path.rpartition(".")[0] + "." for each in named if "." in each.path.removeprefix(gear)}
+        others = {path for path in every(whole) if path.startswith((*inside, *beside))}
     else:
         others = {each.path for each in _named("unknown", whole, unknown)}
     paths = others | {each.path for each in named}
