@@ -203,7 +203,8 @@ def test_points_that_are_means_are_told(from_torsion: sw.Twin) -> None:
     (evidence,) = from_torsion.evidence
     loop = evidence.fit.experiment
     assert isinstance(loop, TorsionLoop)
-    thinned = replace(evidence, fit=replace(evidence.fit, experiment=replace(loop, samples=9_000)))
+    (part,) = evidence.fit.parts
+    thinned = replace(evidence, fit=replace(evidence.fit, parts=(replace(part, experiment=replace(loop, samples=9_000)),)))
     told = "Each point is the mean of neighbouring samples"
     assert told in section(twin_report(replace(from_torsion, evidence=(thinned,))), "torsion").text
     assert told not in section(twin_report(from_torsion), "torsion").text
