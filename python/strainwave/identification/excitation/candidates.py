@@ -77,7 +77,7 @@ def friction(gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, dur
     one_way = np.geomspace(limits.lowest_speed, limits.speed, SPEEDS)
     speed = np.concatenate((one_way, -one_way))
     torque, slopes = _predicted(FrictionTable(speed, speed), gear, paths)
-    sigma = noise.get("friction", RELATIVE_NOISE * float(np.abs(torque).max()))
+    sigma = _sigma(noise, "friction", float(np.abs(torque).max()))
     for row, each in enumerate(one_way.tolist()):
         rows = slopes[:, 0, [row, row + SPEEDS]].T / sigma
         words = f"friction torque at ± {each:.4g} rad/s of the input ({each * 30.0 / pi:.4g} rpm)"
@@ -106,8 +106,8 @@ def torsion(gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, dura
 
 def _loop_sigma(noise: Noise, ratio: float | None, limits: Limits) -> float:
     """Noise of the torque of a loop, referred to the output [N.m]."""
-    given = noise.get("torsion" if ratio is None else "input_torsion")
-    return RELATIVE_NOISE * limits.torque if given is None else given * abs(ratio or 1.0)
+    scale, name = (1.0, "torsion") if ratio is None else (abs(ratio), "input_torsion")
+    return scale * _sigma(noise, name, limits.torque / scale)
 
 
 def _loop(gear: Gear, largest: float, ratio: float | None) -> TorsionLoop:
@@ -129,7 +129,7 @@ def motion(
     kept = [each for each in runs if _kept(each[-1], limits)]
     if not kept:
         return
-    sigmas = [_sigma(noise, channel, [run for *_, run in kept]) for channel in channels]
+    sigmas = [_sigma(noise, each, max(float(np.ptp(run[each])) for *_, run in kept)) for each in channels]
     for name, share, command, run in kept:
         experiment = DriveLog.of(run.select(["time", "command", *channels]), drive, channels)
         _, slopes = _predicted(experiment, drive, paths)
@@ -139,9 +139,15 @@ def motion(
         yield Candidate("motion", {"command": name, "share": share}, words, command.duration, information)
 
 
-def _sigma(noise: Noise, channel: str, runs: Sequence[Recording]) -> float:
-    """Noise of a channel, the same in all runs."""
-    return noise[channel] if channel in noise else RELATIVE_NOISE * max(float(np.ptp(run[channel])) for run in runs)
+def _sigma(noise: Noise, name: str, largest: float) -> float:
+    """The noise that is given, or a share of the largest value."""
+    if name in noise:
+        return noise[name]
+    if not largest > 0.0:
+        raise ValueError(
+            f"the model predicts zero for {name}, of which no share can be taken as noise; give the noise of {name}"
+        )
+    return RELATIVE_NOISE * largest
 
 
 def _kept(run: Recording, limits: Limits) -> bool:

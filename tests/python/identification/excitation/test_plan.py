@@ -126,6 +126,12 @@ def test_what_friction_at_speed_cannot_tell_is_named() -> None:
     assert "not known" in plan.summary()
 
 
+def test_no_noise_is_assumed_of_a_model_without_friction() -> None:
+    with pytest.raises(ValueError, match="predicts zero for friction"):
+        friction_plan(sw.Gear(), ["friction_input"], noise=None)
+    assert friction_plan(sw.Gear(), ["friction_input"])["friction_input.viscous"].after < np.inf
+
+
 # Loops
 
 SPRING = sw.Gear(
