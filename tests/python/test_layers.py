@@ -21,7 +21,17 @@ LAYERS = {
     "studies": {"files", "simulation", "analysis", "studies"},
     "report": {"files", "simulation", *ANALYSES, "report"},
 }
-TOP = {"__main__", "cli", "orders_command", "plan_command", "rig_command", "study_command", "demo"}
+TOP = {
+    "__main__",
+    "cli",
+    "rig_command",
+    "study_command",
+    "orders_command",
+    "plan_command",
+    "identify_command",
+    "rank_command",
+    "demo",
+}
 
 
 def imported(path: Path) -> Iterator[str]:

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
+from strainwave.identification.experiments.motion_log import EFFORTS
 from strainwave.identification.reading.recognise import Recognised
 
 Array = NDArray[np.float64]
 ALIKE = 1e-3  # of the range: two readings of one number differ by less
-OF_RUN = 2e-3  # of the range: two encoders of one drive that moved once differ by less, but for scale and zero
+OF_RUN = 4e-3  # of the usual deviation: two encoders of one drive that moved once differ by less, but for scale and zero
+OF_TORQUE = 0.2  # of the same: noise and delay make as much
 
 
 def same_as(files: Sequence[Recognised]) -> dict[str, str]:
@@ -49,12 +51,29 @@ def _same_run(one: Recording, other: Recording) -> bool:
     time = np.linspace(max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1]), 500)
     if not time[-1] > time[0]:
         return False
-    a, b = np.interp(time, one.time, first), np.interp(time, other.time, second)
-    if np.std(a) == 0.0 or np.std(b) == 0.0:
+    motions = [np.interp(time, each.time, angle) for each, angle in ((one, first), (other, second))]
+    return _proportional(*motions, OF_RUN) and _same_effort(one, other, time)
+
+
+def _same_effort(one: Recording, other: Recording, time: Array) -> bool:
+    """Whether what moved them may be the same: two drives may follow one command with different loads."""
+    first, second = ([name for name in EFFORTS if name in each] for each in (one, other))
+    if not first or not second:
+        return True
+    common = [name for name in first if name in second]
+    names = (common[0], common[0]) if common else (first[0], second[0])
+    a, b = (np.interp(time, each.time, each[name]) for each, name in zip((one, other), names, strict=True))
+    size = float(np.median(np.abs(a)) / max(np.median(np.abs(b)), 1e-300))
+    return _proportional(a, b, OF_TORQUE) and (not common or abs(size - 1.0) < OF_TORQUE)
+
+
+def _proportional(one: Array, other: Array, allowed: float) -> bool:
+    """Whether two series are multiples of each other but for zeros and noise; outliers do not count."""
+    if np.std(one) == 0.0 or np.std(other) == 0.0:
         return False
-    a, b = (a - a.mean()) / np.std(a), (b - b.mean()) / np.std(b)
-    sense = np.sign(a @ b)
-    return bool(np.sqrt(np.mean((a - sense * b) ** 2)) < OF_RUN)
+    a, b = ((each - np.median(each)) / np.median(np.abs(each - np.median(each))) for each in (one, other))
+    off = a - np.sign(a @ b) * b
+    return bool(np.median(np.abs(off)) < allowed)
 
 
 def _angle(recording: Recording) -> Array | None:

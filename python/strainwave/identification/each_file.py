@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from strainwave.identification.curves import curves_of, curves_of_orders
 from strainwave.identification.evidence.verdict import numbers
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.findings import Finding, Told
+from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.twin import Twin, twin
@@ -25,6 +26,7 @@ from strainwave.identification.twin import Twin, twin
 EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and friction explain less tells neither
 FRICTION = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law that has them
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
+UNUSED = {"ratio", "load_inertia", "load_torque", "speed", "temperature"}  # constants that a log is not fitted with
 ANGLES = ("input_angle", "output_angle")
 
 
@@ -36,11 +38,17 @@ class Known:
         gear_set: the set, with what earlier files have told of it
         friction: the recording of a friction table, if one was given
         told: parts of the gear that earlier files have told
+        sigmas: standard deviation of the first number of friction and spring, as the file has it that tells the part
     """
 
     gear_set: GearSet
     friction: Recording | None = None
     told: frozenset[str] = frozenset()
+    sigmas: Mapping[str, float] = field(default_factory=dict)
+
+    def knows_better(self, part: str, told: Sequence[Told]) -> bool:
+        """Whether an earlier file tells a part of the gear better than this one."""
+        return part in self.told and self.sigmas.get(part, np.inf) <= _first_sigma(part, told)
 
 
 def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
@@ -64,10 +72,21 @@ def _friction(file: Recognised, known: Known) -> tuple[Finding, Known]:
     table = with_torque(file, known.gear_set)
     found = twin(known.gear_set, friction=table, side=file.side, sources={"friction": file.path.name})
     finding = _of_twin(file, found)
-    if finding.refused:
+    if finding.refused or known.knows_better("friction_input", finding.told):
         return finding, known
     gear = known.gear_set.gear.replace(friction_input=found.gear_set.gear.friction_input)
-    return finding, _with_gear(known, gear, found, {"friction_input"}, friction=table)
+    after = _with_gear(known, gear, found, {"friction_input"}, friction=table)
+    return finding, _judged(after, "friction_input", finding.told)
+
+
+def _first_sigma(part: str, told: Sequence[Told]) -> float:
+    """Standard deviation of the first number of a part; infinite where the file does not tell it."""
+    own = [each.sigma for each in told if each.path.startswith(f"gear.{part}.") and not each.why]
+    return own[0] if own else np.inf
+
+
+def _judged(known: Known, part: str, told: Sequence[Told]) -> Known:
+    return replace(known, sigmas={**known.sigmas, part: _first_sigma(part, told)})
 
 
 def with_torque(file: Recognised, gear_set: GearSet) -> Recording:
@@ -86,10 +105,10 @@ def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     found = twin(known.gear_set, friction=friction, torsion=file.recording, sources={"torsion": file.path.name})
     finding = _of_twin(file, found)
     parts = {"stiffness", "hysteresis"}
-    if finding.refused or parts & known.told:
+    if finding.refused or known.knows_better("stiffness", finding.told):
         return finding, known
     gear = known.gear_set.gear.replace(**{part: getattr(found.gear_set.gear, part) for part in parts})
-    return finding, _with_gear(known, gear, found, parts)
+    return finding, _judged(_with_gear(known, gear, found, parts), "stiffness", finding.told)
 
 
 def _of_twin(file: Recognised, found: Twin) -> Finding:
@@ -116,7 +135,8 @@ def _with_gear(known: Known, gear: Any, found: Twin, parts: set[str], friction: 
     sources = {path: entry for path, entry in known.gear_set.sources.items() if not path.startswith(names)}
     sources |= {path: entry for path, entry in found.gear_set.sources.items() if path.startswith(names)}
     gear_set = replace(known.gear_set, gear=gear, sources=sources)
-    return Known(gear_set, friction if friction is not None else known.friction, known.told | parts)
+    table = friction if friction is not None else known.friction
+    return replace(known, gear_set=gear_set, friction=table, told=known.told | parts)
 
 
 def _law(path: str, gear: Any) -> str:
@@ -182,6 +202,7 @@ class Taken(ComparedByFields):
         recording: with the torque in the sense of the motion
         remarks: what was assumed, put right or left out
         in_current: whether torques are in A, as the torque constant is not known
+        constant_given: whether a person told the torque constant with the file
     """
 
     log: MotionLog
@@ -189,6 +210,7 @@ class Taken(ComparedByFields):
     recording: Recording
     remarks: tuple[str, ...]
     in_current: bool
+    constant_given: bool
 
 
 def log_of(file: Recognised, known: Known) -> Taken:
@@ -209,13 +231,13 @@ def log_of(file: Recognised, known: Known) -> Taken:
     if not before.share > EXPLAINED or before.inertia <= 0.0:
         raise ValueError(
             f"inertia, friction and gravity explain {100.0 * max(before.share, 0.0):.0f} % of the variation of {log.effort}: "
-            "the drive did more than one shaft does (give the torque of other joints as a column load_torque), or sides or "
+            "the drive did more than one shaft does (give the torque of other joints as a column rigid_torque), or sides or "
             "units are not what they are taken for"
         )
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         remarks.append(f"{spoilt_rows} samples of {log.effort} are outliers or clipped, and left out")
-    return Taken(log, drive, recording, tuple(remarks), in_current)
+    return Taken(log, drive, recording, tuple(remarks), in_current, "torque_constant" in file.constants)
 
 
 def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
@@ -223,7 +245,7 @@ def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
     log = taken.log
     best, *_ = fit_motion({file.path.name: log}, drive)
-    told = list(_of_motion(best, known.gear_set, drive, recording, in_current))
+    told = list(_of_motion(best, known.gear_set, taken))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
     if set(ANGLES) <= set(recording.names):
@@ -249,6 +271,8 @@ def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], na
 def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:
     """The drive of a log, of the motor that the set or the person tells; remarks; and whether torques are in A."""
     constants, remarks, gear = file.constants, list[str](), gear_set.gear
+    if unused := sorted(constants.keys() & UNUSED):
+        remarks.append(f"not used of a log: {', '.join(unused)}; what the set says is taken")
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
     inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
@@ -266,15 +290,12 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current
 
 
-def _of_motion(best: MotionCandidate, gear_set: GearSet, drive: Drive, recorded: Recording, in_current: bool) -> Iterator[Told]:
+def _of_motion(best: MotionCandidate, gear_set: GearSet, taken: Taken) -> Iterator[Told]:
     """The numbers of a log; each as uncertain as the torque constant, besides."""
-    entry = gear_set.sources.get("motor.torque_constant")
-    constant, ratio = getattr(gear_set.motor, "torque_constant", 0.0), drive.gear.kinematics.ratio
-    relative = (
-        (entry.uncertainty / constant if entry.uncertainty else entry.spread or 0.0) if entry is not None and constant else 0.0
-    )
+    drive, in_current = taken.drive, taken.in_current
+    ratio, relative = drive.gear.kinematics.ratio, 0.0 if taken.constant_given else _of_constant(gear_set)
     rotor = (drive.motor.inertia + drive.gear.input_inertia) * ratio**2
-    encoder = "of input_angle" if "input_angle" in recorded else "of output_angle"  # from whose zero the phase counts
+    encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     for estimate in best.fit.estimates:
         if estimate.path in nuisances or estimate.path in best.tied:
@@ -282,7 +303,23 @@ def _of_motion(best: MotionCandidate, gear_set: GearSet, drive: Drive, recorded:
         size = abs(estimate.value) + (rotor if estimate.path == "load.inertia" else 0.0)
         of_torque = estimate.unit.startswith(("N.m", "kg.m2"))
         sigma = float(np.hypot(estimate.sigma, relative * size if of_torque else 0.0))
-        untold = "its standard deviation exceeds half the value" if sigma > 0.5 * abs(estimate.value) and of_torque else ""
+        untold = _untold(estimate, sigma, best)
         unit = estimate.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad") if in_current else estimate.unit
         law = "in A" if in_current and of_torque else encoder if estimate.path == "load.gravity_phase" else ""
         yield Told(estimate.path, unit, estimate.value, sigma, law, untold)
+
+
+def _of_constant(gear_set: GearSet) -> float:
+    """Relative uncertainty of the torque constant, as the set has it."""
+    entry, constant = gear_set.sources.get("motor.torque_constant"), getattr(gear_set.motor, "torque_constant", 0.0)
+    if entry is None or not constant:
+        return 0.0
+    return float(entry.uncertainty / constant if entry.uncertainty else entry.spread or 0.0)
+
+
+def _untold(estimate: Estimate, sigma: float, best: MotionCandidate) -> str:
+    """Why a log does not tell a number; empty where it does."""
+    if estimate.path != "load.gravity_phase":
+        return "its standard deviation exceeds half the value" if sigma > 0.5 * abs(estimate.value) else ""
+    gravity = next(each for each in best.fit.estimates if each.path == "load.gravity_torque")
+    return "there is no gravity that the log tells" if gravity.sigma > 0.5 * abs(gravity.value) or sigma > 0.5 else ""

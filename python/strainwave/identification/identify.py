@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -65,13 +65,24 @@ def identify(
             found, after = fitted(file, known)
         except (ValueError, FloatingPointError) as error:
             found, after = Finding(file.path.name, file, refused=str(error)), known
-        findings[file.path] = replace(found, same_as=Path(copy).name)
+        findings[file.path] = found
         known = known if copy else after
-    ordered = tuple(each if isinstance(each, Finding) else findings[each.path] for each in read)
+    ordered = _named_apart([each if isinstance(each, Finding) else findings[each.path] for each in read], files, copies)
     numbers = numbers_of(ordered)
     if not numbers:
         raise ValueError("no file tells anything of the gear: " + "; ".join(f"{each.name}: {each.refused}" for each in ordered))
     return Identified(start, ordered, numbers, known.gear_set)
+
+
+def _named_apart(findings: Sequence[Finding], files: Sequence[str | Path], copies: Mapping[str, str]) -> tuple[Finding, ...]:
+    """The findings by the names of their files; with their folders, where names come twice."""
+    paths = [Path(path) for path in files]
+    names = [path.name if sum(path.name == each.name for each in paths) == 1 else str(path) for path in paths]
+    by_path = dict(zip(map(str, paths), names, strict=True))
+    return tuple(
+        replace(each, name=name, same_as=by_path.get(copies.get(str(path), ""), ""))
+        for each, name, path in zip(findings, names, paths, strict=True)
+    )
 
 
 def _recognised(path: Path, mapping: Callable[[Path], FileMapping] | None) -> Recognised | Finding:

@@ -64,8 +64,8 @@ class MotionLog(ComparedByFields):
     ) -> MotionLog:
         """From columns time, an angle (input_angle, else output_angle), and what tells the torque.
 
-        Columns `load_torque` [N.m at the output] is known torque of other bodies; `regressors` names columns whose share in the
-        torque is unknown, as those of an arm that moves together with others.
+        A column `rigid_torque` [N.m at the output] is known torque of other bodies; `regressors` names columns whose share in
+        the torque is unknown, as those of an arm that moves together with others.
 
         Raises:
             ValueError: a column is missing, or the motion cannot be told from the angle
@@ -86,7 +86,7 @@ class MotionLog(ComparedByFields):
         sound = ~spoilt(values)
         force = np.interp(motion.time, time[sound], values[sound])
         motion = replace(motion, known=motion.known & (on_grid(sound.astype(float)) == 1.0))
-        known = on_grid(recording.values("load_torque", "N.m")) if "load_torque" in recording else np.zeros_like(motion.time)
+        known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
             motion, effort, motion.filtered(force)[np.newaxis], known,
             {name: on_grid(recording[name]) for name in regressors}, samples=len(recording),
@@ -242,7 +242,7 @@ def load_torque(drive: Drive, angle: Array) -> Array:
         return np.zeros_like(angle)
     raise ValueError(
         f"a log cannot be compared along its motion with a load of kind {drive.load.name}; it can with inertia or pendulum, "
-        "and other torque as a column load_torque"
+        "and other torque as a column rigid_torque"
     )
 
 

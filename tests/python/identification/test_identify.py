@@ -1,0 +1,97 @@
+"""Any files to one gear: what is found in each, what counts, and what is kept apart."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.identification.findings import Finding, Told, distance, numbers_of
+from strainwave.identification.identify import Identified, identify
+
+from tests.python.identification.candidates.test_motion import TRUTH, record
+
+SPEED = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
+CONSTANT = 0.08  # N.m/A, of the motor of the logs
+
+
+def table(path: Path, coulomb: float, noise: float, seed: int) -> Path:
+    random = np.random.default_rng(seed)
+    both = np.concatenate([SPEED, -SPEED])
+    torque = np.sign(both) * (coulomb + 3e-4 * np.abs(both)) + noise * random.standard_normal(len(both))
+    sw.Recording({"speed": both, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}).to_csv(path)
+    return path
+
+
+def log(path: Path, seed: int, **changed: float) -> Path:
+    path.parent.mkdir(exist_ok=True)
+    record(TRUTH | changed, 0.05, seed).to_csv(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
+    folder = tmp_path_factory.mktemp("files")
+    (folder / "text.csv").write_text("a,b\nx,y\n")
+    start = sw.GearSet.read("hfuc-20-80")
+    motor = sw.motor.DC(resistance=0.4, torque_constant=CONSTANT, back_emf=CONSTANT, inertia=1e-4 - start.gear.input_inertia)
+    sources = {f"motor.{each['name']}": sw.Entry("measured", uncertainty=0.0) for each in motor.fields}
+    files = [
+        table(folder / "rough.csv", 0.05, 2e-3, 1), table(folder / "fine.csv", 0.05, 2e-4, 2), folder / "text.csv",
+        log(folder / "light" / "run.csv", 3, inertia=0.4), log(folder / "heavy" / "run.csv", 4, inertia=1.6),
+        log(folder / "again.csv", 3, inertia=0.4),
+    ]  # fmt: skip
+    return identify(start.replace(motor=motor, sources={**start.sources, **sources}), files)
+
+
+def test_each_file_is_told_what_it_is_and_none_stops_the_others(found: Identified) -> None:
+    kinds = [each.recognised.kind if each.recognised is not None else "" for each in found.findings]
+    assert kinds == ["friction", "friction", "", "log", "log", "log"]
+    assert [bool(each.refused) for each in found.findings] == [False, False, True, False, False, False]
+
+
+def test_files_of_one_name_are_told_by_their_folders(found: Identified) -> None:
+    names = [each.name for each in found.findings]
+    assert names[0] == "rough.csv"
+    assert names[3].endswith("light/run.csv")
+    assert len(set(names)) == len(names)
+
+
+def test_the_file_that_tells_a_number_best_gives_it_and_the_law(found: Identified) -> None:
+    number = next(each for each in found.numbers if each.told.path == "gear.friction_input.coulomb")
+    assert number.source == "fine.csv"
+    assert abs(number.told.value - 0.05) < 4.0 * number.told.sigma
+    assert found.gear_set.gear.friction_input.coulomb == number.told.value
+    assert "fine.csv" in found.gear_set.sources["gear.friction_input.coulomb"].source
+    assert not number.contradicts
+
+
+def test_one_run_in_two_files_counts_once_and_other_loads_are_no_contradiction(found: Identified) -> None:
+    assert found.findings[5].same_as == found.findings[3].name
+    inertia = [each for each in found.numbers if each.told.path == "load.inertia"]
+    assert len(inertia) == 2
+    for number, truth in zip(inertia, (0.4, 1.6), strict=True):
+        assert not number.contradicts
+        assert number.told.value == pytest.approx(truth, abs=max(4.0 * number.told.sigma, 0.01 * truth))
+
+
+def test_nothing_at_all_is_refused_with_the_reasons(tmp_path: Path) -> None:
+    (tmp_path / "text.csv").write_text("a,b\nx,y\n")
+    with pytest.raises(ValueError, match=r"no file tells anything of the gear: text\.csv: "):
+        identify("hfuc-20-80", [tmp_path / "text.csv"])
+    with pytest.raises(ValueError, match="at least one file"):
+        identify("hfuc-20-80", [])
+
+
+def test_two_files_far_apart_contradict_each_other_and_nothing_is_averaged() -> None:
+    def finding(name: str, value: float, sigma: float) -> Finding:
+        return Finding(name, told=(Told("gear.friction_input.coulomb", "N.m", value, sigma, ""),))
+
+    (number,) = numbers_of([finding("a", 0.05, 1e-3), finding("b", 0.06, 2e-3), finding("c", 0.051, 1e-2)])
+    assert (number.told.value, number.source, number.contradicts) == (0.05, "a", ("b",))
+
+
+def test_phases_a_turn_apart_are_equal() -> None:
+    one, other = (Told("load.gravity_phase", "rad", value, 0.1, "") for value in (3.1, 3.1 - 2.0 * np.pi))
+    assert distance(one, other) == pytest.approx(0.0, abs=1e-9)
