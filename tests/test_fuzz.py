@@ -19,7 +19,17 @@ from tests.fuzz.laws import Case, judged
 from tests.fuzz.run import Task, outcomes
 from tests.workers import CRASHES, HANGS, answers
 
-FEW = {"csv": 60, "toml": 60, "scenarios": 60, "names": 40, "parquet": 60, "recognised": 60, "formats": 30, "units": 60, "drives": 40}
+FEW = {
+    "csv": 60,
+    "toml": 60,
+    "scenarios": 60,
+    "names": 40,
+    "parquet": 60,
+    "recognised": 60,
+    "formats": 30,
+    "units": 60,
+    "drives": 40,
+}
 
 
 def raises(error: Exception) -> Callable[[], None]:
