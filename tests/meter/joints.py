@@ -51,6 +51,9 @@ FRICTIONS: list[Any] = [
     ),
     sw.friction.Cyclic(law=STRIBECK, order=[2.0], amplitude=[0.3], phase=[0.3]),
     sw.friction.Thermal(law=STRIBECK, dry_fall=0.01, viscous_fall=0.03),
+    sw.friction.Asymmetric(law=STRIBECK, dry_asymmetry=0.1, viscous_asymmetry=0.05),
+    sw.friction.CurvedViscous(coulomb=0.02, breakaway=0.03, viscous_torque=0.02, exponent=0.7, reference_speed=100.0),
+    sw.friction.AngleSpeedMap(speed=[1.0, 100.0], level=[0.02, 0.03, 0.03, 0.04], static_ratio=1.2),
 ]
 GEAR_PARTS: dict[str, list[Any]] = {
     "kinematics": [sw.kinematics.StrainWave(), sw.kinematics.PlainRatio(reduction=100.0)],

@@ -20,7 +20,7 @@ from tests.strategies import models_of
 
 Array = NDArray[np.float64]
 
-SEEDS = range(5, 29)  # hold every model between them
+SEEDS = range(5, 32)  # hold every model between them
 POWERS = (
     "supplied",
     "motor",

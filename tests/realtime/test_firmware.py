@@ -68,7 +68,7 @@ def test_the_stack_of_a_step_is_known_and_small(programs: Path, record_property:
         stack = sum(int(size) for _, size, _ in frames)
         record_property(f"stack_bytes_at_most_{usage.stem}", stack)
         large = any(model in SOURCES[f"{usage.stem}.cpp"] for model in LARGE_STATES)
-        assert 0 < stack < (26 if large else 18) * 1024
+        assert 0 < stack < (26 if large else 20) * 1024  # 20 with laws that modulate others at all three places
 
 
 def test_the_code_of_a_step_fits_a_microcontroller(programs: Path, record_property: Callable[[str, object], None]) -> None:

@@ -61,22 +61,23 @@ private:
         S sum{0.0};
         if (speed.count == 0) return sum;
         const int angles = level.count / speed.count;
-        for (int j = 0; j < angles; ++j) {
+        S n{0.0}, place{0.0};  // counted in S: to convert an integer takes double precision, which a microcontroller lacks
+        for (int j = 0; j < angles; ++j) n = n + S(1.0);
+        for (int j = 0; j < angles; ++j, place = place + S(1.0)) {
             S along_speed = level[j];
             for (int k = 0; k + 1 < speed.count; ++k) {
                 const S share = clip((magnitude - speed[k]) / (speed[k + 1] - speed[k]), S(0.0), S(1.0));
                 along_speed = along_speed + share * (level[(k + 1) * angles + j] - level[k * angles + j]);
             }
-            sum = sum + weight(angle, j, angles) * along_speed;
+            sum = sum + (angles == 1 ? S(1.0) : weight(angle, place, n)) * along_speed;
         }
         return max(sum, S(0.0));
     }
 
-    /// Of the j-th of n angles: 1 there, and falling to 0 at its neighbours.
-    static constexpr S weight(const S& angle, int j, int n) {
-        if (n == 1) return S(1.0);
-        const S apart = angle * S(n / (2.0 * pi)) - S(double(j)), turns = rint(apart / S(double(n)));
-        return max(S(1.0) - abs(apart - S(double(n)) * turns), S(0.0));
+    /// Of the angle at `place` of n: 1 there, and falling to 0 at its neighbours.
+    static constexpr S weight(const S& angle, const S& place, const S& n) {
+        const S apart = angle * S(0.5 / pi) * n - place, turns = rint(apart / n);
+        return max(S(1.0) - abs(apart - n * turns), S(0.0));
     }
 };
 

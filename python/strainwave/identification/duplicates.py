@@ -51,8 +51,8 @@ def _same_run(one: Recording, other: Recording) -> bool:
     time = np.linspace(max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1]), 500)
     if not time[-1] > time[0]:
         return False
-    motions = [np.interp(time, each.time, angle) for each, angle in ((one, first), (other, second))]
-    return _proportional(*motions, OF_RUN) and _same_effort(one, other, time)
+    a, b = np.interp(time, one.time, first), np.interp(time, other.time, second)
+    return _proportional(a, b, OF_RUN) and _same_effort(one, other, time)
 
 
 def _same_effort(one: Recording, other: Recording, time: Array) -> bool:

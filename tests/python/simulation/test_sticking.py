@@ -26,6 +26,11 @@ HOLDING = {
     ),
     "mixed_lubrication": sw.friction.MixedLubrication(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, load_sensitivity=0.1),
     "cyclic": sw.friction.Cyclic(law=COULOMB, order=[2.0], amplitude=[0.2], phase=[0.3]),
+    "asymmetric": sw.friction.Asymmetric(law=COULOMB, dry_asymmetry=0.1),
+    "curved_viscous": sw.friction.CurvedViscous(
+        coulomb=0.03, breakaway=0.045, viscous_torque=1e-3, exponent=0.7, reference_speed=100.0
+    ),
+    "angle_speed_map": sw.friction.AngleSpeedMap(speed=[1.0, 100.0], level=[0.03, 0.04, 0.04, 0.05], static_ratio=1.2),
     "thermal": sw.friction.Thermal(law=COULOMB, dry_fall=0.01, reference_temperature=300.0),
 }  # of the input's scale
 OUTPUT_SCALE = 100.0

@@ -1,6 +1,6 @@
 """Which of many possible measurements tell most, by their Fisher information.
 
-Fedorov, "Theory of Optimal Experiments" (1972); Atkinson, Donev and Tobias, "Optimum Experimental Designs" (2007), chapters 10
+Fedorov1972; Atkinson2007, chapters 10
 (criteria) and 12 (exchange).
 """
 

@@ -235,7 +235,11 @@ def fit(
         for own, each in zip(models, records.values(), strict=True)
     ]
     problem = problem_of(asked, list(records), models, experiments, _masks(training, list(records)))
-    return _solved(problem, loss)
+    found = _solved(problem, loss)
+    for part in found.parts:
+        if isinstance(part.experiment, DriveLog):
+            warn_of_bristles(part.model, part.experiment.step(part.model))
+    return found
 
 
 def solved_problem(found: Fit) -> tuple[Problem, Array]:
@@ -281,9 +285,6 @@ def _solved(problem: Problem, named: Literal["linear", "soft_l1"]) -> Fit:
         Part(name, record.model(x), record.experiment, predicted, record.training)
         for name, record, (predicted, _) in zip(problem.names, records, problem.predict(x), strict=True)
     )
-    for part in parts:
-        if isinstance(part.experiment, DriveLog):
-            warn_of_bristles(part.model, part.experiment.step(part.model))
     return Fit(parts[0].model, estimates, covariance, parts, problem.plan, named, problem.evaluations)
 
 

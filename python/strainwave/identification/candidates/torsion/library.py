@@ -72,7 +72,7 @@ class Answer(ComparedByFields):
 def solve(sought: Array, libraries: Sequence[Library], always: Array, most: int = 1) -> list[Answer]:
     """Those choices of each library that explain the torque sought best, with positive weights.
 
-    Of given choices the weights are a convex problem, non-negative least squares (Lawson and Hanson 1974), which the triangle
+    Of given choices the weights are a convex problem, non-negative least squares (LawsonHanson1974), which the triangle
     of one QR decomposition of all columns holds as well as the columns. The libraries are gone through in turn until nothing
     improves.
 
