@@ -46,8 +46,8 @@ WRONG = "WRONG: "
 SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
 # Numbers that differ from member to member only at a cost that is documented: a last digit where some are whole and others are
-# not; and instants of sampling, which all members share and which nothing is derived by.
-SHARED = re.compile(r"\.order\[|\.density\.exponent$|^control\.(period|delay)$")
+# not; instants of sampling, which all members share and which nothing is derived by; and what is counted.
+SHARED = re.compile(r"\.(seed|pole_pairs)$|\.order\[|\.density\.exponent$|^control\.(period|delay)$")
 
 
 def magnitude(unit: str, low: float | None, high: float | None, zero: bool, random: np.random.Generator) -> float:

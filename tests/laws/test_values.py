@@ -159,7 +159,8 @@ def test_sequences_that_belong_together_are_equally_long_and_not_too_long(model:
         too_long = 1000 * [fitting(field)]
         with pytest.raises(ValueError, match=rf"^{model.name}\.{field['name']} holds at most \d+ elements$"):
             model(**(usual(model) | {field["name"]: too_long}))
-    if len(sequences) > 1 and model is not sw.friction.PositionDependent:  # a series may have sines alone
+    # a series may have sines alone, and a map has a torque for each speed and angle
+    if len(sequences) > 1 and model not in (sw.friction.PositionDependent, sw.friction.AngleSpeedMap):
         with pytest.raises(ValueError, match=rf"^{model.name}: .* must have equally many elements$"):
             model(**(usual(model) | {sequences[0]["name"]: [fitting(sequences[0])]}))
 

@@ -38,6 +38,13 @@ from strainwave.simulation.signals import Output
 from strainwave.simulation.time_grid import TimeGrid
 
 Array = NDArray[np.float64]
+WHOLE = {
+    field["name"]
+    for kinds in _core.families.values()
+    for kind in kinds.values()
+    for field in kind.fields
+    if field["kind"] == "count"
+}  # names of numbers that are counted
 MOST_THREADS = 2**31 - 1  # that the core can count
 SMALLEST = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 PART = 64 << 20  # bytes of output that a part of the files holds at most, where one pack does not need more
@@ -422,6 +429,8 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
         if wrong.size:
             given = f"{values[path][wrong[0]]:g}" + (f" {number.unit}" if number.unit != "1" else "")
             raise ValueError(f"{path} = {given} of member {wrong[0]} must lie in {_limits(number.low, number.high)}")
+        if path.rpartition(".")[2] in WHOLE and (broken := np.flatnonzero(values[path] % 1.0)).size:
+            raise ValueError(f"{path} = {values[path][broken[0]]:g} of member {broken[0]} must be a whole number")
     if len({len(column) for column in values.values()}) > 1:
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
         raise ValueError(f"all parameters must have as many values as there are members: {counts}")

@@ -148,7 +148,7 @@ def _of_coarse_stamps(stamps: Array, step: float) -> Clock | None:
     ticks = np.arange(len(stamps))
     begin, period = _line(ticks, stamps)
     time = begin + period * ticks.astype(float)
-    if np.abs(stamps - time).max() > step:
+    if not (np.diff(time) > 0.0).all() or np.abs(stamps - time).max() > step:
         return None
     return Clock(time, ticks, (_told(float(np.sqrt(np.mean((stamps - time) ** 2))), period),))
 
