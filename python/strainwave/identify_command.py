@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from strainwave.identification.identify import Identified
     from strainwave.identification.reading.mapping import FileMapping
 
-ANEW = 5  # remarks of a file that the terminal shows; the report has all
+MOST_REMARKS = 5  # of a file on the terminal; the report has all
 
 
 def identify(
@@ -130,7 +130,7 @@ def _of_file(finding: Finding) -> Iterator[str]:
         return
     held_out = f"; error on data held out: {100.0 * finding.error:.2g} % of what varies" if math.isfinite(finding.error) else ""
     yield f"  {finding.model}{held_out}"
-    yield from (f"  {remark}" for remark in finding.remarks[:ANEW])
+    yield from (f"  {remark}" for remark in finding.remarks[:MOST_REMARKS])
 
 
 def _name(number: Number) -> str:

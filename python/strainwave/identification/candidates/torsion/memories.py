@@ -6,6 +6,7 @@ start is found by convex problems, as that of the spring.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import combinations, product
@@ -91,13 +92,13 @@ class Scaled(Beside):
 
         return Library.of([torque for _, torque in tried], [choice(place, law) for place, (law, _) in enumerate(tried)])
 
+    @abstractmethod
     def units(self, loop: TorsionLoop, gear: Gear) -> Iterator[Law]:
         """Laws to try, of about unit torque."""
-        raise NotImplementedError
 
+    @abstractmethod
     def put(self, gear: Gear, law: Law, factor: float) -> Gear:
         """The gear with so many times the law."""
-        raise NotImplementedError
 
 
 class BoucWen(Scaled):
