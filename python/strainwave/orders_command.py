@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from strainwave.file_options import Columns, Joint, Units
+
 if TYPE_CHECKING:
     from strainwave.identification.orders.measured import OrdersFound
 
@@ -17,17 +19,13 @@ def orders(
     ratio: Annotated[
         float | None, typer.Option(help="Ratio of the gear, if it is known; found, or guessed from the lines, if not given.")
     ] = None,
-    column: Annotated[
-        list[str] | None, typer.Option(help="A column's name or number in your file, as torque=Moment; repeat as needed.")
-    ] = None,
-    unit: Annotated[
-        list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
-    ] = None,
+    column: Columns = None,
+    unit: Units = None,
     side: Annotated[
         str | None, typer.Option(help="Where an angle was measured whose name does not say it: input or output.")
     ] = None,
     rate: Annotated[float | None, typer.Option(help="Samples per second of files without time, in Hz.")] = None,
-    joint: Annotated[str | None, typer.Option(help="Which joint, of a file with several.")] = None,
+    joint: Joint = None,
     highest: Annotated[float | None, typer.Option(help="Order up to which ripple is looked for.")] = None,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
 ) -> None:

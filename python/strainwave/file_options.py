@@ -1,0 +1,55 @@
+"""What commands that read any files ask of them: the options, and what they say of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from strainwave.identification.reading.mapping import FileMapping
+
+Gear = Annotated[str, typer.Argument(help="Where to start: a catalogue set, as hfuc-25-100, or a gear file.")]
+Mapping = Annotated[Path | None, typer.Option(help="TOML file that says what is in which column, for all files or for some.")]
+Columns = Annotated[
+    list[str] | None, typer.Option(help="A column's name or number in the files, as speed=3; repeat as needed.")
+]
+Units = Annotated[
+    list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
+]
+Constants = Annotated[
+    list[str] | None,
+    typer.Option(help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed."),
+]
+Side = Annotated[str | None, typer.Option(help="Where a table or angles were measured that do not say it: input or output.")]
+Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several.")]
+
+
+def said_of(
+    mapping: Path | None,
+    column: list[str] | None,
+    unit: list[str] | None,
+    constant: list[str] | None,
+    side: Any,
+    joint: str | None,
+) -> Callable[[Path], FileMapping]:
+    """What the options say of a file: of columns that it has; over what the mapping file says."""
+    from strainwave.files.tables import open_table
+    from strainwave.identification.reading.channels import ALIASES, CHANNELS
+    from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
+    from strainwave.messages import pairs
+
+    known = {*CHANNELS, *ALIASES}
+    columns, units = pairs("--column", column, known), pairs("--unit", unit, known)
+    constants = {name: constant_of(name, value) for name, value in pairs("--constant", constant, set(CONSTANTS)).items()}
+    from_file = MappingFile.read(mapping) if mapping is not None else None
+
+    def of(path: Path) -> FileMapping:
+        there = {text for label in open_table(path).labels for text in (label.text, label.name)} if columns else set()
+        own = {name: wanted for name, wanted in columns.items() if wanted in there or wanted.isdigit()}
+        given = FileMapping(columns=own, units=units, constants=constants, side=side, joint=joint)
+        return from_file.of(path).updated(given) if from_file is not None else given
+
+    return of
