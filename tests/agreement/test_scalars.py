@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
+from strainwave.simulation.ensemble import WHOLE
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
@@ -70,10 +71,10 @@ def scales(drive: Drive, run: sw.Recording) -> Array:
 
 
 def scattered(drive: Drive, count: int, seed: int, whole_orders: bool) -> list[Drive]:
-    """Drives that all differ from one another, in every number; in the orders of the error too if those may be broken."""
+    """Drives that differ in every number but those that are counted, and in the orders of the error only if told."""
     factors = np.random.default_rng(seed).uniform(0.9, 1.1, (count, numbers(drive).size))
-    if whole_orders:
-        factors[:, [".order[" in path for path, *_ in _core.parameters(drive)]] = 1.0
+    paths = [path for path, *_ in _core.parameters(drive)]
+    factors[:, [path.rpartition(".")[2] in WHOLE or (whole_orders and ".order[" in path) for path in paths]] = 1.0
     return [_core.with_numbers(drive, numbers(drive) * factor) for factor in factors]
 
 
