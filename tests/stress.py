@@ -28,6 +28,7 @@ import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave import _core
+from strainwave.simulation.ensemble import WHOLE
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import METHODS
 from strainwave.simulation.signals import load_input, outputs
@@ -47,7 +48,7 @@ SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
 # Numbers that differ from member to member only at a cost that is documented: a last digit where some are whole and others are
 # not; instants of sampling, which all members share and which nothing is derived by; and what is counted.
-SHARED = re.compile(r"\.(seed|pole_pairs)$|\.order\[|\.density\.exponent$|^control\.(period|delay)$")
+SHARED = re.compile(rf"\.({'|'.join(sorted(WHOLE))})$|\.order\[|\.density\.exponent$|^control\.(period|delay)$")
 
 
 def magnitude(unit: str, low: float | None, high: float | None, zero: bool, random: np.random.Generator) -> float:
@@ -116,7 +117,8 @@ def step(drive: sw.Drive, random: np.random.Generator) -> float:
         return float(10.0 ** random.uniform(-5.0, -3.5))
     period = _core.schedule(drive, drive.rest().numbers)[1]
     longest = 10.0 * period if period > 0.0 else math.inf
-    return min(float(10.0 ** random.uniform(-2.0, 0.2)) / _core.natural_frequency(drive, 0.0), longest)
+    frequency = _core.natural_frequency(drive, 0.0)  # none within the play of a spring
+    return min(float(10.0 ** random.uniform(-2.0, 0.2)) / frequency, longest) if frequency else min(1e-4, longest)
 
 
 @dataclass(frozen=True)
