@@ -341,7 +341,8 @@ def scaled(axis: Axis, unit: str) -> str:
     power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
 
     def tick(value: float, _: float) -> str:
-        ticks = [typeset.number(float(place) / 10.0**power, 4) for place in (*axis.get_majorticklocs(), value)]
+        shown = axis.get_major_formatter().locs  # which matplotlib has just set: to ask the axis takes long
+        ticks = [typeset.number(float(place) / 10.0**power, 4) for place in (*shown, value)]
         places = max(len(text.partition(".")[2]) for text in ticks)
         return ticks[-1] if axis.get_scale() != "linear" else typeset.fixed(value / 10.0**power, places)
 

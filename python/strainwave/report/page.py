@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from strainwave.files.writing import replacing
 from strainwave.report import typeset
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 
 def render(template: str, content: Mapping[str, Any]) -> str:
@@ -20,6 +24,12 @@ def render(template: str, content: Mapping[str, Any]) -> str:
     Raises:
         jinja2.UndefinedError: the template names what `content` does not have
     """
+    return _environment().get_template(template).render(content)
+
+
+@cache
+def _environment() -> Environment:
+    """One for all pages, since it keeps the templates that it has compiled."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -31,7 +41,7 @@ def render(template: str, content: Mapping[str, Any]) -> str:
     )
     environment.filters |= {verb.__name__: verb for verb in (typeset.number, typeset.unit, typeset.symbols, typeset.breakable)}
     environment.globals["zip"] = zip
-    return environment.get_template(template).render(content)
+    return environment
 
 
 def write(html: str, path: str | Path) -> None:

@@ -15,33 +15,33 @@ from tests.python.report.twins import HOSTILE, drive_log, friction_table, input_
 from tests.strategies import made
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def start() -> GearSet:
     return GearSet.read("hfuc-25-100")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def from_friction(start: GearSet) -> sw.Twin:
     return sw.twin(start, friction=friction_table(), sources={"friction": HOSTILE})
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def from_torsion(start: GearSet) -> sw.Twin:
     return sw.twin(start, torsion=torsion_loop())
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def from_input(start: GearSet) -> sw.Twin:
     return sw.twin(start, torsion=input_loop(start))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def from_log(start: GearSet) -> sw.Twin:
     full = with_drive(start)
     return sw.twin(full, log=drive_log(full))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def from_log_and_loop(start: GearSet) -> sw.Twin:
     """A log fitted before the loop, whose friction it tells; the loop then gives a spring of another kind."""
     full = with_drive(start)
@@ -49,7 +49,7 @@ def from_log_and_loop(start: GearSet) -> sw.Twin:
     return sw.twin(full, log=drive_log(full), torsion=input_loop(start, friction))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def contradicted(start: GearSet) -> sw.Twin:
     """A set whose friction was measured before, and now is another."""
     earlier = Entry("test report 7 <of 2019>", uncertainty=1e-3)
@@ -60,7 +60,7 @@ def contradicted(start: GearSet) -> sw.Twin:
 VARYING = ("coupling_variation", "bearing_variation", "mesh_variation", "circular_spline_variation")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def complete(start: GearSet) -> sw.Twin:
     """A gear with every kind of part, models inside models too."""
     losses = sw.friction.LoadDependent(driving_forward=0.1, driving_reverse=0.1)
@@ -81,13 +81,13 @@ def complete(start: GearSet) -> sw.Twin:
 EACH = ["from_friction", "from_torsion", "from_input", "from_log", "from_log_and_loop", "contradicted", "complete"]
 
 
-@pytest.fixture(scope="module", params=EACH)
+@pytest.fixture(scope="session", params=EACH)
 def each(request: pytest.FixtureRequest) -> sw.Twin:
     found: sw.Twin = request.getfixturevalue(request.param)
     return found
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def html(each: sw.Twin) -> str:
     """The report of each twin, with two experiments of one name."""
     return twin_report(each, [SimulatedExperiment("sine", (("twin", swing(50)),))] * 2)
