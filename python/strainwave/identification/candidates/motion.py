@@ -56,6 +56,7 @@ class Regression:
         offset: [N.m]
         gravity: amplitude at the output [N.m]
         phase: of the gravity [rad]
+        shares: of other bodies in the torque of the output, as many as the log has regressors [1]
         share: of the variation of the torque that is explained
     """
 
@@ -65,6 +66,7 @@ class Regression:
     offset: float
     gravity: float
     phase: float
+    shares: tuple[float, ...]
     share: float
 
     @property
@@ -95,6 +97,7 @@ def regression(log: MotionLog, drive: Drive) -> Regression:
         offset,
         float(np.hypot(*weights[4:6])),
         float(np.arctan2(weights[5], weights[4])),
+        tuple(weights[6:].tolist()),
         1.0 - float(np.var(left) / np.var(torque)),
     )
 
@@ -127,7 +130,7 @@ def fit_motion(
     found = {name: regression(log, drive) for name, log in logs.items()}
     start, free = _start(drive, found, inertia)
     load = [path for path in free if path.startswith("load.")] if own_load else []
-    logs = _with_delay(logs, start, free, load)
+    logs = {name: _with_delay(log, start, free, found[name]) for name, log in logs.items()}
     fastest = max(float(np.abs(log.motion.speed).max()) for log in logs.values())
     tried = [_candidate(each, logs, free, load, kept, priors or {}) for each in _frictions(start, fastest)]
     straight, falling, lossy, _ = tried
@@ -157,14 +160,15 @@ def _start(drive: Drive, found: Mapping[str, Regression], inertia: str) -> tuple
     return drive.replace(motor=drive.motor.replace(inertia=max(rest, 0.02 * total))), [inertia]
 
 
-def _with_delay(logs: Mapping[str, MotionLog], drive: Drive, free: Sequence[str], load: Sequence[str]) -> dict[str, MotionLog]:
-    """The logs, with a delay as an unknown of those where it is found."""
-    found = {}
-    for name, log in logs.items():
-        tried = fit(drive, log.with_delay(), [*free, *COULOMB])
-        delay = next(each for each in tried.estimates if each.path == "delay")
-        found[name] = log.with_delay() if abs(delay.value) > TOLD * delay.sigma else log
-    return found
+def _with_delay(log: MotionLog, drive: Drive, free: Sequence[str], found: Regression) -> MotionLog:
+    """The log, with a delay as an unknown if one is found, and where fits start with its unknowns."""
+    zero = found.offset * per_torque(drive, log.effort, log.motion)
+    log = log.with_delay().starting((zero, 0.0, *found.shares))
+    tried = fit(drive, log, [*free, *COULOMB]).estimates[-len(log.nuisances) :]
+    zero_there, delay, *shares = tried
+    if abs(delay.value) > TOLD * delay.sigma:
+        return log.starting([each.value for each in tried])
+    return log.without_delay().starting([each.value for each in (zero_there, *shares)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,8 +233,19 @@ def _candidate(
     held = fit(form.drive, dict(logs), paths, training=masks, **given)
     left = sum(float(np.sum(part.residuals[:, ~part.training] ** 2) / np.var(part.experiment.measured)) for part in held.parts)
     count = sum(int(np.sum(~part.training)) for part in held.parts)
-    found = fit(held.model, dict(logs), paths, **given)
+    found = fit(held.model, _from_there(logs, held), paths, **given)
     return MotionCandidate(form.name, found, frozenset(form.ties), float(np.sqrt(left / count)))
+
+
+def _from_there(logs: Mapping[str, MotionLog], held: Fit) -> dict[str, MotionLog]:
+    """The logs, whose unknowns start where a fit has ended."""
+    counts = [len(log.nuisances) for log in logs.values()]
+    values = [each.value for each in held.estimates[-sum(counts) :]]
+    firsts = np.cumsum([0, *counts])
+    return {
+        name: log.starting(values[first : first + count])
+        for (name, log), first, count in zip(logs.items(), firsts, counts, strict=False)
+    }
 
 
 def _training(log: MotionLog) -> NDArray[np.bool_]:

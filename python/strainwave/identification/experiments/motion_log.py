@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments, loads
+from strainwave import Drive, _core, arguments, friction, loads
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.experiment import Nuisance, sensible
+from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
 from strainwave.identification.experiments.motion import Motion, motion_of
 from strainwave.messages import listed, quoted
 
@@ -24,6 +25,8 @@ OUTLYING = 6.0  # standard deviations
 CLIPPED = 20  # samples of one level at the end of the range
 FEWEST = 10  # samples of each direction, in the pass band (assumed)
 STEP = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
+FRICTIONLESS = friction.Viscous(viscous=0.0)
+AT_INPUT = ("motor.inertia", "gear.input_inertia")
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +45,7 @@ class MotionLog(ComparedByFields):
         regressors: series on the grid whose share in the torque of the output is an unknown, by name
         delayed: whether a delay of the effort is an unknown
         samples: how many were measured
+        starts: where a fit starts with each of the nuisances; with zero if not given
     """
 
     motion: Motion
@@ -51,6 +55,7 @@ class MotionLog(ComparedByFields):
     regressors: Mapping[str, Array] = field(default_factory=dict)
     delayed: bool = False
     samples: int = 0
+    starts: tuple[float, ...] = ()
 
     @classmethod
     def of(
@@ -72,6 +77,8 @@ class MotionLog(ComparedByFields):
         """
         check_recording("recording", recording)
         arguments.drive(drive)
+        from scipy.interpolate import Akima1DInterpolator
+
         effort = _effort(recording, effort)
         time, angle = recording.time, _input_angle(recording, drive)
         if np.ptp(angle) == 0.0:
@@ -84,7 +91,7 @@ class MotionLog(ComparedByFields):
 
         values = sensible(recording, effort, EFFORTS[effort])
         sound = ~spoilt(values)
-        force = np.interp(motion.time, time[sound], values[sound])
+        force = np.asarray(Akima1DInterpolator(time[sound], values[sound], extrapolate=True)(motion.time))  # as the angle is
         motion = replace(motion, known=motion.known & (on_grid(sound.astype(float)) == 1.0))
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
@@ -108,23 +115,36 @@ class MotionLog(ComparedByFields):
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
         """The zero of the effort, its delay, and the shares of other bodies."""
-        offset = Nuisance(f"{self.effort}_zero", EFFORTS[self.effort], 0.0)
-        delay = (Nuisance("delay", "s", 0.0),) if self.delayed else ()
-        return (offset, *delay, *(Nuisance(f"share of {name}", "1", 0.0) for name in self.regressors))
+        described = [(f"{self.effort}_zero", EFFORTS[self.effort]), *([("delay", "s")] if self.delayed else [])]
+        described += [(f"share of {name}", "1") for name in self.regressors]
+        starts = self.starts or (0.0,) * len(described)
+        return tuple(Nuisance(name, unit, start) for (name, unit), start in zip(described, starts, strict=True))
 
     def with_delay(self) -> MotionLog:
         """The same, with a delay of the effort behind the motion as an unknown."""
-        return replace(self, delayed=True)
+        return replace(self, delayed=True, starts=())
+
+    def without_delay(self) -> MotionLog:
+        """The same, with an effort that belongs to its moment."""
+        return replace(self, delayed=False, starts=())
+
+    def starting(self, nuisances: Sequence[float]) -> MotionLog:
+        """The same, from where a fit starts with the nuisances."""
+        return replace(self, starts=tuple(nuisances))
 
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         others = self._others(nuisances)
-        now = Needed.of(model, self.motion, others)
+        described = _core.parameters(model)
+        now = Needed.of(model, self.motion, others, [described[number][0] for number in numbers])
         scale = per_torque(model, self.effort, self.motion)
         effort = scale * now.torque + self._induced(model)
-        slopes = [self._slope(model, number, others, now, effort) for number in numbers]
-        slopes += [scale * series / model.gear.kinematics.ratio for series in self.regressors.values()]
-        series = self._late(np.stack([effort, *slopes]), nuisances)
-        by_delay = [-np.gradient(series[0], self.motion.time)] if self.delayed else []
+        slopes = [self._slope(model, number, described, now, effort) for number in numbers]
+        slopes += [scale * now.by_transmitted * series for series in self.regressors.values()]
+        series = np.stack([effort, *slopes])
+        by_delay = []
+        if self.delayed:
+            series, change = self.motion.late(series, float(nuisances[1]))
+            by_delay = [change]
         in_band = self.motion.filtered(np.stack([*series, np.ones_like(effort), *by_delay]))
         predicted, by_numbers, by_zeros = in_band[:1], in_band[1 : 1 + len(numbers)], in_band[1 + len(slopes) :]
         slopes_of_all = np.concatenate([by_numbers, by_zeros, in_band[1 + len(numbers) : 1 + len(slopes)]])
@@ -140,88 +160,80 @@ class MotionLog(ComparedByFields):
         """Voltage that a motor induces as it turns."""
         return float(getattr(model.motor, "back_emf", 0.0)) * self.motion.speed if self.effort == "voltage" else 0.0
 
-    def _late(self, series: Array, nuisances: Array) -> Array:
-        time = self.motion.time
-        return np.stack([np.interp(time - nuisances[1], time, each) for each in series]) if self.delayed else series
-
-    def _slope(self, model: Drive, number: int, others: Array, now: Needed, effort: Array) -> Array:
-        """By a number of the drive. Torque is smooth in each of them, so that a difference tells it to eight digits."""
-        described = _core.parameters(model)
+    def _slope(self, model: Drive, number: int, described: Sequence[Any], now: Needed, effort: Array) -> Array:
+        """By a number of the drive: of few by a difference, which is good to eight digits where torque is smooth in them."""
         path, value, *_, high = described[number]
-        scale = per_torque(model, self.effort, self.motion)
-        if path in ("motor.inertia", "gear.input_inertia"):
-            inertial: Array = scale * self.motion.acceleration
-            return inertial
+        if path in now.slopes:
+            return per_torque(model, self.effort, self.motion) * now.slopes[path]
         step = STEP * max(abs(value), 1e-3)
         end = value + step if value + step <= high else value - step
         values = [each[1] for each in described]
         other = _core.with_numbers(model, [*values[:number], end, *values[number + 1 :]])
-        if path.startswith("gear.friction_"):
-            slope: Array = scale * (now.with_friction_of(other).torque - now.torque) / (end - value)
-            return slope
-        there = per_torque(other, self.effort, self.motion) * Needed.of(other, self.motion, others).torque + self._induced(
-            other
-        )
-        return np.asarray((there - effort) / (end - value))
+        there = Needed.of(other, self.motion, now.others)
+        moved = per_torque(other, self.effort, self.motion) * there.torque + self._induced(other)
+        return np.asarray((moved - effort) / (end - value))
 
 
 @dataclass(frozen=True, eq=False)
 class Needed(ComparedByFields):
     """Torque that a motor must give so that its rigid drive moves so, and of what it consists.
 
-    .. math:: \\tau = (J_m + J_g) \\dot\\omega + F_{in}(\\omega) + [F_{mesh}(\\omega / i, T) + T] / i, \\qquad
+    .. math:: \\tau = (J_m + J_g) \\dot\\omega + F_{in}(\\omega, T / i) + [F_{mesh}(\\omega / i, T) + T] / i, \\qquad
               T = J_l \\dot\\omega / i + T_{load}(\\theta / i) + F_{out}(\\omega / i)
 
     Attributes:
-        drive: the drive
-        motion: of its input
         others: torque of other bodies that hold the output back [N.m], shape (n,)
-        transmitted: torque at the output T [N.m], shape (n,)
-        at_input, at_mesh: friction, of the mesh at the output's scale [N.m], shape (n,)
+        torque: at the input [N.m], shape (n,)
+        by_transmitted: derivative of the torque by that at the output, T [1], shape (n,)
+        slopes: derivatives of the torque by numbers of inertia, load and friction, by path, each of shape (n,)
     """
 
-    drive: Drive
-    motion: Motion
     others: Array
-    transmitted: Array
-    at_input: Array
-    at_mesh: Array
+    torque: Array
+    by_transmitted: Array
+    slopes: Mapping[str, Array]
 
     @classmethod
-    def of(cls, drive: Drive, motion: Motion, others: Array) -> Needed:
-        """Of a drive whose output other bodies hold back, too.
+    def of(cls, drive: Drive, motion: Motion, others: Array, paths: Sequence[str] = ()) -> Needed:
+        """Of a drive whose output other bodies hold back, too, with derivatives by numbers of these paths.
 
         Raises:
             ValueError: the load is none that a rigid drive is known with
         """
-        gear, ratio = drive.gear, drive.gear.kinematics.ratio
-        angle, speed = motion.angle / ratio, motion.speed / ratio
-        held = load_torque(drive, angle) + others + gear.friction_output.steady(speed, angle=angle)
-        transmitted = inertia_of(drive) * motion.acceleration / ratio + held
-        at_input = gear.friction_input.steady(motion.speed, angle=motion.angle, load=transmitted / ratio)
-        at_mesh = gear.friction_mesh.steady(speed, angle=angle, load=transmitted)
-        return cls(drive, motion, others, transmitted, at_input, at_mesh)
+        ratio = drive.gear.kinematics.ratio
+        angle, speed, acceleration = motion.angle / ratio, motion.speed / ratio, motion.acceleration / ratio
+        at_output, by_output = _friction(drive, "friction_output", paths, speed, angle, np.zeros_like(speed))
+        transmitted = inertia_of(drive) * acceleration + load_torque(drive, angle) + others + at_output
+        step = STEP * float(np.abs(transmitted).max())
+        at_mesh, by_mesh = _friction(drive, "friction_mesh", paths, speed, angle, transmitted)
+        at_input, by_input = _friction(drive, "friction_input", paths, motion.speed, motion.angle, transmitted / ratio)
+        inertia = drive.motor.inertia + drive.gear.input_inertia
+        torque = inertia * motion.acceleration + at_input + (at_mesh + transmitted) / ratio
+        if step == 0.0:
+            return cls(others, torque, np.full_like(torque, 1.0 / ratio), {})
+        mesh_there, _ = _friction(drive, "friction_mesh", (), speed, angle, transmitted + step)
+        input_there, _ = _friction(drive, "friction_input", (), motion.speed, motion.angle, (transmitted + step) / ratio)
+        by_transmitted = (1.0 + (mesh_there - at_mesh) / step) / ratio + (input_there - at_input) / step
+        slopes = {path: motion.acceleration for path in paths if path in AT_INPUT}
+        slopes |= by_input | {path: slope / ratio for path, slope in by_mesh.items()}
+        of_output = by_output | {path: slope for path, slope in _by_load(drive, angle, acceleration).items() if path in paths}
+        slopes |= {path: by_transmitted * slope for path, slope in of_output.items()}
+        return cls(others, torque, by_transmitted, slopes)
 
-    def with_friction_of(self, other: Drive) -> Needed:
-        """The same with the friction of another drive, of which only what differs is worked out anew."""
-        before, gear, motion, ratio = self.drive.gear, other.gear, self.motion, other.gear.kinematics.ratio
-        if gear.friction_output != before.friction_output:
-            return Needed.of(other, motion, self.others)
-        at_input, at_mesh = self.at_input, self.at_mesh
-        if gear.friction_input != before.friction_input:
-            load = self.transmitted / ratio
-            at_input = gear.friction_input.steady(motion.speed, angle=motion.angle, load=load)
-        if gear.friction_mesh != before.friction_mesh:
-            angle, speed = motion.angle / ratio, motion.speed / ratio
-            at_mesh = gear.friction_mesh.steady(speed, angle=angle, load=self.transmitted)
-        return replace(self, drive=other, at_input=at_input, at_mesh=at_mesh)
 
-    @property
-    def torque(self) -> Array:
-        """At the input [N.m], shape (n,)."""
-        inertia = self.drive.motor.inertia + self.drive.gear.input_inertia
-        torque: Array = inertia * self.motion.acceleration + self.at_input
-        return torque + (self.at_mesh + self.transmitted) / self.drive.gear.kinematics.ratio
+def _friction(
+    drive: Drive, place: str, paths: Sequence[str], speed: Array, angle: Array, load: Array
+) -> tuple[Array, dict[str, Array]]:
+    """Steady friction at a place of the gear [N.m], and its derivatives by those numbers of it that are among the paths."""
+    if getattr(drive.gear, place) == FRICTIONLESS and not any(path.startswith(f"gear.{place}.") for path in paths):
+        return np.zeros_like(speed), {}
+    alone = drive.gear.replace(friction_input=getattr(drive.gear, place))  # where `differentiate_steady` looks
+    numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(alone))}
+    asked = [path for path in paths if path.startswith(f"gear.{place}.")]
+    here = [numbers[path.replace(f"gear.{place}", "friction_input")] for path in asked]
+    room = np.full_like(speed, ROOM_TEMPERATURE)
+    torque, slopes = _core.differentiate_steady(alone, speed, angle, load, room, here)
+    return torque, dict(zip(asked, slopes, strict=True))
 
 
 def inertia_of(drive: Drive) -> float:
@@ -244,6 +256,15 @@ def load_torque(drive: Drive, angle: Array) -> Array:
         f"a log cannot be compared along its motion with a load of kind {drive.load.name}; it can with inertia or pendulum, "
         "and other torque as a column rigid_torque"
     )
+
+
+def _by_load(drive: Drive, angle: Array, acceleration: Array) -> dict[str, Array]:
+    """Derivatives of the torque at the output by numbers of the load, by path, over its angle and acceleration."""
+    slopes = {"load.inertia": acceleration}
+    if isinstance(drive.load, loads.Pendulum):
+        turned = angle + drive.load.gravity_phase
+        slopes |= {"load.gravity_torque": np.sin(turned), "load.gravity_phase": drive.load.gravity_torque * np.cos(turned)}
+    return slopes
 
 
 def per_torque(drive: Drive, effort: str, motion: Motion) -> float:

@@ -80,8 +80,9 @@ def test_a_torque_counted_the_other_way_makes_inertia_and_friction_negative() ->
 def test_slopes_agree_with_differences() -> None:
     model = drive().replace(load=sw.loads.Pendulum(inertia=0.7, gravity_torque=9.0, gravity_phase=0.2))
     lossy = sw.friction.LoadDependent(driving_forward=0.02, driving_reverse=0.02, backdriving_forward=0.02)
+    seal = sw.friction.Coulomb(coulomb=1.0, breakaway=1.0, viscous=0.5)
     law = sw.friction.Stribeck(coulomb=0.05, breakaway=0.07, stribeck_speed=3.0, viscous=3e-4)
-    model = model.replace(gear=model.gear.replace(friction_input=law, friction_mesh=lossy))
+    model = model.replace(gear=model.gear.replace(friction_input=law, friction_mesh=lossy, friction_output=seal))
     base = record(TRUTH)
     log = MotionLog.of(base.with_column("arm", np.sin(TIME), "N.m"), model, regressors=("arm",)).with_delay()
     from strainwave import _core
@@ -89,8 +90,12 @@ def test_slopes_agree_with_differences() -> None:
     described = _core.parameters(model)
     paths = (
         "gear.friction_input.coulomb",
+        "gear.friction_input.stribeck_speed",
         "gear.friction_mesh.driving_forward",
+        "gear.friction_output.coulomb",
         "load.inertia",
+        "load.gravity_torque",
+        "load.gravity_phase",
         "motor.inertia",
         "motor.torque_constant",
     )
@@ -111,7 +116,7 @@ def test_slopes_agree_with_differences() -> None:
         moved = np.eye(3)[i] * step
         apart = (predicted(values, nuisances + moved) - predicted(values, nuisances - moved)) / (2.0 * step)
         slope = slopes[len(places) + i]
-        assert np.sqrt(np.mean((slope - apart) ** 2)) < 0.05 * np.sqrt(np.mean(apart**2))  # steps are smoothed differently
+        assert np.sqrt(np.mean((slope - apart) ** 2)) < 1e-3 * np.sqrt(np.mean(apart**2))
 
 
 def test_intervals_hold_the_truth_and_the_loss_is_found() -> None:
@@ -132,6 +137,19 @@ def test_a_delay_is_found_and_does_not_bias_friction() -> None:
     assert values["current_zero"].value == pytest.approx(0.2, abs=3.0 * values["current_zero"].sigma)
     for name in ("coulomb", "viscous", "inertia"):
         assert abs(values[NAMES[name]].value - TRUTH[name]) < 4.0 * values[NAMES[name]].sigma
+
+
+def test_a_slow_clock_that_jitters_does_not_bias_the_inertia() -> None:
+    """Of 100 Hz: straight lines between samples, or differences of second order, would move it by 0.2 %."""
+    rows = np.cumsum(np.random.default_rng(4).integers(2, 4, 1900))
+    whole = record(TRUTH, delay=4e-3)
+    slow = sw.Recording({name: whole[name][rows] for name in whole.names}, {name: whole.unit(name) for name in whole.names})
+    log = MotionLog.of(slow, drive()).with_delay()
+    paths = [NAMES[name] for name in ("inertia", "gravity", "phase", "coulomb", "viscous")]
+    start = drive().replace(load=sw.loads.Pendulum(inertia=0.5, gravity_torque=8.0, gravity_phase=0.2))
+    values = {each.path: each.value for each in sw.fit(start, log, paths).estimates}
+    assert values[NAMES["inertia"]] == pytest.approx(TRUTH["inertia"], rel=3e-4)
+    assert values["delay"] == pytest.approx(4e-3, abs=1e-4)
 
 
 def test_several_logs_share_the_friction_and_have_their_own_loads() -> None:

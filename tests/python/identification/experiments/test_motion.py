@@ -1,0 +1,67 @@
+"""The motion of a shaft from its angle: the filter beside SciPy's, delays and derivatives beside closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import signal
+from strainwave.identification.experiments.motion import PASS_BAND, Motion, motion_of
+
+STEP = 2e-3
+TIME = STEP * np.arange(5000)
+
+
+def moving(every: int, cutoff: float) -> Motion:
+    """A shaft that is at rest from 3 s to 4 s."""
+    known = ~((TIME > 3.0) & (TIME < 4.0))
+    known[: 5 * every] = known[-5 * every :] = False
+    nothing = np.zeros_like(TIME)
+    return Motion(TIME, nothing, nothing, nothing, known, every, cutoff)
+
+
+@pytest.mark.parametrize("cutoff", [5.0, 20.0, 50.0])
+def test_the_filter_is_that_of_butterworth_forward_and_backward(cutoff: float) -> None:
+    motion = moving(max(1, round(1.0 / (STEP * 2.0 * PASS_BAND * cutoff))), cutoff)
+    series = np.random.default_rng(0).normal(size=(3, len(TIME))) + np.sign(np.sin(TIME))
+    low_pass = signal.butter(4, PASS_BAND * cutoff, fs=1.0 / STEP, output="sos")
+    padded = np.pad(np.where(motion.known, series, 0.0), ((0, 0), (2000, 2000)))
+    expected = signal.sosfiltfilt(low_pass, padded, axis=-1)[:, 2000:-2000][:, motion.rows]
+    assert motion.filtered(series) == pytest.approx(expected, abs=1e-8)
+    assert motion.filtered(series[0]) == pytest.approx(expected[0], abs=1e-8)
+
+
+@settings(max_examples=30, deadline=None)
+@given(delay=st.floats(-0.05, 0.05), frequency=st.floats(0.5, 10.0))
+def test_a_delayed_sine_is_a_sine_and_changes_with_the_delay_as_it_does(delay: float, frequency: float) -> None:
+    motion, turning = moving(10, 50.0), 2.0 * np.pi * frequency
+    late, change = motion.late(np.stack([np.sin(turning * TIME), np.cos(turning * TIME)]), delay)
+    inside = slice(30, -30)
+    phase = turning * (TIME - delay)
+    error = (turning * STEP) ** 3  # of the cubic of Catmull and Rom, which is exact up to the square
+    assert late[0, inside] == pytest.approx(np.sin(phase)[inside], abs=error)
+    assert late[1, inside] == pytest.approx(np.cos(phase)[inside], abs=error)
+    assert change[inside] == pytest.approx(-turning * np.cos(phase)[inside], abs=error / STEP)
+
+
+def test_a_delay_longer_than_the_record_leaves_its_ends() -> None:
+    series = np.cos(TIME)[np.newaxis]
+    for delay, end in ((1e9, 0), (-1e9, -1)):
+        late, change = moving(10, 50.0).late(series, delay)
+        assert late[0] == pytest.approx(np.full_like(TIME, series[0, end]), rel=1e-6)
+        assert not np.abs(change).max() > 1e-6 / STEP
+
+
+@pytest.mark.parametrize("samples", [25, 50, 100])
+def test_speed_and_acceleration_of_a_sine_hold_with_few_samples_a_period(samples: int) -> None:
+    """Differences of second order would lose 1 % of the speed where a period has 25 samples."""
+    time = 1e-2 * np.arange(3000)
+    turning = 2.0 * np.pi / (samples * 1e-2)
+    angle = np.sin(turning * time) + 5e-6 * np.random.default_rng(0).normal(size=len(time))
+    motion = motion_of(time, angle, 10.0)
+    inside = slice(200, -200)
+    assert motion.speed[inside] == pytest.approx(turning * np.cos(turning * time)[inside], abs=2e-3 * turning)
+    gain = (1.0 + (np.tan(np.pi / samples) / np.tan(np.pi * 10.0 * 1e-2)) ** 8) ** -1  # Butterworth's, forward and backward
+    expected = -gain * turning**2 * np.sin(turning * time)
+    assert motion.acceleration[inside] == pytest.approx(expected[inside], abs=2e-3 * turning**2 + 2e-5 / 1e-4)
