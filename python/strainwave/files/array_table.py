@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ArrayTable:
-    """Columns by their names in the file, all of one length, and what was left out, in words."""
+    """Columns by their names in the file, all of one length; what was left out, in words; and single numbers beside them."""
 
     file: str
     title: str
     labels: Sequence[Label]
     columns: Sequence[Array]
     left_out: Sequence[str] = ()
+    singles: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def contents(self) -> list[Content]:

@@ -50,6 +50,22 @@ def label_of(text: str) -> Label:
     return Label(text, text, None)
 
 
+def labels_of(texts: Sequence[str]) -> list[Label]:
+    """The labels of a header; numbers in brackets behind a name that comes again are indices, not units.
+
+    >>> [label.unit for label in labels_of(["t [s]", "q[0]", "q[1]", "slip [1]"])]
+    ['s', None, None, '1']
+    """
+    labels = [label_of(text) for text in texts]
+    again = Counter(label.name for label in labels if label.unit is not None and label.unit.isdigit())
+    return [
+        Label(label.text, label.text, None)
+        if label.unit is not None and label.unit.isdigit() and again[label.name] > 1
+        else label
+        for label in labels
+    ]
+
+
 def is_unit(text: str) -> bool:
     try:
         check_unit(text)

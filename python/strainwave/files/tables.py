@@ -13,9 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.bag_table import open_bag
+from strainwave.files.json_table import open_json
 from strainwave.files.labels import Content, Label, Source, sources_of, unreadable
-from strainwave.files.matlab_table import open_mat
+from strainwave.files.matlab_table import open_hdf5, open_mat
 from strainwave.files.mdf_table import open_mdf
+from strainwave.files.numpy_table import open_numpy
 from strainwave.files.parquet_table import open_parquet
 from strainwave.files.text_table import open_csv
 from strainwave.messages import one_line, quoted
@@ -64,14 +66,28 @@ FORMATS: dict[str, Callable[[str | Path], OpenTable]] = {
     ".csv": open_csv,
     ".txt": open_csv,
     ".tsv": open_csv,
+    ".log": open_csv,
     ".parquet": open_parquet,
     ".dat": _open_dat,
     ".mat": open_mat,
+    ".h5": open_hdf5,
+    ".hdf5": open_hdf5,
+    ".npy": open_numpy,
+    ".npz": open_numpy,
+    ".json": open_json,
+    ".jsonl": open_json,
     ".mf4": open_mdf,
     ".mdf": open_mdf,
     ".bag": open_bag,
     ".mcap": open_bag,
     ".db3": open_bag,
+}
+INSTEAD = {  # what to do with other files that people have
+    ".pkl": "a pickle may run any program as it is read: save it as .npz, .csv or .parquet",
+    ".pickle": "a pickle may run any program as it is read: save it as .npz, .csv or .parquet",
+    ".xlsx": "save the sheet as .csv",
+    ".xls": "save the sheet as .csv",
+    ".ods": "save the sheet as .csv",
 }
 
 
@@ -97,7 +113,8 @@ def open_table(path: str | Path) -> OpenTable:
     if suffix not in FORMATS:
         *others, last = FORMATS
         known = f"{', '.join(others)} or {last}"
-        raise ValueError(one_line(f"{path}: suffix {quoted(suffix)} is not known; use {known}"))
+        what = INSTEAD.get(suffix, f"use {known}")
+        raise ValueError(one_line(f"{path}: suffix {quoted(suffix)} is not known; {what}"))
     return FORMATS[suffix](path)
 
 

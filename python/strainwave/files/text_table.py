@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Content, Label, Source, label_of, seconds_since_first, unreadable
+from strainwave.files.labels import Content, Label, Source, labels_of, seconds_since_first, unreadable
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ def open_csv(path: str | Path) -> CsvTable:
     except (OSError, UnicodeError) as error:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
+    data = re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB and of ROS
     title = re.match(TITLE.encode() + rb"([^\n]*)", data)
     comment = re.match(rb"(?:(?:#[^\n]*| *)\n)*?#([^\n]*)\n(?!#)", data)
     data = _blank_comments(data)
@@ -62,11 +63,11 @@ def open_csv(path: str | Path) -> CsvTable:
         first = re.sub(r" (?=[\[(])", "", header[1].decode())
     labels = _labels(f"{file} line {line}", first, delimiter)
     begins = header.end(1)
-    if all(_NUMBER.fullmatch(label.text) for label in labels):
+    numeric = [bool(_NUMBER.fullmatch(label.text)) for label in labels]
+    above = _labels_above(comment, len(labels), delimiter) if any(numeric) else None
+    if above or all(numeric):
         begins = header.start(1)
-        labels = _labels_above(comment, len(labels), delimiter) or [
-            Label(f"column_{number}", f"column_{number}", None) for number in range(1, len(labels) + 1)
-        ]
+        labels = above or [Label(f"column_{number}", f"column_{number}", None) for number in range(1, len(labels) + 1)]
     body = memoryview(data)[begins:]
     if not re.search(rb"[^\n]", body):
         raise ValueError(f"{file} has a header but no rows")
@@ -112,7 +113,7 @@ def _labels(place: str, text: str, delimiter: str) -> list[Label]:
     for cell in cells:
         if len(cell) > _LONGEST_LABEL:
             raise ValueError(f"{place}: {quoted(cell)} has {len(cell)} characters; a header cell has at most {_LONGEST_LABEL}")
-    return [label_of(cell.strip()) for cell in cells]
+    return labels_of([cell.strip() for cell in cells])
 
 
 def _labels_above(comment: re.Match[bytes] | None, count: int, delimiter: str) -> list[Label] | None:
@@ -123,7 +124,7 @@ def _labels_above(comment: re.Match[bytes] | None, count: int, delimiter: str) -
     names = [each.strip() for each in (text.split() if delimiter == " " else text.split(delimiter))]
     if len(names) != count or not all(names) or any(_NUMBER.fullmatch(name) for name in names):
         return None
-    return [label_of(name) for name in names]
+    return labels_of(names)
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from strainwave import Recording
 from strainwave.files.labels import Source
+from strainwave.files.matlab_table import open_mat
 from strainwave.files.tables import open_table
 
 asammdf = pytest.importorskip("asammdf")
@@ -84,7 +85,8 @@ def test_structures_matrices_and_what_does_not_fit(tmp_path: Path, save: Any) ->
     assert {label.name for label in open_table(path).labels} == {"data.t", "data.q_1", "data.q_2", "data.q_3"}
     values, remarks = read(path, "data.t", "data.q_2")
     assert values == [np.arange(10.0).tolist(), matrix[:, 1].tolist()]
-    assert remarks == ["of another length than 10, and left out: short (4)", "single numbers, not used: kp = 160.18"]
+    assert remarks == ["of another length than 10, and left out: short (4)"]
+    assert open_mat(path).singles == {"kp": 160.18}
 
 
 def test_a_mat_file_is_a_recording_where_units_are_given(tmp_path: Path) -> None:

@@ -324,14 +324,21 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
         Recording.read(path)
 
 
-KNOWN = ".csv, .txt, .tsv, .parquet, .dat, .mat, .mf4, .mdf, .bag, .mcap or .db3"
+KNOWN = ".csv, .txt, .tsv, .log, .parquet, .dat, .mat, .h5, .hdf5, .npy, .npz, .json, .jsonl, .mf4, .mdf, .bag, .mcap or .db3"
 
 
 def test_an_unknown_suffix_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "run.xlsx"
+    path = tmp_path / "run.doc"
     for read in (Recording.read, Recording.header):
-        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".xlsx" is not known; use {KNOWN}')):
+        with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".doc" is not known; use {KNOWN}')):
             read(path)
+
+
+def test_other_files_that_people_have_are_refused_with_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"a pickle may run any program as it is read: save it as \.npz"):
+        Recording.read(tmp_path / "log.pkl")
+    with pytest.raises(ValueError, match=r"save the sheet as \.csv$"):
+        Recording.read(tmp_path / "log.xlsx")
 
 
 # Parquet, damaged too
