@@ -32,8 +32,7 @@ class Provenance:
         Raises:
             OSError: a file cannot be read
         """
-        digests = {Path(file).name: hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in files}
-        return cls(date, command, digests)
+        return cls(date, command, {Path(file).name: _digest(Path(file)) for file in files})
 
     @classmethod
     def of_this_command(cls, files: Iterable[Path]) -> Provenance:
@@ -44,3 +43,12 @@ class Provenance:
         """
         now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
         return cls.of(sorted(files), command=shlex.join(["strainwave", *sys.argv[1:]]), date=now)
+
+
+def _digest(file: Path) -> str:
+    """Of a file, or of all that a folder holds, as a bag is one."""
+    parts = sorted(file.iterdir()) if file.is_dir() else [file]
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(part.read_bytes())
+    return digest.hexdigest()

@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 
 from strainwave.identification.reading.names import UNITS, Quantity, Side
 
-Kind = Literal["friction", "torsion", "log", "encoders", "effort"]
+Kind = Literal["friction", "torsion", "log", "encoders", "effort", "presliding", "breakaway"]
 
 KINDS: dict[Kind, str] = {
     "friction": "a table of steady friction",
@@ -14,6 +14,8 @@ KINDS: dict[Kind, str] = {
     "log": "a log of a drive",
     "encoders": "a record of two encoders",
     "effort": "torque or current without the motion that made it, or at one constant speed",
+    "presliding": "a presliding loop: a small motion to and fro at rest",
+    "breakaway": "ramps of torque until the shaft breaks away",
 }
 
 

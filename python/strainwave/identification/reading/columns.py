@@ -11,21 +11,27 @@ from numpy.typing import NDArray
 from strainwave.files.labels import Source, places_of
 from strainwave.files.tables import OpenTable
 from strainwave.files.units import convert, counts, measures
+from strainwave.identification.reading.apparent import apparent
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import missing_units
-from strainwave.identification.reading.names import meaning, words_of
+from strainwave.identification.reading.names import meaning, which_of, words_of
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
 
 
+SAY = "say what they are with --column"
+FEW = 4  # names that are listed where none says anything
 FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
 
 
 def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
-    """The columns that mean something, one for each channel: those that a person named, and those whose names tell."""
+    """The columns that mean something, one for each channel: those that a person named, and those whose names tell.
+
+    Where a person says the rate of the rows, a column of time is taken only if the person names it.
+    """
     said = _said(table, mapping)
     taken = {column.position for column in said}
     told = []
@@ -34,6 +40,8 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
             continue
         found = meaning(label._replace(unit=None) if label.name in mapping.units else label)
         if found is None or (content == "dates" and found.quantity != "time"):
+            continue
+        if found.quantity == "time" and "rate" in mapping.constants:
             continue
         sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
         channel = Channel(found.quantity, found.side if sided else None, found.commanded)
@@ -70,10 +78,10 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
     joints = list(dict.fromkeys(column.which for group in several for column in group if column.which))
     if mapping.joint is not None:
         known = joints or [column.which for column in columns if column.which]
-        number = ".".join(str(int(word)) for word in words_of(mapping.joint) if word.isdigit())  # J3 is joint 3
-        joint = mapping.joint if mapping.joint in known else number
+        joint = mapping.joint if mapping.joint in known else which_of(words_of(mapping.joint))  # J3 is joint 3
         if joint not in known:
-            raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(known)}"))
+            there = f"it has {listed(known)}" if known else f"its columns name none; {apparent(table) or SAY}"
+            raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; {there}"))
         several_joints = len(known) > 1
         return [
             replace(column, robot=column.robot or (several_joints and column.which == joint))
@@ -114,13 +122,14 @@ def _choice(group: Sequence[Column], joints: Sequence[str]) -> str:
 def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
     """The columns with their values in SI units, and what was said of units and left out."""
     if not columns:
-        there = listed(label.text for label in table.labels)
-        hint = as_option("column", "speed", table.labels[0].name)
-        raise ValueError(one_line(f"{table.file}: no name of a column tells what it measures: {there}; say it, as with {hint}"))
+        names = [label.text for label in table.labels]
+        there = listed(names) if len(names) <= FEW else f"{listed(names[:FEW])} and {len(names) - FEW} more"
+        seen = apparent(table) or f"say it, as with {as_option('column', 'speed', names[0])}"
+        raise ValueError(one_line(f"{table.file}: no name of a column tells what it measures: {there}; {seen}"))
     sources = [
         Source(column.position, column.name, str(column.position), column.unit or column.channel.unit) for column in columns
     ]
-    numbers, remarks = table.measured(sources)
+    numbers, left_out = table.measured(sources)
     raw = {column.position: numbers[str(column.position)] for column in columns}
     known, told = _with_units(table, columns, mapping)
     try:
@@ -134,7 +143,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     for column in known:
         unit = column.unit or assumed[column.position].unit
         found.append(replace(column, unit=unit, values=_in_si(table, column, raw[column.position], unit)))
-    remarks = [*remarks, *told]
+    remarks = [*left_out, *told]
     empty = [column for column in found if not column.said and not np.isfinite(column.si).any()]
     if empty and len(empty) < len(found):
         remarks.append(f"left out, as no row holds a number: {listed(column.name for column in empty)}")

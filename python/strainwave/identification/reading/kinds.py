@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from strainwave.identification.experiments.branches import turning_points
+from strainwave.identification.reading.at_rest import at_rest
 from strainwave.identification.reading.channels import KINDS, Kind
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -20,12 +21,15 @@ from strainwave.identification.reading.sides import (
     side_of_torque,
     sides_of_angles,
 )
+from strainwave.identification.reading.steady import averaged, stretches
 from strainwave.messages import as_option, listed
 
-STEADY = 0.05  # of the mean speed: a record whose speed varies by less has one speed
+STEADY = 0.05  # of the usual speed: a record whose speed differs from it by less has one speed
+WITHIN = 0.95  # of the rows, that must lie so near: the others are its beginning and end
 SAMPLED = 500  # rows: no table of friction measured point by point has more
-FEWEST = 4  # rows of a torsion loop or branch
+FEWEST = 4  # rows of a torsion loop or branch, and speeds of a table
 TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted, it turns
+TWISTED = 0.3  # rad at the output: what moves by more is no twist of a gear
 LOADED = 0.9  # correlation of torque and angle of a spring, which an alternating torque has
 
 
@@ -64,6 +68,8 @@ def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
     commanded = any(column.channel.commanded for column in columns)
     if "twist" in has and "torque" in has and not (timed and motion):
         return "torsion"
+    if effort and "angle" in has and (resting := at_rest(columns, mapping)):
+        return resting
     if timed and motion and (effort or "voltage" in has or commanded):
         return "log"
     if len(_measured(columns, "angle")) > 1 and not effort:
@@ -71,7 +77,7 @@ def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
     if "speed" in has and effort and "angle" not in has:
         return _table_or_samples(columns)
     if "angle" in has and "torque" in has:
-        return _loop_or_turns(columns)
+        return _loop_or_turns(columns, mapping)
     if effort:
         return "effort"
     raise UndecidedError(
@@ -84,9 +90,9 @@ def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
 def _table_or_samples(columns: Sequence[Column]) -> Kind:
     """Whether speeds and torques without time are a table, or samples at one speed."""
     speed = _measured(columns, "speed")[0].si
-    if len(speed) > 20 and np.ptp(speed) < STEADY * abs(speed.mean()):
+    if len(speed) > 20 and np.quantile(np.abs(speed - np.median(speed)), WITHIN) < STEADY * abs(np.median(speed)):
         return "effort"
-    if len(speed) > SAMPLED:
+    if len(speed) > SAMPLED and len(stretches(speed)) < FEWEST:
         raise UndecidedError(
             f"it holds {len(speed)} rows of speed and torque without time: samples of a log if their rate is known, with "
             "--constant rate=HZ, or a table of friction, with --kind friction"
@@ -94,9 +100,15 @@ def _table_or_samples(columns: Sequence[Column]) -> Kind:
     return "friction"
 
 
-def _loop_or_turns(columns: Sequence[Column]) -> Kind:
+def _loop_or_turns(columns: Sequence[Column], mapping: FileMapping) -> Kind:
     """Whether angles and torques without time are a torsion loop, or torque while the shaft turns on."""
-    angle, torque = _measured(columns, "angle")[0].si, _measured(columns, "torque")[0].si
+    column = _measured(columns, "angle")[0]
+    angle, torque = column.si, _measured(columns, "torque")[0].si
+    if np.ptp(angle) > TWISTED and (column.channel.side == "output" or column.robot or mapping.side == "output"):
+        raise UndecidedError(
+            f"{column.name} moves by {np.ptp(angle):.3g} rad, by which no gear twists: samples of a log whose rate is needed, "
+            "with --constant rate=HZ; or, if it is a torsion loop all the same, --kind torsion"
+        )
     turns_on = abs(angle[-1] - angle[0]) > TURNING and not turning_points(angle)
     if not turns_on:
         return "torsion"
@@ -111,7 +123,13 @@ def _friction(columns: Sequence[Column], mapping: FileMapping) -> Found:
     order = "in no order of time" if (np.diff(speed.si) < 0.0).any() else "in the order of speed"
     why = f"its columns are {pair(speed, torque)}, {len(speed.si)} rows {order}: {KINDS['friction']}"
     found = {"speed": speed, effort: torque, **_temperature(columns)}
-    return Found("friction", found, side, (why, told))
+    if len(speed.si) <= SAMPLED:
+        return Found("friction", found, side, (why, told))
+    parts = stretches(speed.si)
+    rows = sum(part.stop - part.start for part in parts)
+    why = f"its columns are {pair(speed, torque)} at one speed after another: {KINDS['friction']}"
+    said = f"{rows} of its {len(speed.si)} rows are steady; the means of {len(parts)} stretches at one speed are taken"
+    return Found("friction", averaged(found, parts), side, (why, told), (said,))
 
 
 def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
@@ -124,7 +142,8 @@ def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
     if side is None:
         raise UndecidedError(
             f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated: --side input if the motor was turned "
-            "with the output locked, --side output if the output was loaded with the input locked"
+            "with the output locked, --side output if the output was loaded with the input locked; or, if the motor was moved to "
+            "and fro at rest, --kind presliding"
         )
     turns = len(turning_points(angle.si))
     shape = f"a torsion loop with {turns} reversals" if turns else "one branch of a torsion loop, which tells stiffness only"
@@ -141,6 +160,7 @@ def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
 
 def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
     torques, currents, remarks = _efforts(columns)
+    _check_voltage(columns, [*torques, *currents])
     found: dict[str, Column] = {}
     for name, some in (
         ("time", _measured(columns, "time")),
@@ -155,6 +175,15 @@ def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
     sides, why = _put_sided(found, columns, torques, mapping)
     first = f"it holds {_names(columns)}, {len(columns[0].si)} rows in time: {KINDS['log']}"
     return Found("log", found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
+
+
+def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
+    """The letter u is a voltage beside motors, and whatever a robot is driven by beside joints."""
+    for column in _measured(columns, "voltage"):
+        is_letter = len(column.name.rstrip("_0123456789[]")) == 1 and column.label.unit is None
+        if is_letter and not others and not column.said and any(each.robot for each in columns):
+            ways = " or ".join(as_option("column", name, column.name) for name in ("joint_torque", "current", "voltage"))
+            raise UndecidedError(f"{column.name} may be a torque, a current or a voltage; say it with {ways}")
 
 
 def _put_sided(
@@ -179,8 +208,10 @@ def _put_sided(
 
 
 def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tuple[str, ...]]:
-    """Torques and currents of a log: those measured; where there are none, those commanded."""
+    """Torques and currents of a log: those that a person named, else those measured, else those commanded."""
     torques, currents = _measured(columns, "torque"), _measured(columns, "current")
+    if any(column.said for column in (*torques, *currents)):
+        torques, currents = ([column for column in some if column.said] for some in (torques, currents))
     if torques or currents:
         return torques, currents, ()
     torques, currents = _commanded(columns, "torque"), _commanded(columns, "current")
@@ -218,12 +249,28 @@ def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
     return Found("effort", found, side, (why,))
 
 
+def _at_rest(columns: Sequence[Column], mapping: FileMapping, kind: Kind) -> Found:
+    effort: Quantity = "torque" if _measured(columns, "torque") else "current"
+    angle, force = _needed(columns, "angle", kind), _needed(columns, effort, kind)
+    side = mapping.side or angle.channel.side or ("output" if angle.robot else "input")
+    found = {"angle": angle, effort: force}
+    moved = f"{angle.name} moves by {1e3 * np.ptp(angle.si):.3g} mrad in all"
+    if kind == "presliding":
+        turns = len(turning_points(angle.si))
+        return Found(kind, found, side, (f"{moved} and turns back {turns} times beside {force.name}: {KINDS[kind]}",))
+    if times := _measured(columns, "time"):
+        found["time"] = times[0]
+    return Found(kind, found, side, (f"{force.name} rises while {angle.name} rests, until it moves: {KINDS[kind]}",))
+
+
 _READERS: dict[Kind, Callable[[Sequence[Column], FileMapping], Found]] = {
     "friction": _friction,
     "torsion": _torsion,
     "log": _log,
     "encoders": _encoders,
     "effort": _effort,
+    "presliding": lambda columns, mapping: _at_rest(columns, mapping, "presliding"),
+    "breakaway": lambda columns, mapping: _at_rest(columns, mapping, "breakaway"),
 }
 
 

@@ -24,6 +24,7 @@ MULTIPLES = 0.95  # of the steps of an encoder that are whole multiples of the s
 EQUAL = 1e-3  # relative: a step and a part of a revolution
 JOINT = 4.0 * np.pi  # rad: a joint that is written in radians does not get further, two turns to each side
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # what time since 1970 exceeds, in each unit
+FINER = ("ms", "us", "ns")  # than a second
 SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
 
 
@@ -44,7 +45,11 @@ def missing_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[i
     Raises:
         ValueError: numbers may be in any unit
     """
-    found = {column.position: _alone(column, raw[column.position]) for column in columns if column.unit is None}
+    found = {
+        column.position: (_of_time(column, columns, raw) if column.channel.quantity == "time" else _alone(column, values))
+        for column, values in ((column, raw[column.position]) for column in columns)
+        if column.unit is None
+    }
     units = {column.position: column.unit or found[column.position].unit for column in columns}
     time = next((column for column in columns if column.channel.quantity == "time"), None)
     sure = {place for place in units if place not in found or found[place].why}
@@ -70,8 +75,6 @@ def _alone(column: Column, values: Array) -> Assumed:
     if not there.size:
         return Assumed(UNITS[column.channel.quantity], "")
     match column.channel.quantity:
-        case "time":
-            return _of_time(column, there)
         case "temperature":
             return Assumed("degC", "as it would be too cold in K") if np.median(there) < 200.0 else Assumed("K", "")
         case "angle":
@@ -80,15 +83,27 @@ def _alone(column: Column, values: Array) -> Assumed:
             return Assumed(UNITS[quantity], "")
 
 
-def _of_time(column: Column, values: Array) -> Assumed:
-    late = float(np.abs(values).max())
+def _of_time(column: Column, columns: Sequence[Column], raw: Mapping[int, Array]) -> Assumed:
+    """Of stamps: by their size since 1970, by a step of a log in seconds, or by an angle and its speed in usual units."""
+    values = raw[column.position][np.isfinite(raw[column.position])]
+    late = float(np.abs(values).max(initial=0.0))
     for least, unit in EPOCHS:
         if late > least:
             return Assumed(unit, "since 1970")
     if len(values) > 1 and np.median(np.abs(np.diff(values))) < SLOWEST:
         return Assumed("s", "")
+    for angle, speed in _pairs(columns):
+        units = {each.position: each.unit or UNITS[each.channel.quantity] for each in (angle, speed)}
+        sure = {each.position for each in (angle, speed) if each.unit is not None}
+        slope = _slope(raw[angle.position], raw[speed.position], raw[column.position])
+        for unit in FINER:
+            if _fitting(slope * convert(1.0, unit, "s"), units, angle, speed, sure):
+                return Assumed(unit, f"as {angle.name} then moves as {speed.name} says")
     hint = as_option("unit", "time", "ms")
-    raise ValueError(f"column {quoted(column.name)} has no unit, and its steps do not tell it; give it: {hint}")
+    raise ValueError(
+        f"column {quoted(column.name)} has no unit, and its steps do not tell it; give it: {hint}; if it counts rows, give "
+        "their rate: --constant rate=500"
+    )
 
 
 def _of_angle(column: Column, values: Array) -> Assumed:

@@ -23,7 +23,7 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "time": ("time", "t", "zeit", "zeitstempel", "timestamp", "stamp", "temps", "tiempo", "tempo", "clock", "elapsed"),
     "angle": (
         "angle", "position", "positions", "pos", "q", "theta", "th", "phi", "winkel", "lage", "drehwinkel", "stellung",
-        "angulo", "angolo", "posicion", "posizione", "encoder", "enc", "geber", "drehgeber", "resolver", "rotation",
+        "ang", "angulo", "angolo", "posicion", "posizione", "encoder", "enc", "geber", "drehgeber", "resolver", "rotation",
         "counts", "ticks",
     ),
     "twist": ("twist", "torsion", "deflection", "verdrehung", "verdrillung", "deflexion", "torsione", "windup"),
@@ -33,12 +33,15 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
         "drehgeschwindigkeit",
     ),
     "torque": (
-        "torque", "torques", "tau", "trq", "moment", "drehmoment", "reibmoment", "reibung", "friction", "couple", "effort",
-        "efforts", "frottement", "par", "coppia", "momento", "m",
+        "torque", "torques", "tau", "trq", "tor", "moment", "drehmoment", "reibmoment", "reibung", "friction", "couple",
+        "effort", "efforts", "frottement", "par", "coppia", "momento", "m",
     ),
-    "current": ("current", "currents", "strom", "i", "iq", "isq", "courant", "corriente", "corrente", "amps", "amperage"),
+    "current": (
+        "current", "currents", "cur", "curr", "strom", "i", "iq", "isq", "courant", "corriente", "corrente", "amp", "amps",
+        "amperage",
+    ),
     "voltage": ("voltage", "volt", "spannung", "u", "v", "uq", "voltaje", "tensione", "vir"),
-    "temperature": ("temperature", "temp", "temperatur", "temperatura", "temper"),
+    "temperature": ("temperature", "temperatures", "temp", "temperatur", "temperatura", "temper"),
 }  # fmt: skip
 SIDES: dict[Side, tuple[str, ...]] = {
     "input": (
@@ -52,7 +55,7 @@ SIDES: dict[Side, tuple[str, ...]] = {
 }  # fmt: skip
 COMMANDED = (
     "command", "commanded", "cmd", "reference", "ref", "setpoint", "set", "target", "desired", "des", "demand", "soll",
-    "sollwert", "vorgabe", "consigne", "consigna", "riferimento", "referencia", "goal",
+    "sollwert", "vorgabe", "consigne", "consigna", "riferimento", "referencia", "goal", "computed", "cmptd", "planned",
 )  # fmt: skip
 NEUTRAL = (
     "actual", "act", "measured", "meas", "mes", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data", "sensor",
@@ -63,14 +66,15 @@ NEUTRAL = (
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "estimate", "tool", "gripper", "power", "id",
-    "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact",
+    "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model", "simulated", "predicted", "rne",
 )  # fmt: skip
 # Symbols that say two things at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {
     "qm": ("q", "motor"), "qg": ("q", "reference"), "ql": ("q", "link"), "qdes": ("q", "desired"), "qref": ("q", "reference"),
     "dqdes": ("dq", "desired"), "taudes": ("tau", "desired"), "dqm": ("dq", "motor"), "dql": ("dq", "link"),
     "taum": ("tau", "motor"), "tauj": ("tau", "joint"), "thetam": ("theta", "motor"), "thetal": ("theta", "link"),
-    "im": ("i", "motor"), "um": ("u", "motor"),
+    "im": ("i", "motor"), "um": ("u", "motor"), "jpos": ("joint", "pos"), "jvel": ("joint", "vel"), "jtor": ("joint", "torque"),
+    "jtau": ("joint", "tau"), "jcur": ("joint", "current"), "mpos": ("motor", "pos"), "mvel": ("motor", "vel"),
 }  # fmt: skip
 BEHIND = {"m": "motor", "l": "link", "d": "desired", "r": "reference", "a": "actual"}  # an index behind a symbol, as in q_m
 ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts")  # what robots call their joints' channels
@@ -129,7 +133,7 @@ def meaning(label: Label) -> Meaning | None:
         quantity,
         sides[-1] if sides else None,
         any(word in COMMANDED for word in words),
-        _which(words),
+        which_of(words),
         unit or next((_UNIT_NAMES[word] for word in words if word in _UNIT_NAMES), None),
         at >= 0 and words[at] in ROBOT,
     )
@@ -182,7 +186,7 @@ def _without_unit(name: str) -> tuple[str, str | None]:
         if len(words) <= count:
             continue
         unit = "/".join(words[-count:])
-        if any(word.isdigit() or word == "J" for word in words[-count:]):  # the number of a joint, or the word joint
+        if any(re.fullmatch(r"J?\d*", word) for word in words[-count:]):  # the number of a joint, or the word joint
             continue
         rest = "_".join(words[:-count])
         quantity, _ = _quantity(words_of(rest), None)
@@ -215,7 +219,8 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
     return quantity, place
 
 
-def _which(words: list[str]) -> str:
+def which_of(words: list[str]) -> str:
+    """What words say of a channel but its quantity and side: the number of a joint, or its name."""
     numbers = [str(int(word)) for word in words if word.isdigit()]
     known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, "dot"}
     return ".".join(numbers) or "_".join(word for word in words if word not in known)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.files.array_table import ArrayTable
 from strainwave.files.recording import Recording
 from strainwave.files.tables import OpenTable, open_table
 from strainwave.identification.reading.channels import Kind
@@ -17,12 +18,15 @@ from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, read
 from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.names import Side, meaning
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.wraps import unwrapped
 from strainwave.messages import listed, one_line, quoted
 
 Array = NDArray[np.float64]
+
+RATES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")  # Hz
+STEPS = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,9 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     """
     said = mapping or FileMapping()
     table = open_table(path)
-    columns, remarks = read(table, chosen(table, said), said)
+    said, remarks = _with_single_numbers(table, said)
+    columns, more = read(table, chosen(table, said), said)
+    remarks += more
     try:
         found = kind_of(columns, said)
     except UndecidedError as undecided:
@@ -84,7 +90,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     remarks += found.remarks
     series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
     remarks += _unwrap(table, series, found.columns)
-    if found.kind in ("log", "encoders", "effort"):
+    if found.kind in ("log", "encoders", "effort", "breakaway"):
         try:
             when = _clock(series, said, found.kind)
         except ValueError as error:
@@ -104,6 +110,32 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         dict(said.constants),
         Recording(series, {name: _unit(name, found.columns) for name in series}, table.title),
     )
+
+
+def _with_single_numbers(table: OpenTable, said: FileMapping) -> tuple[FileMapping, list[str]]:
+    """What is said of a file, with the rate of its rows where a single number in it tells it and no column of time does."""
+    singles = dict(table.singles) if isinstance(table, ArrayTable) else {}
+    timed = "time" in said.columns or any((found := meaning(label)) and found.quantity == "time" for label in table.labels)
+    remarks = []
+    if "rate" not in said.constants and not timed:
+        for name, value in singles.items():
+            rate = _rate(name.rpartition(".")[2].casefold(), value)
+            if rate is not None:
+                del singles[name]
+                said = said.updated(FileMapping(constants={"rate": rate}))
+                remarks.append(f"{name} = {value:g} is taken for the rate of its rows: {rate:g} Hz")
+                break
+    if singles:
+        numbers = listed(f"{name} = {value:g}" for name, value in singles.items())
+        remarks.append(f"single numbers, not used: {numbers}")
+    return said, remarks
+
+
+def _rate(name: str, value: float) -> float | None:
+    """Rows in a second that a number of this name says."""
+    if name in RATES and value >= 1.0:
+        return value
+    return 1.0 / value if name in STEPS and 0.0 < value < 1.0 else None
 
 
 def _unwrap(table: OpenTable, series: dict[str, Array], columns: Mapping[str, Column]) -> Iterator[str]:
@@ -135,7 +167,7 @@ def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock 
         return clock(series["time"], repeated)
     if "rate" in said.constants:
         return regular(count, said.constants["rate"])
-    if kind == "log":
+    if kind in ("log", "breakaway"):
         raise ValueError("it has no time; give the rate of its rows, with --constant rate=HZ")
     return None
 

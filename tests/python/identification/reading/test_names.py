@@ -34,6 +34,13 @@ NAMES = {
     "rpm": Meaning("speed", unit="rpm"),
     "mNm": Meaning("torque", unit="mNm"),
     "setpoint": Meaning("angle", commanded=True),
+    "tau_J1": Meaning("torque", "output", which="1", robot=True),
+    "q_2": Meaning("angle", which="2", robot=True),
+    "Cur3": Meaning("current", which="3"),
+    "PositionCmptd2": Meaning("angle", commanded=True, which="2"),
+    "joint_temperatures_1": Meaning("temperature", "output", which="1"),
+    "jtor2": Meaning("torque", "output", which="2"),
+    "field.effort1": Meaning("torque", which="1", robot=True),
     "Sensor X [N.m]": Meaning("torque", which="x", unit="N.m"),
 }
 NO_NAMES = (
@@ -49,6 +56,7 @@ NO_NAMES = (
     "42",
     "x [m]",
     "friction coefficient [1]",
+    "torque_rne_1",
 )
 
 

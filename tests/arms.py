@@ -1,0 +1,304 @@
+"""Files of robot arms as people record them, with known truth, from plain NumPy that shares nothing with this package.
+
+An arm of three joints, one about the vertical and two parallel ones that carry the arm, follows Fourier series or trapezoids.
+Its motion is prescribed, and the torque of each motor follows from it: a robot with elastic joints is differentially flat
+(De Luca 2000), so that nothing needs to be integrated but the bristles of the friction. `python -m tests.arms` writes every
+file, identifies each, and prints its held-out error beside that of least squares as a specialist's script does them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FINE = 4000.0  # Hz: rate of the motion
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class Links:
+    """Masses [kg], lengths [m] and inertias [kg.m2] of an arm that turns (1), lifts (2) and bends (3)."""
+
+    base: float = 0.6
+    masses: tuple[float, float] = (8.0, 4.0)
+    length: float = 0.45
+    centres: tuple[float, float] = (0.2, 0.18)
+    inertias: tuple[float, float] = (0.16, 0.06)
+
+    def torques(self, q: Array, dq: Array, ddq: Array) -> Array:
+        """Of the joints, by Lagrange's equations in closed form, shape (3, n)."""
+        (m2, m3), (r2, r3), (i2, i3), length = self.masses, self.centres, self.inertias, self.length
+        lift, bend = q[1], q[1] + q[2]
+        reach2, reach3 = r2 * np.cos(lift), length * np.cos(lift) + r3 * np.cos(bend)
+        about = self.base + m2 * reach2**2 + i2 * np.cos(lift) ** 2 + m3 * reach3**2 + i3 * np.cos(bend) ** 2
+        by_bend = -2.0 * m3 * reach3 * r3 * np.sin(bend) - i3 * np.sin(2.0 * bend)
+        by_lift = -(m2 * r2**2 + i2) * np.sin(2.0 * lift) - 2.0 * m3 * reach3 * length * np.sin(lift) + by_bend
+        across, own = m3 * length * r3, i3 + m3 * r3**2
+        both = own + across * np.cos(q[2])
+        turned = dq[0] ** 2
+        first = about * ddq[0] + (by_lift * dq[1] + by_bend * dq[2]) * dq[0]
+        weight = GRAVITY * m3 * r3 * np.cos(bend)
+        second = (
+            (i2 + m2 * r2**2 + m3 * length**2 + 2.0 * across * np.cos(q[2]) + own) * ddq[1] + both * ddq[2]
+            - across * np.sin(q[2]) * (2.0 * dq[1] * dq[2] + dq[2] ** 2) - 0.5 * by_lift * turned
+            + GRAVITY * (m2 * r2 + m3 * length) * np.cos(lift) + weight
+        )  # fmt: skip
+        third = both * ddq[1] + own * ddq[2] + across * np.sin(q[2]) * dq[1] ** 2 - 0.5 * by_bend * turned + weight
+        return np.stack([first, second, third])
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Gear and motor of a joint, in SI units, friction at the motor."""
+
+    ratio: float = 100.0
+    stiffness: float = 2.0e4
+    rotor: float = 4e-5
+    coulomb: float = 0.06
+    breakaway: float = 0.075
+    stribeck_speed: float = 8.0
+    viscous: float = 2.5e-4
+    loss: float = 0.05  # of the torque that is transmitted
+    bend: float = 0.05  # rad of the motor in which friction turns over
+    ripple: Mapping[float, float] = field(default_factory=dict)  # torque at the motor by order per revolution of it
+    torque_constant: float = 0.12
+
+    def motor(self, q: Array, transmitted: Array) -> tuple[Array, Array]:
+        """Angle of the motor, and its torque."""
+        theta = self.ratio * (q + transmitted / self.stiffness)
+        speed = np.gradient(theta, 1.0 / FINE)
+        falling = self.coulomb + (self.breakaway - self.coulomb) * np.exp(-((speed / self.stribeck_speed) ** 2))
+        bristles = _bristles(theta, self.bend)
+        waves = sum((size * np.cos(order * theta + order) for order, size in self.ripple.items()), np.zeros_like(theta))
+        lost = self.loss * np.abs(transmitted) / self.ratio * bristles
+        torque = self.rotor * np.gradient(speed, 1.0 / FINE) + falling * bristles + self.viscous * speed + lost + waves
+        return theta, torque + transmitted / self.ratio
+
+
+def _bristles(theta: Array, bend: float) -> Array:
+    """Friction over its level by Dahl's model: -1 to 1, with the angle behind each reversal."""
+    found, now = np.empty_like(theta), 0.0
+    for place, step in enumerate(np.diff(theta, prepend=theta[0]).tolist()):
+        aim = 1.0 if step > 0.0 else -1.0
+        now = aim + (now - aim) * np.exp(-abs(step) / bend) if step else now
+        found[place] = now
+    return found
+
+
+@dataclass(frozen=True)
+class Run:
+    """What an arm did, on a fine grid: angles of joints and motors, torques of motors, and those that the gears transmit."""
+
+    time: Array
+    q: Array
+    transmitted: Array
+    theta: Array
+    torque: Array
+    joints: tuple[Joint, ...]
+
+
+def run(joints: tuple[Joint, ...], command: Array, links: Links | None = None) -> Run:
+    """An arm that follows commanded angles, shape (3, n), as a loop of 8 Hz does."""
+    from scipy import signal
+
+    q = signal.sosfiltfilt(signal.bessel(2, 8.0, fs=FINE, output="sos", norm="mag"), command, axis=-1)
+    dq = np.gradient(q, 1.0 / FINE, axis=-1)
+    transmitted = (links or Links()).torques(q, dq, np.gradient(dq, 1.0 / FINE, axis=-1))
+    motors = [joint.motor(own, torque) for joint, own, torque in zip(joints, q, transmitted, strict=True)]
+    return Run(
+        np.arange(q.shape[1]) / FINE, q, transmitted, np.stack([m[0] for m in motors]), np.stack([m[1] for m in motors]), joints
+    )
+
+
+# ---- Motions ---------------------------------------------------------------------------------------------------------
+
+
+def resting(seconds: float, at: tuple[float, float, float] = (0.3, -0.8, 0.9)) -> Array:
+    return np.repeat(np.array(at)[:, np.newaxis], int(seconds * FINE), axis=1)
+
+
+def fourier(seconds: float, moving: tuple[int, ...], seed: int, size: float = 0.9) -> Array:
+    """Fourier series of five harmonics of a tenth of a hertz, as for the excitation of arms."""
+    random, command = np.random.default_rng(seed), resting(seconds)
+    time = np.arange(command.shape[1]) / FINE
+    for joint in moving:
+        shape = np.zeros_like(time)
+        for harmonic in range(1, 6):
+            shape += random.normal() / harmonic * np.sin(2.0 * np.pi * 0.1 * harmonic * time + random.uniform(0.0, 2.0 * np.pi))
+        command[joint] += size * shape / np.abs(shape).max()
+    return command
+
+
+def trapezoids(seconds: float, joint: int, speeds: tuple[float, ...] = (0.1, 0.3, 0.7), size: float = 1.2) -> Array:
+    """To and fro at one speed after another, with a rest of a second at each end."""
+    command, parts = resting(seconds), [np.zeros(int(FINE))]
+    place, turn = 0.0, 0
+    while sum(map(len, parts)) < command.shape[1]:
+        speed, way = speeds[(turn // 2) % len(speeds)], 1.0 if turn % 2 == 0 else -1.0
+        parts += [place + way * np.arange(0.0, size, speed / FINE), np.full(int(FINE), place + way * size)]
+        place, turn = place + way * size, turn + 1
+    moved = np.concatenate(parts)[: command.shape[1]]
+    width = int(0.25 * FINE)  # of a ramp of the speed
+    command[joint] += np.convolve(np.pad(moved, width, mode="edge"), np.ones(width) / width, "same")[width:-width]
+    return command
+
+
+# ---- What is recorded ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """How it is sampled: rate [Hz], scatter of the instants [s], share of lost rows, steps of encoders [rad], delay [s]."""
+
+    rate: float = 500.0
+    jitter: float = 0.0
+    lost: float = 0.0
+    step: float = 5e-6
+    speed_noise: float = 2e-3
+    torque_noise: float = 0.03  # of its standard deviation
+    delay: float = 0.0
+    seed: int = 1
+
+    def __call__(self, done: Run) -> dict[str, Array]:
+        """Columns of all joints: `time`, and `q`, `dq`, `current`, `joint_torque` (of a sensor), `theta`, each (3, n)."""
+        random = np.random.default_rng(self.seed)
+        instants = np.arange(0.05, done.time[-1] - 0.05, 1.0 / self.rate)
+        instants = instants[random.random(len(instants)) >= self.lost]
+        true = np.sort(instants + self.jitter * random.uniform(-1.0, 1.0, len(instants)))
+
+        def at(series: Array, when: Array = true) -> Array:
+            return np.stack([np.interp(when, done.time, each) for each in series])
+
+        def noisy(series: Array) -> Array:
+            found = at(series, true - self.delay)
+            return found + self.torque_noise * np.std(found, axis=1, keepdims=True) * random.normal(size=found.shape)
+
+        constants = np.array([joint.torque_constant for joint in done.joints])[:, np.newaxis]
+        speed = at(np.gradient(done.q, 1.0 / FINE, axis=-1))
+        return {
+            "time": true,
+            "q": np.round(at(done.q) / self.step) * self.step,
+            "dq": speed + self.speed_noise * random.normal(size=speed.shape),
+            "current": noisy(done.torque / constants),
+            "motor_torque": noisy(done.torque * np.array([joint.ratio for joint in done.joints])[:, np.newaxis]),
+            "joint_torque": noisy(done.transmitted),
+            "theta": at(done.theta),
+        }
+
+
+def _table(path: Path, header: str | None, columns: list[Array], delimiter: str = ",", form: str = "%.6f") -> None:
+    np.savetxt(path, np.stack(columns, axis=1), form, delimiter, header=header or "", comments="")
+
+
+def _six(series: Array) -> list[Array]:
+    """Of a robot of six joints, of which the last three rest."""
+    return [*series, *np.zeros_like(series)]
+
+
+def rtde(path: Path, seen: Mapping[str, Array], delimiter: str = ",") -> None:
+    """As Universal Robots' recorder writes: `timestamp actual_q_0 … actual_qd_0 … actual_current_0 …`."""
+    names = [f"{name}_{joint}" for name in ("actual_q", "actual_qd", "actual_current", "target_q") for joint in range(6)]
+    columns = [seen["time"] + 1194.987, *(each for name in ("q", "dq", "current", "q") for each in _six(seen[name]))]
+    _table(path, delimiter.join(["timestamp", *names]), columns, delimiter)
+
+
+def headerless(path: Path, seen: Mapping[str, Array]) -> None:
+    """Time, angles, speeds, currents, commanded currents of six joints, four digits, no header."""
+    columns = [seen["time"] + 1194.987, *(each for name in ("q", "dq", "current", "current") for each in _six(seen[name]))]
+    _table(path, None, columns, form="%.4f")
+
+
+def panda(path: Path, seen: Mapping[str, Array]) -> None:
+    """As a program on libfranka writes: `time,q1,…,dq1,…,tau_J1,…,tau_J_d1`."""
+    names = [f"{name}{joint}" for name in ("q", "dq", "tau_J", "tau_J_d") for joint in (1, 2, 3)]
+    columns = [seen["time"], *seen["q"], *seen["dq"], *seen["motor_torque"], *seen["motor_torque"]]
+    _table(path, ",".join(["time", *names]), columns)
+
+
+def kinova(path: Path, seen: Mapping[str, Array]) -> None:
+    """Time counted in samples; torques of a sensor, of the current and of a model; angles that are commanded."""
+    names = ("Position", "Velocity", "Torque", "TorqueCur", "Temp", "Cur", "PositionCmptd")
+    warm = 33.0 + 0.0 * seen["q"]
+    series = (seen["q"], seen["dq"], seen["joint_torque"], seen["motor_torque"], warm, seen["current"], seen["q"])
+    header = ",".join(["Time", *(f"{name}{joint}" for name in names for joint in (1, 2, 3))])
+    _table(path, header, [np.arange(len(seen["time"])).astype(float), *(each for some in series for each in some)], form="%.6g")
+
+
+def mat(path: Path, seen: Mapping[str, Array]) -> None:
+    """Matrices by rows of joints, in radians."""
+    from scipy.io import savemat
+
+    savemat(path, {"t": seen["time"], "q": seen["q"].T, "qd": seen["dq"].T, "tau": seen["motor_torque"].T, "Ts": 0.002})
+
+
+def npz(path: Path, seen: Mapping[str, Array]) -> None:
+    np.savez(path, time=seen["time"], q=seen["q"].T, dq=seen["dq"].T, tau=seen["motor_torque"].T)
+
+
+def npy(path: Path, seen: Mapping[str, Array]) -> None:
+    """A matrix without names: time, angles, torques."""
+    np.save(path, np.column_stack([seen["time"], seen["q"].T, seen["motor_torque"].T]))
+
+
+def json_columns(path: Path, seen: Mapping[str, Array]) -> None:
+    import json
+
+    told = {"time": seen["time"].tolist(), "q": seen["q"].T.tolist(), "dq": seen["dq"].T.tolist()}
+    path.write_text(json.dumps(told | {"tau": seen["motor_torque"].T.tolist()}))
+
+
+def json_rows(path: Path, seen: Mapping[str, Array]) -> None:
+    """A row for each sample, with lists of the joints."""
+    import json
+
+    rows = [
+        {"timestamp": time, "position": q.tolist(), "velocity": dq.tolist(), "torque": torque.tolist()}
+        for time, q, dq, torque in zip(seen["time"], seen["q"].T, seen["dq"].T, seen["motor_torque"].T, strict=True)
+    ]
+    path.write_text("\n".join(map(json.dumps, rows)))
+
+
+def log_text(path: Path, seen: Mapping[str, Array]) -> None:
+    """Comments above the header, and one of another sort."""
+    names = ["t", *(f"{name}{joint}" for name in ("q", "qd", "u") for joint in (1, 2, 3))]
+    rows = [seen["time"], *seen["q"], *seen["dq"], *seen["motor_torque"]]
+    _table(path, " ".join(names), rows, " ")
+    path.write_text("% recorded 2024-03-01, arm 7\n% u in Nm\n" + path.read_text())
+
+
+def hand_driven(path: Path, seen: Mapping[str, Array]) -> None:
+    """Angle of the joint in degrees, torque of the sensor, without time, as from a script on a bench."""
+    from scipy.io import savemat
+
+    savemat(path, {"angle_deg": np.degrees(seen["q"][1]), "torque": seen["joint_torque"][1], "fs": 200.0})
+
+
+def constant_speed(path: Path, done: Run, joint: int, rate: float, seed: int = 3) -> None:
+    """Current at one speed, with the speed but no time."""
+    seen = Recorder(rate=rate, seed=seed)(done)
+    _table(path, "velocity [rad/s],current [A]", [seen["dq"][joint], seen["current"][joint]])
+
+
+def joint_states(path: Path, seen: Mapping[str, Array]) -> None:
+    """A bag of the second version in one MCAP file, with the states of the joints."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    state, header, stamp = (
+        store.types[name] for name in ("sensor_msgs/msg/JointState", "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
+    )
+    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        topic = writer.add_connection("/joint_states", state.__msgtype__, typestore=store)
+        for when, q, dq, torque in zip(seen["time"], seen["q"].T, seen["dq"].T, seen["motor_torque"].T, strict=True):
+            nanoseconds = int((1.7e9 + when) * 1e9)
+            at = header(stamp=stamp(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9), frame_id="")
+            names = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint"]
+            message = state(header=at, name=names, position=q.copy(), velocity=dq.copy(), effort=torque.copy())
+            writer.write(topic, nanoseconds, store.serialize_cdr(message, state.__msgtype__))
