@@ -24,6 +24,9 @@ Constants = Annotated[
     typer.Option(help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed."),
 ]
 Side = Annotated[str | None, typer.Option(help="Where a table or angles were measured that do not say it: input or output.")]
+Kind = Annotated[
+    str | None, typer.Option(help="What files are that may be two things: friction, torsion, log, encoders or effort.")
+]
 Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several.")]
 
 
@@ -34,6 +37,7 @@ def said_of(
     constant: list[str] | None,
     side: Any,
     joint: str | None,
+    kind: Any = None,
 ) -> Callable[[Path], FileMapping]:
     """What the options say of a file: of columns that it has; over what the mapping file says."""
     from strainwave.files.tables import open_table
@@ -49,7 +53,7 @@ def said_of(
     def of(path: Path) -> FileMapping:
         there = {text for label in open_table(path).labels for text in (label.text, label.name)} if columns else set()
         own = {name: wanted for name, wanted in columns.items() if wanted in there or wanted.isdigit()}
-        given = FileMapping(columns=own, units=units, constants=constants, side=side, joint=joint)
+        given = FileMapping(columns=own, units=units, constants=constants, side=side, joint=joint, kind=kind)
         return from_file.of(path).updated(given) if from_file is not None else given
 
     return of

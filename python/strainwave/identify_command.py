@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from strainwave.file_options import Columns, Constants, Gear, Joint, Mapping, Side, Units, said_of
+from strainwave.file_options import Columns, Constants, Gear, Joint, Kind, Mapping, Side, Units, said_of
 
 if TYPE_CHECKING:
     from strainwave.identification.findings import Finding, Number
@@ -27,6 +27,7 @@ def identify(
     constant: Constants = None,
     side: Side = None,
     joint: Joint = None,
+    kind: Kind = None,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the gear and the numbers.")] = Path("out/identify"),
 ) -> None:
     """Find out what files of measurements are, and what gear they show.
@@ -45,7 +46,7 @@ def identify(
     from strainwave.report.identify import identify_files, identify_report
     from strainwave.report.provenance import Provenance
 
-    said = said_of(mapping, column, unit, constant, side, joint)
+    said = said_of(mapping, column, unit, constant, side, joint, kind)
     with Console(stderr=True).status("reading") as status:
         found = identified(gear, paths, mapping=said, progress=status.update)
         status.update("report")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from strainwave.file_options import Columns, Constants, Gear, Joint, Mapping, Side, Units, said_of
+from strainwave.file_options import Columns, Constants, Gear, Joint, Kind, Mapping, Side, Units, said_of
 
 
 def rank(
@@ -21,6 +21,7 @@ def rank(
     constant: Constants = None,
     side: Side = None,
     joint: Joint = None,
+    kind: Kind = None,
 ) -> None:
     """Fit every model that a measurement can tell, and rank them by what they predict of data held out.
 
@@ -35,7 +36,7 @@ def rank(
     from strainwave.identification.reading.channels import KINDS
     from strainwave.identification.reading.recognise import recognise
 
-    said, start, told = said_of(mapping, column, unit, constant, side, joint), GearSet.read(gear), list[str]()
+    said, start, told = said_of(mapping, column, unit, constant, side, joint, kind), GearSet.read(gear), list[str]()
     with Console(stderr=True).status("reading") as status:
         for path in paths:
             status.update(path.name)
