@@ -338,15 +338,10 @@ def label_axes(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") 
 
 def scaled(axis: Axis, unit: str) -> str:
     """Numbers an axis, all to the same digit if it is linear; gives the unit with its prefix."""
+    from strainwave.report.ticks import Ticks
+
     power = typeset.prefix_power(float(np.max(np.abs(axis.get_view_interval()))), unit)
-
-    def tick(value: float, _: float) -> str:
-        shown = axis.get_major_formatter().locs  # which matplotlib has just set: to ask the axis takes long
-        ticks = [typeset.number(float(place) / 10.0**power, 4) for place in (*shown, value)]
-        places = max(len(text.partition(".")[2]) for text in ticks)
-        return ticks[-1] if axis.get_scale() != "linear" else typeset.fixed(value / 10.0**power, places)
-
-    axis.set_major_formatter(tick)
+    axis.set_major_formatter(Ticks(axis, power))
     text = typeset.prefixed(unit, power)
     return f" [{text}]" if text else ""
 
