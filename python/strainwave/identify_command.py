@@ -33,12 +33,13 @@ def identify(
     """Find out what files of measurements are, and what gear they show.
 
     Tables of friction, torsion loops, logs of the drive in motion and records of two encoders, in any order: each file is told
-    what it seems to be and why, and fitted by itself. Every number is taken from the file that tells it best, and where files
-    disagree, both values are shown.
+    what it seems to be and why, and fitted by itself. Of files that agree about a number the mean is taken; where files
+    contradict each other, both values are shown.
     """
     import signal
 
     from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     from strainwave.files import gear_file
     from strainwave.files.writing import making, write_all, written
@@ -47,9 +48,18 @@ def identify(
     from strainwave.report.provenance import Provenance
 
     said = said_of(mapping, column, unit, constant, side, joint, kind)
-    with Console(stderr=True).status("reading") as status:
-        found = identified(gear, paths, mapping=said, progress=status.update)
-        status.update("report")
+    columns = (SpinnerColumn(), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("reading", total=len(paths))
+        done = -1
+
+        def turn(name: str) -> None:
+            nonlocal done
+            done += 1
+            bar.update(task, description=name, completed=min(done, len(paths)))
+
+        found = identified(gear, paths, mapping=said, progress=turn)
+        bar.update(task, description="report", completed=len(paths))
         files = identify_files(found) | {"gear.toml": gear_file.text(found.gear_set)}
         files["report.html"] = identify_report(found, Provenance.of_this_command(paths))
         heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -70,12 +80,12 @@ def _summary(found: Identified) -> Iterator[str]:
     width = max(len(_name(number)) for number in found.numbers)
     for number in found.numbers:
         told = number.told
-        yield f"  {_name(number):{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {number.source}"
+        yield f"  {_name(number):{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {number.taken_from}"
     for number in found.numbers:
         for other in number.contradicts:
-            value = number.others[other]
+            best, value = number.of_file(number.source), number.others[other]
             yield (
-                f"contradiction: {_name(number)} = {number.told.value:.4g} ± {number.told.sigma:.2g} {number.told.unit} in "
+                f"contradiction: {_name(number)} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} in "
                 f"{number.source}, {value.value:.4g} ± {value.sigma:.2g} in {other}"
             )
 

@@ -2,53 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
-from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion, regression
+from strainwave.identification.contact import breakaway, presliding
 from strainwave.identification.curves import curves_of, curves_of_orders
-from strainwave.identification.evidence.verdict import numbers
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.known import Known, TorqueConstant, with_torque
 from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
+from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.twin import Twin, twin
+from strainwave.identification.warmed import warmed
+from strainwave.messages import listed
 
 EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and friction explain less tells neither
 FRICTION = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law that has them
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
-UNUSED = {"ratio", "load_inertia", "load_torque", "speed", "temperature"}  # constants that a log is not fitted with
+UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
+EXACTLY = 1e-6  # relative: a number that a person gives is fitted as nearly as that
 ANGLES = ("input_angle", "output_angle")
-
-
-@dataclass(frozen=True)
-class Known:
-    """What is known before a file is fitted.
-
-    Attributes:
-        gear_set: the set, with what earlier files have told of it
-        friction: the recording of a friction table, if one was given
-        told: parts of the gear that earlier files have told
-        sigmas: standard deviation of the first number of friction and spring, as the file has it that tells the part
-    """
-
-    gear_set: GearSet
-    friction: Recording | None = None
-    told: frozenset[str] = frozenset()
-    sigmas: Mapping[str, float] = field(default_factory=dict)
-
-    def knows_better(self, part: str, told: Sequence[Told]) -> bool:
-        """Whether an earlier file tells a part of the gear better than this one."""
-        return part in self.told and self.sigmas.get(part, np.inf) <= _first_sigma(part, told)
 
 
 def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
@@ -57,46 +40,65 @@ def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
     Raises:
         ValueError: nothing can be found in it; says why
     """
-    if file.kind == "friction":
-        return _friction(file, known)
-    if file.kind == "torsion":
-        return _torsion(file, known)
-    if file.kind == "encoders":
-        return _encoders(file, known)
-    if file.kind == "log":
-        return _log(file, known)
-    raise ValueError("torque without motion tells orders alone: strainwave orders finds them")
+    of_kind: dict[Kind, Callable[[Recognised, Known], tuple[Finding, Known]]] = {
+        "friction": _friction,
+        "torsion": _torsion,
+        "encoders": _encoders,
+        "log": _log,
+        "presliding": presliding,
+        "breakaway": breakaway,
+    }
+    if file.kind not in of_kind:
+        raise ValueError("torque without motion tells orders alone: strainwave orders finds them")
+    return of_kind[file.kind](file, known)
 
 
 def _friction(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    table = with_torque(file, known.gear_set)
+    table, uncertain = with_torque(file, known.gear_set)
+    return friction_of(file, _unloaded(table, file, known.gear_set), uncertain, known)
+
+
+def _unloaded(table: Recording, file: Recognised, gear_set: GearSet) -> Recording:
+    """A table without the constant torque at the output that a person gave, and at the temperature that a person gave."""
+    if load := file.constants.get("load_torque", 0.0):
+        held = load if file.side == "output" else load / gear_set.gear.kinematics.ratio
+        table = table.with_column("torque", table.values("torque", "N.m") - held, "N.m")
+    if "temperature" in file.constants and "temperature" not in table:
+        table = table.with_column("temperature", np.full(len(table), file.constants["temperature"]), "K")
+    return table
+
+
+def friction_of(file: Recognised, table: Recording, uncertain: float, known: Known) -> tuple[Finding, Known]:
+    """What a table of friction tells.
+
+    Args:
+        file: that it came from
+        table: speed and torque, and what else friction may depend on
+        uncertain: standard deviation of the torque constant that its torques rest on, over its value [1]
+        known: before it
+    """
     found = twin(known.gear_set, friction=table, side=file.side, sources={"friction": file.path.name})
     finding = _of_twin(file, found)
+    finding = replace(finding, told=tuple(_as_uncertain(each, uncertain) for each in finding.told))
     if finding.refused or known.knows_better("friction_input", finding.told):
         return finding, known
     gear = known.gear_set.gear.replace(friction_input=found.gear_set.gear.friction_input)
     after = _with_gear(known, gear, found, {"friction_input"}, friction=table)
-    return finding, _judged(after, "friction_input", finding.told)
+    return finding, after.judged("friction_input", finding.told)
 
 
-def _first_sigma(part: str, told: Sequence[Told]) -> float:
-    """Standard deviation of the first number of a part; infinite where the file does not tell it."""
-    own = [each.sigma for each in told if each.path.startswith(f"gear.{part}.") and not each.why]
-    return own[0] if own else np.inf
+def _as_uncertain(told: Told, relative: float, beside: float = 0.0) -> Told:
+    """A number that rests on a torque constant: as uncertain as that, besides.
 
-
-def _judged(known: Known, part: str, told: Sequence[Told]) -> Known:
-    return replace(known, sigmas={**known.sigmas, part: _first_sigma(part, told)})
-
-
-def with_torque(file: Recognised, gear_set: GearSet) -> Recording:
-    """A friction table with the torque of the motor, where only its current was measured."""
-    if "torque" in file.recording:
-        return file.recording
-    constant = file.constants.get("torque_constant", getattr(gear_set.motor, "torque_constant", None))
-    if constant is None:
-        raise ValueError("it tells the current alone; give the torque constant of the motor, with --constant torque_constant=…")
-    return file.recording.with_column("torque", constant * file.recording["current"], "N.m")
+    Args:
+        told: with the standard deviation by the measurement alone
+        relative: standard deviation of the torque constant over its value [1]
+        beside: what is taken off a number that grows with the constant, as the inertia of the motor
+    """
+    if not told.unit.startswith(("N.m", "kg.m2")):
+        return told
+    common = relative * (abs(told.value) + beside)
+    return replace(told, sigma=float(np.hypot(told.sigma, common)), common=common)
 
 
 def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
@@ -108,7 +110,7 @@ def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     if finding.refused or known.knows_better("stiffness", finding.told):
         return finding, known
     gear = known.gear_set.gear.replace(**{part: getattr(found.gear_set.gear, part) for part in parts})
-    return finding, _judged(_with_gear(known, gear, found, parts), "stiffness", finding.told)
+    return finding, _with_gear(known, gear, found, parts).judged("stiffness", finding.told)
 
 
 def _of_twin(file: Recognised, found: Twin) -> Finding:
@@ -164,17 +166,7 @@ def _with_error(known: Known, found: TransmissionError, name: str) -> Known:
     by_order = {each.order: each for each in found.orders if each.significant and each.shaft != "output"}
     sigmas = {f"gear.kinematic_error.amplitude[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
     sigmas |= {f"gear.kinematic_error.phase[{i}]": by_order[order].phase_sigma for i, order in enumerate(law.order)}
-    return _with_parts(known, {"kinematic_error": law}, sigmas, name)
-
-
-def _with_parts(known: Known, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> Known:
-    """The set with parts of the gear that a file tells."""
-    gear, names = known.gear_set.gear.replace(**parts), tuple(f"gear.{part}." for part in parts)
-    sources = {path: entry for path, entry in known.gear_set.sources.items() if not path.startswith(names)}
-    for path in (path for path in numbers(gear) if path.startswith(names)):
-        told = path in sigmas and np.isfinite(sigmas[path])
-        sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
-    return replace(known, gear_set=replace(known.gear_set, gear=gear, sources=sources), told=known.told | set(parts))
+    return known.with_parts({"kinematic_error": law}, sigmas, name)
 
 
 def _orders(found: TransmissionError) -> Iterator[Told]:
@@ -202,7 +194,7 @@ class Taken(ComparedByFields):
         recording: with the torque in the sense of the motion
         remarks: what was assumed, put right or left out
         in_current: whether torques are in A, as the torque constant is not known
-        constant_given: whether a person told the torque constant with the file
+        said: numbers of the drive that a person gave with the file, by path
     """
 
     log: MotionLog
@@ -210,7 +202,7 @@ class Taken(ComparedByFields):
     recording: Recording
     remarks: tuple[str, ...]
     in_current: bool
-    constant_given: bool
+    said: Mapping[str, float]
 
 
 def log_of(file: Recognised, known: Known) -> Taken:
@@ -220,7 +212,10 @@ def log_of(file: Recognised, known: Known) -> Taken:
         ValueError: inertia, friction and gravity do not explain it
     """
     drive, remarks, in_current = _drive(file, known.gear_set)
-    recording = file.recording
+    recording = _loaded(file)
+    if not in_current and "current" in recording and "torque_constant" not in file.constants and known.gear_set.motor is None:
+        remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
+        recording = recording.select([name for name in recording.names if name != "current"])
     log = MotionLog.of(recording, drive)
     before = regression(log, drive)
     if before.reversed:
@@ -237,15 +232,34 @@ def log_of(file: Recognised, known: Known) -> Taken:
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         remarks.append(f"{spoilt_rows} samples of {log.effort} are outliers or clipped, and left out")
-    return Taken(log, drive, recording, tuple(remarks), in_current, "torque_constant" in file.constants)
+    said = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
+    return Taken(log, drive, recording, tuple(remarks), in_current, said)
 
 
 def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
+    """What a log tells along its motion, and, where it warms up, of friction over the temperature."""
+    warm, name = warmed(file), file.path.name
+    try:
+        finding, after = _along_motion(file, known)
+    except ValueError as error:
+        if warm is None:
+            raise
+        unused = f"not used along its motion: {error}"
+        finding, after = Finding(name, file, "friction over the temperature", (), np.nan, (*file.remarks, unused)), known
+        finding = replace(finding, curves=warm.curves)
+    if warm is None:
+        return finding, after
+    after, said = warm.known(after, name)
+    return replace(finding, told=(*finding.told, *warm.told), remarks=(*finding.remarks, *warm.remarks, *said)), after
+
+
+def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     taken = log_of(file, known)
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
     log = taken.log
-    best, *_ = fit_motion({file.path.name: log}, drive)
-    told = list(_of_motion(best, known.gear_set, taken))
+    priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
+    best, *_ = fit_motion({file.path.name: log}, drive, priors=priors)
+    told = list(_of_motion(best, taken, TorqueConstant.of(file, known.gear_set)))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
     if set(ANGLES) <= set(recording.names):
@@ -264,7 +278,7 @@ def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], na
     for part in ("friction_input", "friction_mesh"):
         law = getattr(gear, part)
         if part not in known.told and law != getattr(known.gear_set.gear, part):
-            known = _with_parts(known, {part: law}, sigmas, name)
+            known = known.with_parts({part: law}, sigmas, name)
     return known
 
 
@@ -272,7 +286,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     """The drive of a log, of the motor that the set or the person tells; remarks; and whether torques are in A."""
     constants, remarks, gear = file.constants, list[str](), gear_set.gear
     if unused := sorted(constants.keys() & UNUSED):
-        remarks.append(f"not used of a log: {', '.join(unused)}; what the set says is taken")
+        remarks.append(f"given, but not used of a log: {listed(unused)}")
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
     inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
@@ -290,31 +304,30 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current
 
 
-def _of_motion(best: MotionCandidate, gear_set: GearSet, taken: Taken) -> Iterator[Told]:
+def _loaded(file: Recognised) -> Recording:
+    """The recording, with a constant torque at the output that a person gave, beside what a model of the arm says."""
+    if "load_torque" not in file.constants:
+        return file.recording
+    own = file.recording["rigid_torque"] if "rigid_torque" in file.recording else np.zeros(len(file.recording))
+    return file.recording.with_column("rigid_torque", own + file.constants["load_torque"], "N.m")
+
+
+def _of_motion(best: MotionCandidate, taken: Taken, constant: TorqueConstant | None) -> Iterator[Told]:
     """The numbers of a log; each as uncertain as the torque constant, besides."""
     drive, in_current = taken.drive, taken.in_current
-    ratio, relative = drive.gear.kinematics.ratio, 0.0 if taken.constant_given else _of_constant(gear_set)
-    rotor = (drive.motor.inertia + drive.gear.input_inertia) * ratio**2
+    relative = 0.0 if constant is None or in_current else constant.relative
+    rotor = (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     for estimate in best.fit.estimates:
-        if estimate.path in nuisances or estimate.path in best.tied:
+        if estimate.path in nuisances or estimate.path in best.tied or estimate.path in taken.said:
             continue
-        size = abs(estimate.value) + (rotor if estimate.path == "load.inertia" else 0.0)
         of_torque = estimate.unit.startswith(("N.m", "kg.m2"))
-        sigma = float(np.hypot(estimate.sigma, relative * size if of_torque else 0.0))
-        untold = _untold(estimate, sigma, best)
-        unit = estimate.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad") if in_current else estimate.unit
         law = "in A" if in_current and of_torque else encoder if estimate.path == "load.gravity_phase" else ""
-        yield Told(estimate.path, unit, estimate.value, sigma, law, untold)
-
-
-def _of_constant(gear_set: GearSet) -> float:
-    """Relative uncertainty of the torque constant, as the set has it."""
-    entry, constant = gear_set.sources.get("motor.torque_constant"), getattr(gear_set.motor, "torque_constant", 0.0)
-    if entry is None or not constant:
-        return 0.0
-    return float(entry.uncertainty / constant if entry.uncertainty else entry.spread or 0.0)
+        told = Told(estimate.path, estimate.unit, estimate.value, estimate.sigma, law)
+        told = _as_uncertain(told, relative, rotor if estimate.path == "load.inertia" else 0.0)
+        unit = told.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad") if in_current else told.unit
+        yield replace(told, unit=unit, why=_untold(estimate, told.sigma, best))
 
 
 def _untold(estimate: Estimate, sigma: float, best: MotionCandidate) -> str:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.messages import listed
 
+Array = NDArray[np.float64]
 APART = 3.0  # standard deviations: two files contradict each other
+AGREE = 2.0  # standard deviations: of files that are not further apart the mean is taken
 
 
 @dataclass(frozen=True)
@@ -24,6 +28,7 @@ class Told:
         sigma: its standard deviation
         law: the law that it belongs to; numbers of different laws are not compared
         why: what speaks against it; empty where the file tells it
+        common: the part of `sigma` that all files share that rest on the torque constant of the motor
     """
 
     path: str
@@ -32,6 +37,12 @@ class Told:
     sigma: float
     law: str
     why: str = ""
+    common: float = 0.0
+
+    @property
+    def own(self) -> float:
+        """The part of the standard deviation that no other file shares."""
+        return float(np.sqrt(max(self.sigma**2 - self.common**2, 0.0)))
 
 
 @dataclass(frozen=True)
@@ -47,6 +58,7 @@ class Finding:
         remarks: what to know of it, in short sentences
         refused: why nothing was found; empty where something was
         same_as: the file that shows the same measurement; empty where none does
+        part_of: the table that it is one point of, with others; empty where it stands for itself
         curves: measured beside modelled, as `curves` of this package makes them; None where nothing was fitted
     """
 
@@ -58,6 +70,7 @@ class Finding:
     remarks: tuple[str, ...] = ()
     refused: str = ""
     same_as: str = ""
+    part_of: str = ""
     curves: Recording | None = None
 
 
@@ -66,22 +79,40 @@ class Number:
     """A number of the gear or its drive as all files tell it.
 
     Attributes:
-        told: as the file has it that tells it best
-        source: the name of that file
+        told: as it is taken: the mean of the files that agree, or as the one file has it that tells it best
+        source: the name of the file that tells it best
         others: what other files say of it, by name
         contradicts: names of files that say something else, beyond three standard deviations of both
+        best: as the file has it that tells it best
+        mean_of: names of the files that the mean is taken of, the best first; one where there is no mean
+        widened: by what the standard deviation of the mean is multiplied, as files scatter more than they should [1]
     """
 
     told: Told
     source: str
     others: Mapping[str, Told] = field(default_factory=dict)
     contradicts: tuple[str, ...] = ()
+    best: Told | None = None
+    mean_of: tuple[str, ...] = ()
+    widened: float = 1.0
+
+    @property
+    def taken_from(self) -> str:
+        """The files that it rests on, in words."""
+        if len(self.mean_of) < 2:
+            return self.source
+        return f"mean of {listed(self.mean_of)}"
+
+    def of_file(self, name: str) -> Told:
+        """As one file tells it."""
+        return (self.best or self.told) if name == self.source else self.others[name]
 
 
 def numbers_of(findings: Sequence[Finding]) -> tuple[Number, ...]:
-    """Every number told, from the file that tells it best; files that show one measurement count once.
+    """Every number told: the mean of the files that agree about it; files that show one measurement count once.
 
-    Nothing is averaged: two files that disagree show that one of them, or the model, is wrong.
+    Files that lie further from the best one than two standard deviations take no part in the mean: one of them, or the model,
+    is wrong.
     """
     by_path: dict[tuple[str, ...], dict[str, Told]] = {}
     for finding in findings:
@@ -99,13 +130,64 @@ def _number(told: Mapping[str, Told], copies: set[str]) -> Number:
     best = min(own, key=lambda name: own[name].sigma)
     others = {name: each for name, each in told.items() if name != best}
     apart = [name for name, each in others.items() if name not in copies and distance(each, told[best]) > APART]
-    return Number(told[best], best, others, tuple(apart))
+    agree = [name for name in others if name in own and distance(others[name], told[best]) <= AGREE]
+    taken, widened = mean_of([told[best], *(others[name] for name in agree)])
+    return Number(taken, best, others, tuple(apart), told[best], (best, *agree), widened)
+
+
+def mean_of(told: Sequence[Told]) -> tuple[Told, float]:
+    """The weighted mean of a number as several files tell it, the best first, and by what its deviation was widened.
+
+    It is the linear mean of least variance (Aitken1935): what is uncertain of the torque constant is common to all files that
+    rest on it, and does not become smaller with their number. No file counts less than nothing. Where files scatter more than
+    their standard deviations say, that of the mean is larger by the root of chi squared over its degrees of freedom
+    (Birge1932).
+
+    >>> one, other = (Told("load.inertia", "kg.m2", value, 0.05, "", common=0.04) for value in (1.0, 1.03))
+    >>> mean, widened = mean_of([one, other])
+    >>> round(mean.value, 3), round(mean.sigma, 4), widened
+    (1.015, 0.0453, 1.0)
+    """
+    first, own = told[0], np.array([each.own for each in told])
+    if len(told) == 1 or own.min() <= 0.0:
+        return first, 1.0
+    off, common = np.array([_off(each, first) for each in told]), np.array([each.common for each in told])
+    weight = _weights(own, common)
+    mean = float(weight @ off)
+    left = np.linalg.solve(_covariance(own, common), off - mean)
+    widened = max(1.0, float(np.sqrt((off - mean) @ left / (len(told) - 1))))
+    alone, shared = widened * float(np.linalg.norm(weight * own)), float(weight @ common)
+    return replace(first, value=first.value + mean, sigma=float(np.hypot(alone, shared)), common=shared), widened
+
+
+def _weights(own: Array, common: Array) -> Array:
+    """Weights of least variance that are not negative, of numbers with parts of their own and a part in common."""
+    counted = np.ones(len(own), bool)
+    while True:
+        found = np.linalg.solve(_covariance(own[counted], common[counted]), np.ones(counted.sum()))
+        if (found > 0.0).all():
+            break
+        counted[np.flatnonzero(counted)[found <= 0.0]] = False
+    weight = np.zeros(len(own))
+    weight[counted] = found / found.sum()
+    return weight
+
+
+def _covariance(own: Array, common: Array) -> Array:
+    """Of numbers with parts of their own and a part in common, shape (n, n)."""
+    return np.diag(own**2) + np.outer(common, common)
 
 
 def distance(one: Told, other: Told) -> float:
-    """How far two files are apart in a number, in standard deviations of their difference."""
+    """How far two files are apart in a number, in standard deviations of their difference; what they share is no difference."""
+    off = _off(one, other)
+    sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
+    return abs(off) / sigma if sigma > 0.0 else (0.0 if off == 0.0 else np.inf)
+
+
+def _off(one: Told, other: Told) -> float:
+    """The difference of two values; of phases, which begin anew with each turn, the shorter way round."""
     off = one.value - other.value
     if ".phase" in one.path or one.path.endswith("_phase"):
         off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
-    sigma = float(np.hypot(one.sigma, other.sigma))
-    return abs(off) / sigma if sigma > 0.0 else (0.0 if off == 0.0 else np.inf)
+    return off

@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+from strainwave import kinematics
+from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
+from strainwave.identification import steady_runs
 from strainwave.identification.duplicates import same_as
-from strainwave.identification.each_file import Known, fitted
+from strainwave.identification.each_file import fitted
 from strainwave.identification.findings import Finding, Number, numbers_of
+from strainwave.identification.known import Known
+from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.steady_runs import Run, run_of
+
+# What is needed to understand a file comes before it: friction before a loop that has it inside, both before logs, and what
+# happens at rest after what tells friction that slides.
+TURNS: dict[Kind, int] = {
+    "friction": 0, "effort": 0, "torsion": 2, "encoders": 4, "log": 5, "presliding": 6, "breakaway": 7,
+}  # fmt: skip
+RUNS = 1  # records at constant speed, all together
+ALIKE = 1e-9  # relative: two ratios that are one
 
 
 @dataclass(frozen=True)
@@ -20,9 +35,9 @@ class Identified:
 
     Attributes:
         start: the set it started from
-        findings: each file with what it tells, in the order given
-        numbers: every number told, from the file that tells it best
-        gear_set: the set with the laws of the files that tell them
+        findings: each file with what it tells, in the order given; then what several files tell only together
+        numbers: every number told: the mean of the files that agree about it
+        gear_set: the set with the laws of the files that tell them best, and their numbers
     """
 
     start: GearSet
@@ -42,7 +57,8 @@ def identify(
 
     Args:
         start: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
-        files: tables of friction, torsion loops, logs of the drive, records of two encoders, in any format and order
+        files: tables of friction, torsion loops, logs of the drive, records of two encoders, records at constant speed,
+            friction at rest, in any format and order
         mapping: what a person says of a file, where it says it not itself
         progress: called with the name of each file as its turn comes
 
@@ -54,24 +70,79 @@ def identify(
     """
     if not files:
         raise ValueError("identify needs at least one file of measurements")
-    start = start if isinstance(start, GearSet) else GearSet.read(start)
     read = [_recognised(Path(path), mapping) for path in files]
     recognised = [each for each in read if isinstance(each, Recognised)]
-    copies, known, findings = same_as(recognised), Known(start), dict[Path, Finding]()
-    for file in sorted(recognised, key=_turn):
-        progress(file.path.name)
-        copy = copies.get(str(file.path), "")
-        try:
-            found, after = fitted(file, known)
-        except (ValueError, FloatingPointError) as error:
-            found, after = Finding(file.path.name, file, refused=str(error)), known
-        findings[file.path] = found
-        known = known if copy else after
-    ordered = _named_apart([each if isinstance(each, Finding) else findings[each.path] for each in read], files, copies)
-    numbers = numbers_of(ordered)
+    start = _with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
+    found = _Found(Known(start), same_as(recognised))
+    runs = list(found.runs(recognised))
+    steady = {run.file.path for run in runs}
+    for turn in range(max(TURNS.values()) + 1):
+        if turn == RUNS and runs:
+            progress(steady_runs.JOINED)
+            found.take_runs(runs)
+        for file in recognised:
+            if file.path not in steady and file.path not in found.findings and TURNS[file.kind] == turn:
+                progress(file.path.name)
+                found.take(file)
+    found.take_turns(runs)
+    own = [each if isinstance(each, Finding) else found.findings[each.path] for each in read]
+    findings = (*_named_apart(own, files, found.copies), *found.together)
+    numbers = numbers_of(findings)
     if not numbers:
-        raise ValueError("no file tells anything of the gear: " + "; ".join(f"{each.name}: {each.refused}" for each in ordered))
-    return Identified(start, ordered, numbers, known.gear_set)
+        reasons = "; ".join(f"{each.name}: {each.refused}" for each in findings if each.refused)
+        raise ValueError(f"no file tells anything of the gear: {reasons or 'nothing in them is told with certainty'}")
+    return Identified(start, findings, numbers, _with_means(found.known.gear_set, numbers))
+
+
+class _Found:
+    """What is found, file by file."""
+
+    def __init__(self, known: Known, copies: Mapping[str, str]) -> None:
+        self.known, self.copies = known, copies
+        self.findings = dict[Path, Finding]()
+        self.together = list[Finding]()
+
+    def take(self, file: Recognised) -> None:
+        """Fits a file; one that shows what another one shows tells its numbers, and changes nothing of the gear."""
+        before = _with_ratio(self.known, file)
+        try:
+            found, after = fitted(file, before)
+        except (ValueError, FloatingPointError) as error:
+            found, after = Finding(file.path.name, file, refused=str(error)), before
+        self.findings[file.path] = found
+        if str(file.path) not in self.copies:
+            self.known = _with_kinematics(after, self.known.gear_set)
+
+    def runs(self, files: Sequence[Recognised]) -> Iterator[Run]:
+        """Those files that are records at constant speed; copies of others left out."""
+        for file in files:
+            if file.kind in ("effort", "log"):
+                try:
+                    run = run_of(file, _with_ratio(self.known, file))
+                except ValueError as error:
+                    self.findings[file.path] = Finding(file.path.name, file, refused=str(error))
+                    continue
+                if run is not None:
+                    self.findings[file.path] = steady_runs.of_run(run)
+                    if str(file.path) not in self.copies:
+                        yield run
+
+    def take_runs(self, runs: Sequence[Run]) -> None:
+        """The friction table that records at constant speed are together."""
+        try:
+            table, self.known = steady_runs.joined(runs, self.known)
+        except (ValueError, FloatingPointError) as error:
+            table = Finding(steady_runs.JOINED, refused=str(error))
+        self.together.append(table)
+
+    def take_turns(self, runs: Sequence[Run]) -> None:
+        """Friction over the angle, where records at constant speed tell it."""
+        try:
+            if (found := steady_runs.over_the_angle(runs, self.known)) is not None:
+                self.together.append(found[0])
+                self.known = found[1]
+        except (ValueError, FloatingPointError) as error:
+            self.together.append(Finding("friction over the angle", refused=str(error)))
 
 
 def _named_apart(findings: Sequence[Finding], files: Sequence[str | Path], copies: Mapping[str, str]) -> tuple[Finding, ...]:
@@ -92,7 +163,73 @@ def _recognised(path: Path, mapping: Callable[[Path], FileMapping] | None) -> Re
         return Finding(path.name, refused=str(error).removeprefix(f"{path}: "))
 
 
-def _turn(file: Recognised) -> int:
-    """What is needed to understand a file comes before it: friction before a loop that has it inside, both before logs."""
-    first = {"friction": 0, "torsion": 1, "encoders": 3, "log": 4, "effort": 5}[file.kind]
-    return first + (file.kind == "torsion" and "input_angle" in file.recording)
+# ---- The ratio ---------------------------------------------------------------------------------------------------------
+
+
+def _with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
+    """The set with the ratio that a person gave with all files."""
+    ratios = {file.constants.get("ratio") for file in files}
+    if len(ratios) != 1 or (ratio := ratios.pop()) is None:
+        return start
+    gear = _geared(start.gear, ratio)
+    if gear is start.gear:
+        return start
+    sources = {path: entry for path, entry in start.sources.items() if not path.startswith("gear.kinematics.")}
+    numbers = [field["name"] for field in gear.kinematics.fields if field["kind"] != "choice"]
+    given = {f"gear.kinematics.{name}": Entry("ratio given with the files") for name in numbers}
+    return replace(start, gear=gear, sources=sources | given)
+
+
+def _with_ratio(known: Known, file: Recognised) -> Known:
+    """What is known, with the ratio that a person gave with this file."""
+    if "ratio" not in file.constants:
+        return known
+    gear = _geared(known.gear_set.gear, file.constants["ratio"])
+    return known if gear is known.gear_set.gear else replace(known, gear_set=replace(known.gear_set, gear=gear))
+
+
+def _with_kinematics(known: Known, of: GearSet) -> Known:
+    if known.gear_set.gear.kinematics == of.gear.kinematics:
+        return known
+    gear = known.gear_set.gear.replace(kinematics=of.gear.kinematics)
+    return replace(known, gear_set=replace(known.gear_set, gear=gear))
+
+
+def _geared(gear: Any, ratio: float) -> Any:
+    """The gear with another ratio; its output turns the same way as before."""
+    if abs(abs(ratio) - abs(gear.kinematics.ratio)) < ALIKE * abs(ratio):
+        return gear
+    return gear.replace(kinematics=_kinematics(ratio, gear.kinematics.ratio < 0.0))
+
+
+def _kinematics(ratio: float, backwards: bool) -> Any:
+    """A strain wave gear of this ratio, where whole teeth give it; else what has the ratio alone."""
+    size = abs(ratio)
+    if abs(size - round(size)) > ALIKE * size or round(size) < 2:
+        return kinematics.PlainRatio(reduction=size)
+    turns = 2 * round(size)  # two teeth fewer on the flexspline
+    if backwards or ratio < 0.0:
+        return kinematics.StrainWave(flexspline_teeth=turns, circular_spline_teeth=turns + 2, fixed="circular_spline")
+    return kinematics.StrainWave(flexspline_teeth=turns - 2, circular_spline_teeth=turns, fixed="flexspline")
+
+
+# ---- Means -------------------------------------------------------------------------------------------------------------
+
+
+def _with_means(gear_set: GearSet, numbers: Sequence[Number]) -> GearSet:
+    """The set with the means of files that agree, where it has the law that the number belongs to."""
+    for number in numbers:
+        part, _, name = number.told.path.removeprefix("gear.").partition(".")
+        if len(number.mean_of) < 2 or not number.told.path.startswith("gear.") or "[" in name or " " in name:
+            continue
+        law = getattr(gear_set.gear, part)
+        entry = gear_set.sources.get(number.told.path)
+        if number.told.law not in ("", law.name) or entry is None or number.source not in entry.source:
+            continue
+        try:
+            gear = gear_set.gear.replace(**{part: law.replace(**{name: number.told.value})})
+        except (ValueError, TypeError):  # a mean that the law does not allow beside its other numbers
+            continue
+        source = Entry(source=f"identified from the {number.taken_from}", uncertainty=number.told.sigma)
+        gear_set = replace(gear_set, gear=gear, sources={**gear_set.sources, number.told.path: source})
+    return gear_set

@@ -10,11 +10,15 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.friction import fit_friction, ranking
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion
+from strainwave.identification.candidates.presliding import fit_presliding
 from strainwave.identification.candidates.torsion.ranking import rank_loop
-from strainwave.identification.each_file import Known, log_of, with_torque
+from strainwave.identification.contact import at_input
+from strainwave.identification.each_file import log_of
 from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.covariance import correlation_length
+from strainwave.identification.known import Known, with_torque
 from strainwave.identification.reading.recognise import Recognised
 
 
@@ -46,7 +50,7 @@ def rank(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
 
     Args:
         start: the set to start from
-        file: a table of friction, a torsion loop, or a log
+        file: a table of friction, a torsion loop, a presliding loop, or a log
 
     Raises:
         ValueError: the file is none of these, or cannot be fitted
@@ -57,11 +61,15 @@ def rank(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
         return _loops(start, file)
     if file.kind == "log":
         return _logs(start, file)
-    raise ValueError("only tables of friction, torsion loops and logs have models to rank; strainwave orders finds its orders")
+    if file.kind == "presliding":
+        return _at_rest(start, file)
+    raise ValueError(
+        "only tables of friction, torsion loops, presliding loops and logs have models to rank; strainwave orders finds orders"
+    )
 
 
 def _frictions(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
-    recording = with_torque(file, start)
+    recording, _ = with_torque(file, start)
     table = FrictionTable.of_output(recording, start.gear) if file.side == "output" else FrictionTable.of(recording)
     found = fit_friction(table, start.gear)
     order = np.argsort(table.speed, kind="stable")
@@ -88,6 +96,18 @@ def _logs(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
     size = float(np.std(found.log.measured))
     unit = found.log.units[0]
     return tuple(_of_motion(each, size, unit) for each in fit_motion({file.path.name: found.log}, found.drive))
+
+
+def _at_rest(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
+    loop = PreslidingLoop.of(at_input(file, Known(start))[0])
+    begun = np.arange(len(loop.angle)) >= loop.turns[0]
+    return tuple(
+        Ranked(
+            each.name, len(each.estimates), each.error, np.nan, "N.m",
+            correlation_length((loop.torque - each.predicted)[begun]), np.nan,
+        )
+        for each in fit_presliding(loop)
+    )  # fmt: skip
 
 
 def _of_motion(each: MotionCandidate, size: float, unit: str) -> Ranked:

@@ -15,7 +15,7 @@ from strainwave import Drive
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.evidence import verdict
-from strainwave.identification.findings import APART, Finding, Number, Told, distance
+from strainwave.identification.findings import AGREE, APART, Finding, Number, Told, distance
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.channels import KINDS
 from strainwave.report import figures
@@ -28,6 +28,7 @@ from strainwave.report.typeset import fixed, number, quantity, uncertain, unit
 if TYPE_CHECKING:
     from markupsafe import Markup
 
+WIDER = 1.05  # times: a mean that is wider by less needs no word
 COLUMNS = (
     "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
     "not_told_because",
@@ -52,6 +53,7 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
             "counts": _counts(found),
             "contradictions": [_contradiction(each, other) for each in found.numbers for other in each.contradicts],
             "apart": number(APART),
+            "agree": number(AGREE),
             "refused": [(each.name, each.refused) for each in found.findings if each.refused],
             "files": [_file(each, anchors[id(each)]) for each in found.findings],
             "numbers": [_number(each, found) for each in found.numbers],
@@ -72,12 +74,15 @@ def _counts(found: Identified) -> str:
     """How many files came to what: "5 files: 3 tell 17 numbers, 1 shows what another one shows, 1 is refused"."""
     refused = sum(bool(each.refused) for each in found.findings)
     copies = sum(bool(each.same_as) and not each.refused for each in found.findings)
-    telling = sum(_tells(each) and not each.same_as for each in found.findings)
-    files, numbers = len(found.findings), len(found.numbers)
+    points = sum(bool(each.part_of) for each in found.findings)
+    given = [each for each in found.findings if each.recognised is None or each.recognised.columns]  # no table of several files
+    telling = sum(_tells(each) and not each.same_as for each in given)
+    files, numbers = len(given), len(found.numbers)
     parts = [f"{telling} {'tells' if telling == 1 else 'tell'} {numbers} {'number' if numbers == 1 else 'numbers'}"]
     for count, one, several in (
         (copies, "shows what another one shows", "show what another one shows"),
-        (files - telling - copies - refused, "tells none", "tell none"),
+        (points, "is a point of a table of several files", "are points of a table of several files"),
+        (files - telling - copies - refused - points, "tells none", "tell none"),
         (refused, "is refused", "are refused"),
     ):
         parts += [f"{count} {one if count == 1 else several}"] if count else []
@@ -89,16 +94,16 @@ def _tells(finding: Finding) -> bool:
 
 
 def _contradiction(each: Number, other: str) -> dict[str, str]:
-    told = each.others[other]
+    best, told = each.of_file(each.source), each.others[other]
     return {
-        "title": name_of(each.told),
-        "path": each.told.path,
-        "unit": unit(each.told.unit),
-        "taken": uncertain(each.told.value, each.told.sigma),
+        "title": name_of(best),
+        "path": best.path,
+        "unit": unit(best.unit),
+        "taken": uncertain(best.value, best.sigma),
         "source": each.source,
         "value": uncertain(told.value, told.sigma),
         "other": other,
-        "distance": _sigmas(distance(each.told, told)),
+        "distance": _sigmas(distance(best, told)),
     }
 
 
@@ -122,6 +127,7 @@ def _file(finding: Finding, anchor: str) -> dict[str, Any]:
         "error": f"{number(100.0 * finding.error, 2)} %" if np.isfinite(finding.error) else "",
         "told": sum(not each.why for each in finding.told),
         "same_as": finding.same_as,
+        "part_of": finding.part_of,
         "refused": finding.refused,
         "remarks": finding.remarks,
     }
@@ -202,23 +208,26 @@ def _options(field: dict[str, Any]) -> list[Any]:
 
 def _number(each: Number, found: Identified) -> dict[str, Any]:
     told, same_as = each.told, {finding.name: finding.same_as for finding in found.findings}
+    files = [each.source, *each.others] if len(each.mean_of) > 1 else list(each.others)
     return {
         "path": told.path,
         "name": name_of(told),
         "law": told.law if told.law.startswith(("in ", "of ")) else "",
         "unit": unit(told.unit),
         "value": uncertain(told.value, told.sigma),
-        "source": each.source,
+        "source": each.source if len(each.mean_of) < 2 else f"the mean of {len(each.mean_of)} files",
+        "widened": number(each.widened, 2) if each.widened > WIDER else "",
         "start": _start(found.start, told),
         "others": [
             {
                 "file": name,
-                "value": uncertain(other.value, other.sigma),
-                "distance": _sigmas(distance(told, other)),
-                "same_as": same_as[name],
+                "value": uncertain(each.of_file(name).value, each.of_file(name).sigma),
+                "distance": "" if name == each.source else _sigmas(distance(each.of_file(each.source), each.of_file(name))),
+                "in_mean": len(each.mean_of) > 1 and name in each.mean_of,
+                "same_as": same_as.get(name, ""),
                 "contradicts": name in each.contradicts,
             }
-            for name, other in each.others.items()
+            for name in files
         ],
     }
 
@@ -294,14 +303,18 @@ def _is_phase(told: Told) -> bool:
 
 
 def _rows(each: Number, copies: set[str]) -> Iterator[plots.Row]:
-    taken, phase = each.told, _is_phase(each.told)
+    taken, phase, mean = each.told, _is_phase(each.told), len(each.mean_of) > 1
     scale = 1.0 if phase else abs(taken.value)  # a phase has no size: of it, 1 rad is 100 %
-    yield plots.Row(each.source, 0.0, 100.0 * taken.sigma / scale, "value taken")
-    for name, other in each.others.items():
+    title = f"mean of {len(each.mean_of)} files" if mean else each.source
+    yield plots.Row(title, 0.0, 100.0 * taken.sigma / scale, "value taken")
+    for name in [each.source, *each.others] if mean else each.others:
+        other = each.of_file(name)
         off = other.value - taken.value
         if phase:
             off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
         look = "contradicts" if name in each.contradicts else "copy of another" if name in copies else "agrees"
+        if look == "agrees" and mean and name not in each.mean_of:
+            look = "not in the mean"
         yield plots.Row(name, 100.0 * off / scale, 100.0 * other.sigma / scale, look)
 
 
@@ -327,8 +340,11 @@ def _results(found: Identified) -> dict[str, Any]:
                 **_told_results(each.told),
                 "name": name_of(each.told),
                 "file": each.source,
+                "mean_of": each.mean_of if len(each.mean_of) > 1 else [],
+                "widened": each.widened,
+                "best": _told_results(each.of_file(each.source)),
                 "others": [
-                    {"file": name, **_told_results(other), "sigmas_apart": distance(each.told, other)}
+                    {"file": name, **_told_results(other), "sigmas_apart": distance(each.of_file(each.source), other)}
                     for name, other in each.others.items()
                 ],
                 "contradicts": each.contradicts,
@@ -355,6 +371,7 @@ def _file_results(finding: Finding) -> dict[str, Any]:
         "model": finding.model,
         "error_on_data_held_out": finding.error,
         "same_as": finding.same_as or None,
+        "part_of": finding.part_of or None,
         "refused": finding.refused or None,
         "remarks": finding.remarks,
         "told": [{**_told_results(each), "not_told_because": each.why or None} for each in finding.told],
@@ -362,17 +379,21 @@ def _file_results(finding: Finding) -> dict[str, Any]:
 
 
 def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
-    """What each file says of each number, the value taken first; then what files do not tell."""
+    """What each file says of each number, the best first, and their mean; then what files do not tell."""
     copies = {finding.name for finding in found.findings if finding.same_as}
     for each in found.numbers:
-        for name, told in {each.source: each.told, **each.others}.items():
+        best, mean = each.of_file(each.source), each.mean_of if len(each.mean_of) > 1 else ()
+        for name in (each.source, *each.others):
+            told = each.of_file(name)
             yield _told_results(told) | {
                 "file": name,
-                "taken": "yes" if name == each.source else "no",
+                "taken": "in the mean" if name in mean else "yes" if name == each.source else "no",
                 "same_measurement": "yes" if name in copies else "no",
-                "sigmas_apart": distance(each.told, told),
+                "sigmas_apart": distance(best, told),
                 "contradicts": "yes" if name in each.contradicts else "no",
             }
+        if mean:
+            yield _told_results(each.told) | {"file": each.taken_from, "taken": "yes"}
     for finding in found.findings:
         for told in finding.told:
             if told.why:

@@ -24,11 +24,13 @@ POINTS = 600  # of a loop that are drawn, at most
 GAP = 2.5  # median intervals: over a longer one no line is drawn
 BLOCKS = 200  # of a band over time
 ROW = 0.19  # inches that a row of a comparison takes
+LOOPS = {"twist": "twist", "small_angle": "angle of the input"}  # what is drawn as a loop, and its name
 LONGEST = 22  # letters of a file's name that stand beside a drawing
 SEEN = 0.8  # of the intervals that are drawn whole; longer ones reach the edge
 LOOKS = {  # of a file in a comparison: mark, colour, whether filled
     "value taken": ("o", "measured", True),
     "agrees": ("o", "ink", True),
+    "not in the mean": ("s", "muted", True),
     "copy of another": ("o", "muted", False),
     "contradicts": ("D", "model", True),
 }
@@ -124,8 +126,8 @@ def file_figure(finding: Finding, name: str) -> str:
 
     def draw(figure: Figure) -> None:
         over = curves.names[0]
-        whole, left = figure.subplots(2, 1, sharex=over != "twist", height_ratios=(2.2, 1.0))
-        draw_file = {"speed": _table, "twist": _loop}.get(over, _series)
+        whole, left = figure.subplots(2, 1, sharex=over not in LOOPS, height_ratios=(2.2, 1.0))
+        draw_file = {"speed": _table, "twist": _loop, "small_angle": _loop, "temperature": _warming}.get(over, _series)
         draw_file(whole, left, curves, _words(finding))
         figures.legend(figure, whole)
 
@@ -148,6 +150,8 @@ def _words(finding: Finding) -> str:
     if over == "twist":
         at_input = finding.recognised is not None and "input_angle" in finding.recognised.recording
         return "torque, referred to the output" if at_input else "torque at the output"
+    if over == "small_angle":
+        return "torque at the input"
     return channel.replace("_", " ")
 
 
@@ -168,8 +172,9 @@ def _table(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
 
 
 def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
-    """Torque over twist, as points: samples are left out behind reversals. Below, in the order measured."""
-    twist, torque = curves["twist"], curves.names[1]
+    """Torque over twist or angle, as points: samples are left out behind reversals. Below, in the order measured."""
+    over, torque = curves.names[:2]
+    twist = curves[over]
     rows = np.unique(np.linspace(0, len(twist) - 1, POINTS).astype(int))
     whole.plot(twist[rows], curves[torque][rows], "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
     whole.plot(twist[rows], curves["modelled"][rows], "o", color=LIGHT["model"], markersize=1.2, label="model")
@@ -177,8 +182,21 @@ def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
     figures.residual_curve(left, point, residual, LIGHT["ink"])
     _bands(left, point, residual, _sigma(curves))
     _held_out((left,), point, curves)
-    figures.label_axes(whole, words, curves.unit(torque), "twist" + words.removeprefix("torque"), "rad")
+    side = words.removeprefix("torque") if over == "twist" else ""
+    figures.label_axes(whole, words, curves.unit(torque), LOOPS[over] + side, "rad")
     figures.label_axes(left, "measured − modelled", curves.unit(torque), "point compared, in the order measured", "1")
+
+
+def _warming(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+    """Means of the friction over the temperature, and the line through all samples."""
+    over, channel = curves.names[:2]
+    celsius, residual = curves.values(over, "degC"), residual_of(curves)
+    whole.plot(celsius, curves[channel], "o", color=LIGHT["measured"], label="means of classes")
+    whole.plot(celsius, curves["modelled"], color=LIGHT["model"], label="line through all samples")
+    figures.residual_curve(left, celsius, residual, LIGHT["ink"])
+    _bands(left, celsius, residual, None)
+    figures.label_axes(whole, words, curves.unit(channel))
+    figures.label_axes(left, "means − line", curves.unit(channel), "temperature", "degC")
 
 
 def _series(whole: Axes, left: Axes, curves: Recording, words: str) -> None:

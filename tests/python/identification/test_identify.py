@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.findings import Finding, Told, distance, numbers_of
+from hypothesis import given
+from hypothesis import strategies as st
+from strainwave.identification.findings import Finding, Told, distance, mean_of, numbers_of
 from strainwave.identification.identify import Identified, identify
 
 from tests.python.identification.candidates.test_motion import TRUTH, record
@@ -84,12 +86,53 @@ def test_nothing_at_all_is_refused_with_the_reasons(tmp_path: Path) -> None:
         identify("hfuc-20-80", [])
 
 
-def test_two_files_far_apart_contradict_each_other_and_nothing_is_averaged() -> None:
-    def finding(name: str, value: float, sigma: float) -> Finding:
-        return Finding(name, told=(Told("gear.friction_input.coulomb", "N.m", value, sigma, ""),))
+def finding(name: str, value: float, sigma: float, common: float = 0.0) -> Finding:
+    return Finding(name, told=(Told("gear.friction_input.coulomb", "N.m", value, sigma, "", common=common),))
 
+
+def test_two_files_far_apart_contradict_each_other_and_only_those_that_agree_are_averaged() -> None:
     (number,) = numbers_of([finding("a", 0.05, 1e-3), finding("b", 0.06, 2e-3), finding("c", 0.051, 1e-2)])
-    assert (number.told.value, number.source, number.contradicts) == (0.05, "a", ("b",))
+    assert (number.source, number.contradicts, number.mean_of) == ("a", ("b",), ("a", "c"))
+    assert number.told.value == pytest.approx((0.05 * 1e6 + 0.051 * 1e4) / (1e6 + 1e4))
+    assert number.told.sigma == pytest.approx((1e6 + 1e4) ** -0.5)
+    assert number.of_file("a").value == 0.05
+    assert number.taken_from == "mean of a, c"
+
+
+def test_files_that_scatter_more_than_they_say_widen_the_mean() -> None:
+    near = [finding(name, value, 1e-3) for name, value in (("a", 0.05), ("b", 0.0519), ("c", 0.0481))]
+    (number,) = numbers_of(near)
+    assert number.mean_of == ("a", "b", "c")
+    assert number.widened == pytest.approx(1.9)
+    assert number.told.sigma == pytest.approx(1.9e-3 / 3**0.5)
+
+
+@given(
+    own=st.lists(st.floats(1e-3, 1.0), min_size=2, max_size=5),
+    common=st.floats(0.0, 1.0),
+    value=st.floats(-10.0, 10.0),
+)
+def test_what_files_share_is_no_smaller_in_their_mean(own: list[float], common: float, value: float) -> None:
+    told = [Told("load.inertia", "kg.m2", value, float(np.hypot(each, common)), "", common=common) for each in own]
+    mean, widened = mean_of(told)
+    assert mean.value == pytest.approx(value)
+    assert widened == 1.0
+    expected = np.hypot(np.sum(np.power(own, -2.0)) ** -0.5, common)  # independent parts, and the common one once
+    assert mean.sigma == pytest.approx(expected, rel=1e-6)
+
+
+def test_means_hold_the_truth_as_often_as_they_say() -> None:
+    random, off = np.random.default_rng(4), []
+    for _ in range(2000):
+        shared = 0.02 * random.standard_normal()
+        told = [
+            Told("x", "N.m", 1.0 + shared + own * random.standard_normal(), float(np.hypot(own, 0.02)), "", common=0.02)
+            for own in (0.01, 0.03)
+        ]
+        told.append(Told("x", "N.m", 1.0 + 0.02 * random.standard_normal(), 0.02, ""))
+        mean, _ = mean_of(told)
+        off.append((mean.value - 1.0) / mean.sigma)
+    assert 0.85 < float(np.std(off)) < 1.05  # a little wide, as scatter can only widen
 
 
 def test_phases_a_turn_apart_are_equal() -> None:

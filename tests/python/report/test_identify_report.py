@@ -182,9 +182,12 @@ def test_files_hold_every_number_to_the_last_digit(first: float, second: float, 
     ]  # fmt: skip
     assert float(rows[1]["sigmas_apart"]) == pytest.approx(abs(first - second) / (np.sqrt(5.0) * sigma))
     assert rows[1]["same_measurement"] == ("yes" if same else "no")
-    assert rows[2]["not_told_because"] == "noise"
+    assert rows[-1]["not_told_because"] == "noise"
     results = json.loads(made["results.json"])
-    assert results["numbers"][0]["value"] == first
+    assert results["numbers"][0]["best"]["value"] == first
+    agree = not same and abs(first - second) <= 2.0 * np.sqrt(5.0) * sigma
+    assert bool(results["numbers"][0]["mean_of"]) == agree
+    assert (rows[2]["taken"] == "yes") == agree
     assert results["numbers"][0]["others"][0]["value"] == second
     assert results["numbers"][0]["contradicts"] == ["b.csv"][: rows[1]["contradicts"] == "yes"]
 

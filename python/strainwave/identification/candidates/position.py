@@ -38,12 +38,16 @@ class PositionFit(ComparedByFields):
         law: the friction found, valid over the angles measured
         estimates: its numbers, as `quadratic` and `cosine[0]`, by least squares over all samples
         residual: measured less fitted friction [N.m], shape (n,)
+        angle: of the samples of all runs, one after the other [rad], shape (n,)
+        friction: their friction, positive where it holds the motion back [N.m], shape (n,)
         integrated: the same law by P's integrals over whole turns, None where fewer than three whole turns were measured
     """
 
     law: PositionDependent
     estimates: tuple[Estimate, ...]
     residual: Array
+    angle: Array
+    friction: Array
     integrated: PositionDependent | None
 
 
@@ -127,7 +131,7 @@ def fit_position(recordings: Recording | Sequence[Recording], orders: int = ORDE
     law = _law(numbers, orders, start, end, viscous=float(numbers[-1]) if several else 0.0)
     whole = [integrated for run in runs if (integrated := _integrated(run[0], run[1], orders)) is not None]
     beside = _law(np.mean(whole, axis=0), orders, start, end) if whole and not several else None
-    return PositionFit(law, estimates, residual, beside)
+    return PositionFit(law, estimates, residual, angle, level, beside)
 
 
 def _law(numbers: Array, orders: int, start: float, end: float, viscous: float = 0.0) -> PositionDependent:

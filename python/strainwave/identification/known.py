@@ -1,0 +1,142 @@
+"""What is known of a gear before a file is fitted, and how it grows with each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.identification.evidence.verdict import numbers
+from strainwave.identification.findings import Told
+from strainwave.identification.reading.recognise import Recognised
+
+MODULATING = ("cyclic", "thermal")  # laws that vary another one
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known before a file is fitted.
+
+    Attributes:
+        gear_set: the set, with what earlier files have told of it
+        friction: the recording of a friction table, if one was given
+        told: parts of the gear that earlier files have told
+        sigmas: standard deviation of the first number of friction and spring, as the file has it that tells the part
+    """
+
+    gear_set: GearSet
+    friction: Recording | None = None
+    told: frozenset[str] = frozenset()
+    sigmas: Mapping[str, float] = field(default_factory=dict)
+
+    def knows_better(self, part: str, told: Sequence[Told]) -> bool:
+        """Whether an earlier file tells a part of the gear better than this one."""
+        return part in self.told and self.sigmas.get(part, np.inf) <= _first_sigma(part, told)
+
+    def judged(self, part: str, told: Sequence[Told]) -> Known:
+        """The same, with how well a file tells a part."""
+        return replace(self, sigmas={**self.sigmas, part: _first_sigma(part, told)})
+
+    def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> Known:
+        """The same, with parts of the gear that a file of this name tells."""
+        gear, names = self.gear_set.gear.replace(**parts), tuple(f"gear.{part}." for part in parts)
+        sources = {path: entry for path, entry in self.gear_set.sources.items() if not path.startswith(names)}
+        for path in (path for path in numbers(gear) if path.startswith(names)):
+            told = path in sigmas and np.isfinite(sigmas[path])
+            sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
+        return replace(self, gear_set=replace(self.gear_set, gear=gear, sources=sources), told=self.told | set(parts))
+
+    def sliding(self) -> Any:
+        """The friction of the input as it slides, without what modulates it over angle and temperature."""
+        law: Any = self.gear_set.gear.friction_input
+        while law.name in MODULATING:
+            law = law.law
+        return law
+
+    def with_sliding(self, law: Any, sigmas: Mapping[str, float], name: str) -> Known:
+        """The same, with another law of sliding inside what modulates it.
+
+        Args:
+            law: the new one
+            sigmas: standard deviations of the numbers of the law that the file tells, by name
+            name: of the file
+        """
+        outer: Any = self.gear_set.gear.friction_input
+        depth, around = 0, list[Any]()
+        while outer.name in MODULATING:
+            around.append(outer)
+            outer, depth = outer.law, depth + 1
+        for each in reversed(around):
+            law = each.replace(law=law)
+        return self.with_law(
+            law, {f"gear.friction_input.{'law.' * depth}{each}": sigma for each, sigma in sigmas.items()}, name
+        )
+
+    def with_law(self, law: Any, sigmas: Mapping[str, float], name: str) -> Known:
+        """The same, with another law of the input's friction; numbers that it takes over keep their source.
+
+        Args:
+            law: the new one
+            sigmas: standard deviations of the numbers that the file tells, by path
+            name: of the file
+        """
+        before, values = self.gear_set.sources, {path: value for path, (value, _) in numbers(self.gear_set.gear).items()}
+        after = self.with_parts({"friction_input": law}, sigmas, name)
+        sources = dict(after.gear_set.sources)
+        for path, (value, _) in numbers(after.gear_set.gear).items():
+            if path.startswith("gear.friction_input.") and path not in sigmas:
+                known = {each.replace(".law.", "."): each for each in before}
+                old = known.get(path.replace(".law.", "."), "")
+                kept = old and values.get(old) == value
+                sources[path] = before[old] if kept else Entry(source=f"assumed beside what {name} tells")
+        return replace(after, gear_set=replace(after.gear_set, sources=sources))
+
+
+def _first_sigma(part: str, told: Sequence[Told]) -> float:
+    """Standard deviation of the first number of a part; infinite where the file does not tell it."""
+    own = [each.sigma for each in told if each.path.startswith(f"gear.{part}.") and not each.why]
+    return own[0] if own else np.inf
+
+
+@dataclass(frozen=True)
+class TorqueConstant:
+    """The torque constant of the motor, which is common to all files that tell torque by a current.
+
+    Attributes:
+        value: [N.m/A]
+        relative: its standard deviation over its value [1]
+    """
+
+    value: float
+    relative: float
+
+    @classmethod
+    def of(cls, file: Recognised, gear_set: GearSet) -> TorqueConstant | None:
+        """As a person gave it with the file, which is exact; else as the set has it; None if neither does."""
+        if "torque_constant" in file.constants:
+            return cls(file.constants["torque_constant"], 0.0)
+        value = getattr(gear_set.motor, "torque_constant", None)
+        if not value:
+            return None
+        entry = gear_set.sources.get("motor.torque_constant")
+        relative = 0.0 if entry is None else entry.uncertainty / value if entry.uncertainty else entry.spread or 0.0
+        return cls(value, float(relative))
+
+
+def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
+    """A recording with a torque, where only the current of the motor was measured; and what is uncertain of all of it [1].
+
+    Raises:
+        ValueError: the torque constant is needed, and not known
+    """
+    if "torque" in file.recording:
+        return file.recording, 0.0
+    constant = TorqueConstant.of(file, gear_set)
+    if constant is None:
+        raise ValueError("it tells the current alone; give the torque constant of the motor, with --constant torque_constant=…")
+    return file.recording.with_column("torque", constant.value * file.recording["current"], "N.m"), constant.relative
