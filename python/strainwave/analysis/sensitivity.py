@@ -81,7 +81,7 @@ def derivatives(
 
     They are those of the run as it is computed, exact to rounding: dual numbers go through steps, events and the memory of
     hysteresis. At a moment where the run itself is not smooth in a parameter they are those of one side. Up to four parameters
-    cost some two and a half plain runs, eight some three, the next as much again.
+    cost some two and a half plain runs, eight some three, the next as much again, in a thread of their own where there is one.
 
     Args:
         drive: what is commanded

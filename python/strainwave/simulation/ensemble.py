@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -35,6 +34,7 @@ from strainwave.simulation.resolution import (
 from strainwave.simulation.run import progressing
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import Output
+from strainwave.simulation.threads import available_threads
 from strainwave.simulation.time_grid import TimeGrid
 
 Array = NDArray[np.float64]
@@ -404,11 +404,6 @@ def _asked(plan: _Plan) -> dict[str, str]:
 
 def _scenario(signal: Scenario | float) -> Scenario | float:
     return signal if isinstance(signal, Scenario) else float(signal)
-
-
-def available_threads() -> int:
-    """How many threads this process may run at once."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:

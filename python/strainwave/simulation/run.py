@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -22,6 +23,7 @@ from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import TWIST, Output
 from strainwave.simulation.state import State
+from strainwave.simulation.threads import Told, side_by_side
 from strainwave.simulation.time_grid import CHUNK, LONG_RUN, LONGER_STEPS, STEP, TimeGrid, grid
 
 Array = NDArray[np.float64]
@@ -391,9 +393,14 @@ def differentiate(
     inputs = excitation.over(time_grid)
     recorded = signals.outputs(drive)
     with room_for("samples", len(time_grid.times), 8.0 * len(recorded) * (1 + len(numbers)), "sample less often"):
-        outputs, slopes = _core.differentiate(
-            drive, known(drive, initial), time_grid.instants, inputs, time_grid.samples[1:], list(numbers)
-        )
+        beginning, kept = known(drive, initial), time_grid.samples[1:]
+
+        def run_by(group: list[int], told: Told) -> tuple[Array, Array]:
+            return _core.differentiate(drive, beginning, time_grid.instants, inputs, kept, group, told)
+
+        groups = [list(numbers[first : first + _core.max_lanes]) for first in range(0, max(len(numbers), 1), _core.max_lanes)]
+        runs = side_by_side([partial(run_by, group) for group in groups])
+        outputs, slopes = runs[0][0], np.concatenate([by_numbers for _, by_numbers in runs])
     channels = [each.channel for each in recorded.values()]
     return recording(drive, time_grid, recorded, outputs[channels], temperature), slopes[:, channels]
 

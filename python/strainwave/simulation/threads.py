@@ -1,0 +1,36 @@
+"""Calls of the core side by side, in as many threads as there are processors."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
+from typing import TypeVar
+
+Told = Callable[[int], None]  # what a call of the core tells now and then how many steps are done
+T = TypeVar("T")
+
+
+def available_threads() -> int:
+    """How many threads this process may run at once."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def side_by_side(calls: Sequence[Callable[[Told], T]]) -> list[T]:
+    """What the calls return. The first runs in this thread, so that Ctrl-C reaches it; what it raises ends the others."""
+    ended = Event()
+
+    def go_on(_: int) -> None:
+        if ended.is_set():
+            raise InterruptedError("a call beside this one has failed")
+
+    if len(calls) == 1 or available_threads() == 1:
+        return [call(go_on) for call in calls]
+    with ThreadPoolExecutor(available_threads() - 1) as pool:
+        others = [pool.submit(call, go_on) for call in calls[1:]]
+        try:
+            return [calls[0](go_on), *(each.result() for each in others)]
+        except BaseException:
+            ended.set()
+            raise

@@ -1,0 +1,55 @@
+"""Calls side by side: what they return, what ends them, and derivatives by more numbers than one run of the core takes."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.simulation import threads
+from strainwave.simulation.threads import Told, side_by_side
+
+
+@pytest.mark.parametrize("available", [1, 2, 5])
+def test_what_calls_return_stands_in_their_order(available: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(threads, "available_threads", lambda: available)
+    assert side_by_side([lambda _, i=i: i**2 for i in range(7)]) == [i**2 for i in range(7)]
+
+
+def test_a_call_that_fails_ends_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(threads, "available_threads", lambda: 3)
+    ended = []
+
+    def lasting(told: Told) -> None:
+        begun = time.monotonic()
+        try:
+            while time.monotonic() < begun + 20.0:
+                told(0)
+        except InterruptedError:
+            ended.append(time.monotonic() - begun)
+            raise
+
+    def failing(told: Told) -> None:
+        time.sleep(0.1)
+        raise FloatingPointError("diverged")
+
+    with pytest.raises(FloatingPointError, match="diverged"):
+        side_by_side([failing, lasting, lasting])
+    assert len(ended) == 2
+    assert max(ended) < 10.0
+
+
+def test_derivatives_by_many_numbers_are_those_by_each_alone() -> None:
+    motor = sw.motor.DC(inertia=1e-4, inductance=1e-3, resistance=0.5, torque_constant=0.1)
+    drive = sw.Drive(gear=sw.load("hfuc-20-100"), motor=motor)
+    command = sw.scenario.sine(2.0, 3.0, 0.2)
+    names = [
+        "motor.inertia", "motor.resistance", "motor.inductance", "motor.torque_constant", "load.inertia", "gear.damping",
+        "gear.stiffness.k1", "gear.stiffness.k2", "gear.stiffness.t1", "gear.input_inertia",
+    ]  # fmt: skip
+    together = sw.derivatives(drive, command, names, 1e-4, sample=1e-2)
+    for name in names:
+        alone = sw.derivatives(drive, command, [name], 1e-4, sample=1e-2)
+        for column in ("input_angle", "torque"):
+            assert np.array_equal(together[column, name], alone[column, name])
