@@ -20,6 +20,8 @@ from strainwave.identification.fitting.unknowns import AT, Move, Plan
 Array = NDArray[np.float64]
 NOISE = 0.01  # of the size of a channel, before a first pass has told it (assumed)
 SMALLEST = 1e-12  # of the size of a channel: less noise has no measurement
+LAST = 1e-3  # of the tolerance: a step that promises less is the last
+WEAK = 1e-8  # singular values below this share of the largest: derivatives by differences are no better
 TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 
 
@@ -116,6 +118,22 @@ class Record:
                 "measurement are right, and the numbers of the gear to start from"
             )
         return predicted, slopes
+
+
+class _SettledError(Exception):
+    """A fit has come to its end, at these unknowns."""
+
+    def __init__(self, part: Array) -> None:
+        super().__init__("the fit has come to its end")
+        self.part = part
+
+
+def _step(rows: Array, left: Array) -> tuple[Array, float]:
+    """The step of Gauss and Newton, and by how much it would make the sum of squares smaller, were residuals linear."""
+    size = np.linalg.norm(rows, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    step = np.linalg.lstsq(rows / size, -left, rcond=WEAK)[0]
+    return step / size, float(np.sum((rows / size @ step) ** 2))
 
 
 class Problem:
@@ -245,7 +263,14 @@ class Problem:
             return np.concatenate([*map(np.ravel, of_data), of_priors @ x - right])
 
         def jacobian(part: Array) -> Array:
-            return np.concatenate((self.jacobian(with_free(part), weights), of_priors))[:, free]
+            """Called where a step was taken; SciPy would go on until rounding, or a kink, made its steps fail."""
+            rows = np.concatenate((self.jacobian(with_free(part), weights), of_priors))[:, free]
+            if isinstance(loss, Squared):
+                left = residuals(part)
+                step, gain = _step(rows, left)
+                if gain <= LAST * tolerance * float(left @ left):
+                    raise _SettledError(np.clip(part + step, low[free], high[free]))
+            return rows
 
         def cost(squares: Array) -> Array:
             """Of samples in units of their own noise, times the share of them that is independent; of priors the square."""
@@ -254,18 +279,21 @@ class Problem:
             return np.concatenate((np.stack((value / together, first, second * together)), Squared().cost(of_prior)), axis=1)
 
         with np.errstate(over="ignore"):  # SciPy takes a smaller step where its model of the residuals is infinite
-            solution = least_squares(
-                residuals,
-                whole[free],
-                jac=jacobian,
-                bounds=(low[free], high[free]),
-                x_scale="jac",
-                loss="linear" if isinstance(loss, Squared) else cost,  # type: ignore[arg-type]  # stubs ask for more than SciPy
-                xtol=tolerance,
-                ftol=tolerance,
-                gtol=tolerance,
-                max_nfev=TRIALS,
-            )
+            try:
+                solution = least_squares(
+                    residuals,
+                    whole[free],
+                    jac=jacobian,
+                    bounds=(low[free], high[free]),
+                    x_scale="jac",
+                    loss="linear" if isinstance(loss, Squared) else cost,  # type: ignore[arg-type]  # stubs ask for more
+                    xtol=tolerance,
+                    ftol=tolerance,
+                    gtol=tolerance,
+                    max_nfev=TRIALS,
+                )
+            except _SettledError as settled:
+                return with_free(settled.part)
         return with_free(np.asarray(solution.x))
 
     def cost(self, x: Array, weights: Sequence[Weights], loss: Loss) -> float:
