@@ -74,8 +74,15 @@ def identify(
 
 
 def _summary(found: Identified) -> Iterator[str]:
+    points = [finding for finding in found.findings if finding.part_of]
     for finding in found.findings:
-        yield from _of_file(finding)
+        if not finding.part_of:
+            yield from _of_file(finding)
+    if points:
+        yield f"{points[0].part_of}, {len(points)} files:"
+        width = max(len(finding.name) for finding in points)
+        yield from (f"  {finding.name:{width}}  {finding.model}" for finding in points)
+        yield from (f"  {remark}" for remark in dict.fromkeys(remark for finding in points for remark in finding.remarks))
     yield ""
     width = max(len(_name(number)) for number in found.numbers)
     for number in found.numbers:
@@ -93,7 +100,7 @@ def _summary(found: Identified) -> Iterator[str]:
 def _of_file(finding: Finding) -> Iterator[str]:
     from strainwave.identification.reading.channels import KINDS
 
-    kind = KINDS[finding.recognised.kind] if finding.recognised is not None else "not read"
+    kind = finding.what or (KINDS[finding.recognised.kind] if finding.recognised is not None else "not read")
     same = f", the same measurement as {finding.same_as}" if finding.same_as else ""
     yield f"{finding.name}: {kind}{same}"
     if finding.recognised is not None:

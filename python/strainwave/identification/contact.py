@@ -16,6 +16,7 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.known import Known, with_torque
 from strainwave.identification.reading.recognise import Recognised
 
+CLEARLY = 3.0  # standard deviations
 HALF = 0.5  # of a value: a number whose standard deviation is larger is not told
 SLIDING = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with bristles has, too
 NO_RAMP = "no ramp went that way"
@@ -45,20 +46,17 @@ def presliding(file: Recognised, known: Known) -> tuple[Finding, Known]:
         law = best.law(sliding)
         if not isinstance(sliding, friction.Stribeck):
             remarks.append("a Stribeck speed of 1 rad/s is assumed in the gear, as no table tells it")
-        if law.coulomb < sliding.coulomb:
+        level = next(each for each in told if each.path.endswith(("breakaway", "share[0]")))
+        if sliding.coulomb - best.breakaway > CLEARLY * level.sigma and sliding.coulomb > 1.01 * best.breakaway:
             remarks.append(
                 f"it breaks away at {best.breakaway:.3g} N·m, below the {sliding.coulomb:.3g} N·m with which it slides: "
                 "the smaller one is taken in the gear"
             )
         sigmas = {each.path.removeprefix("gear.friction_input."): each.sigma for each in told if not each.why}
         after = known.with_sliding(law, sigmas, file.path.name)
-    curves = Recording(
-        {
-            "small_angle": loop.angle, "torque": loop.torque, "modelled": best.predicted,
-            "held_out": (~begun).astype(float),
-        },
-        {"small_angle": "rad", "torque": "N.m", "modelled": "N.m", "held_out": "1"},
-    )  # fmt: skip
+    compared = {"small_angle": loop.angle, "torque": loop.torque, "modelled": best.predicted}
+    units = {"small_angle": "rad", "torque": "N.m", "modelled": "N.m"}
+    curves = Recording({name: values[begun] for name, values in compared.items()}, units)
     return Finding(file.path.name, file, _in_words(best), told, error, tuple(remarks), curves=curves), after
 
 

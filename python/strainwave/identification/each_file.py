@@ -250,7 +250,7 @@ def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
     if warm is None:
         return finding, after
     after, said = warm.known(after, name)
-    return replace(finding, told=(*finding.told, *warm.told), remarks=(*finding.remarks, *warm.remarks, *said)), after
+    return replace(finding, told=(*finding.told, *warm.told), remarks=(*warm.remarks, *said, *finding.remarks)), after
 
 
 def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:

@@ -58,6 +58,7 @@ class Finding:
         remarks: what to know of it, in short sentences
         refused: why nothing was found; empty where something was
         same_as: the file that shows the same measurement; empty where none does
+        what: what it is, where the kind of the file does not say it
         part_of: the table that it is one point of, with others; empty where it stands for itself
         curves: measured beside modelled, as `curves` of this package makes them; None where nothing was fitted
     """
@@ -70,6 +71,7 @@ class Finding:
     remarks: tuple[str, ...] = ()
     refused: str = ""
     same_as: str = ""
+    what: str = ""
     part_of: str = ""
     curves: Recording | None = None
 
@@ -130,7 +132,8 @@ def _number(told: Mapping[str, Told], copies: set[str]) -> Number:
     best = min(own, key=lambda name: own[name].sigma)
     others = {name: each for name, each in told.items() if name != best}
     apart = [name for name, each in others.items() if name not in copies and distance(each, told[best]) > APART]
-    agree = [name for name in others if name in own and distance(others[name], told[best]) <= AGREE]
+    agree = [name for name in others if name not in copies and distance(others[name], told[best]) <= AGREE]
+    agree = [] if best in copies else agree  # all of them show one measurement
     taken, widened = mean_of([told[best], *(others[name] for name in agree)])
     return Number(taken, best, others, tuple(apart), told[best], (best, *agree), widened)
 

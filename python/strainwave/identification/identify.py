@@ -14,7 +14,7 @@ from strainwave.identification import steady_runs
 from strainwave.identification.duplicates import same_as
 from strainwave.identification.each_file import fitted
 from strainwave.identification.findings import Finding, Number, numbers_of
-from strainwave.identification.known import Known
+from strainwave.identification.known import Known, plain
 from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
@@ -219,17 +219,18 @@ def _kinematics(ratio: float, backwards: bool) -> Any:
 def _with_means(gear_set: GearSet, numbers: Sequence[Number]) -> GearSet:
     """The set with the means of files that agree, where it has the law that the number belongs to."""
     for number in numbers:
-        part, _, name = number.told.path.removeprefix("gear.").partition(".")
-        if len(number.mean_of) < 2 or not number.told.path.startswith("gear.") or "[" in name or " " in name:
+        if len(number.mean_of) < 2 or not number.told.path.startswith("gear."):
             continue
-        law = getattr(gear_set.gear, part)
-        entry = gear_set.sources.get(number.told.path)
-        if number.told.law not in ("", law.name) or entry is None or number.source not in entry.source:
-            continue
-        try:
-            gear = gear_set.gear.replace(**{part: law.replace(**{name: number.told.value})})
-        except (ValueError, TypeError):  # a mean that the law does not allow beside its other numbers
-            continue
-        source = Entry(source=f"identified from the {number.taken_from}", uncertainty=number.told.sigma)
-        gear_set = replace(gear_set, gear=gear, sources={**gear_set.sources, number.told.path: source})
+        told_by_best = [
+            path
+            for path, entry in gear_set.sources.items()
+            if plain(path) == number.told.path and number.source in entry.source and "[" not in path
+        ]
+        for path in told_by_best:
+            try:
+                gear = gear_set.gear.replace({path.removeprefix("gear."): number.told.value})
+            except ValueError:  # a mean that the law does not allow beside its other numbers
+                continue
+            source = Entry(source=f"identified from the {number.taken_from}", uncertainty=number.told.sigma)
+            gear_set = replace(gear_set, gear=gear, sources={**gear_set.sources, path: source})
     return gear_set

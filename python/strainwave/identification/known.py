@@ -90,11 +90,20 @@ class Known:
         sources = dict(after.gear_set.sources)
         for path, (value, _) in numbers(after.gear_set.gear).items():
             if path.startswith("gear.friction_input.") and path not in sigmas:
-                known = {each.replace(".law.", "."): each for each in before}
-                old = known.get(path.replace(".law.", "."), "")
+                known = {plain(each): each for each in before}
+                old = known.get(plain(path), "")
                 kept = old and values.get(old) == value
                 sources[path] = before[old] if kept else Entry(source=f"assumed beside what {name} tells")
         return replace(after, gear_set=replace(after.gear_set, sources=sources))
+
+
+def plain(path: str) -> str:
+    """The path of a number without the laws that it stands inside.
+
+    >>> plain("gear.friction_input.law.law.coulomb")
+    'gear.friction_input.coulomb'
+    """
+    return ".".join(part for part in path.split(".") if part != "law")
 
 
 def _first_sigma(part: str, told: Sequence[Told]) -> float:

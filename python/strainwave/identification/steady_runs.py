@@ -32,6 +32,7 @@ SPEEDS = 4  # different ones that tell a law
 SURE = 3.0  # standard deviations: a parabola that is smaller is none
 CHANCE = 1e-3  # probability that chance alone gives a wave, over all orders
 JOINED = "records at constant speed"
+WHAT = "friction over the angle, at constant speed"
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def _speed(file: Recognised) -> tuple[Array, Side, tuple[str, ...]] | None:
             speed = np.full(rows, file.constants["speed"])
         else:
             continue
-        if of is None and side is None:
+        if of is None and side is None and np.median(np.abs(speed)) <= FAST:
             told.append("no side is stated, the input is taken; --side output says that it was measured there")
         taken: Side = "output" if (of or side) == "output" and np.median(np.abs(speed)) <= FAST else "input"
         return speed, taken, tuple(told)
@@ -199,7 +200,7 @@ def joined(runs: Sequence[Run], known: Known) -> tuple[Finding, Known]:
     why = (f"each of {names} holds the torque at constant speed: their means are the {len(points)} points of one table",)
     file = Recognised(Path(JOINED), "friction", {}, {}, side, why, signed, {}, Recording(columns, units))
     finding, after = friction_of(file, file.recording, max(run.uncertain for run in runs), known)
-    return replace(finding, name=JOINED), after
+    return replace(finding, name=JOINED, what="a table of steady friction, of many files"), after
 
 
 def _signed(points: Sequence[Point]) -> tuple[Array, Array, tuple[str, ...]]:
@@ -241,7 +242,9 @@ def over_the_angle(runs: Sequence[Run], known: Known) -> tuple[Finding, Known] |
         {each: values[rows][order] for each, values in columns.items()}, {"angle": "rad", "torque": "N.m", "modelled": "N.m"}
     )
     read = replace(file, path=Path(name), why=why, remarks=())
-    return Finding(name, read, "a parabola and ten orders of the turn", told, remarks=tuple(remarks), curves=curves), after
+    return Finding(
+        name, read, "a parabola and ten orders of the turn", told, remarks=tuple(remarks), what=WHAT, curves=curves
+    ), after
 
 
 def _with_speed(run: Run) -> Recording:
@@ -254,7 +257,9 @@ def _numbers(found: PositionFit, uncertain: float) -> Iterator[Told]:
     for each in found.estimates:
         common = uncertain * abs(each.value)
         sigma = float(np.hypot(each.sigma, common))
-        sure = each.path in waves if "[" in each.path else abs(each.value) > SURE * each.sigma
+        if "[" in each.path and each.path not in waves:
+            continue
+        sure = each.path in waves or abs(each.value) > SURE * each.sigma
         why = "" if sure else "it is no larger than what chance may make"
         yield Told(f"gear.friction_input.{each.path}", each.unit, each.value, sigma, "position_dependent", why, common)
 
@@ -264,6 +269,10 @@ def _of_position(found: PositionFit, count: int) -> Iterator[str]:
         yield f"{count} runs are fitted together: their angles must count from one zero"
     left = float(np.sqrt(np.mean(found.residual**2)))
     yield f"the law leaves {left:.2g} N·m of {float(np.mean(np.abs(found.friction))):.3g} N·m"
+    none = [order for order in range(1, len(found.law.cosine) + 1) if order not in _waves(found)]
+    if none:
+        bound = SURE * max(each.sigma for each in found.estimates if "[" in each.path)
+        yield f"orders {listed(map(str, none))} of the turn are no larger than what chance makes, at most {bound:.1g} N·m"
     if found.integrated is not None:
         off = max(
             abs(one - other)
