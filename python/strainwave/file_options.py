@@ -52,7 +52,11 @@ def said_of(
 
     def of(path: Path) -> FileMapping:
         there = {text for label in open_table(path).labels for text in (label.text, label.name)} if columns else set()
-        own = {name: wanted for name, wanted in columns.items() if wanted in there or wanted.isdigit()}
+        own = {
+            name: wanted
+            for name, wanted in columns.items()
+            if wanted in there or all(part in there or part.isdigit() for part in map(str.strip, wanted.split(",")))
+        }
         given = FileMapping(columns=own, units=units, constants=constants, side=side, joint=joint, kind=kind)
         return from_file.of(path).updated(given) if from_file is not None else given
 

@@ -49,6 +49,7 @@ CHANNELS: dict[str, Channel] = {
     "input_speed": Channel("speed", "input"),
     "output_angle": Channel("angle", "output"),
     "output_speed": Channel("speed", "output"),
+    "other_angles": Channel("angle", "output"),  # of joints that move too, as numbers or names of columns with commas
     "twist": Channel("twist"),
     "temperature": Channel("temperature"),
     "torque": Channel("torque"),

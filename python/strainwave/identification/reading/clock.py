@@ -2,7 +2,8 @@
 
 Each row of a log was sampled at some tick of a clock. Where the stamps lie about a regular clock by much less than a step, the
 scatter is that of the stamps, and the regular time is taken: a line fitted to the stamps over the number of the tick, by least
-squares. Where they do not, the clock is not regular, and the stamps are taken as they are.
+squares. But where the angle of a shaft is as uneven as the stamps are, the shaft was sampled at uneven instants, and the stamps
+are right. Where they do not lie about a regular clock, they are taken as they are, too.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ Rows = NDArray[np.int64]
 
 REGULAR = 0.2  # of a step: root mean square of stamps about a regular clock, above which ticks could not be counted
 EXACT = 1e-3  # of a step: what scatters less is taken as it is
+SURE = 3.0  # standard deviations, by which an angle must follow its stamps rather than a clock
 AGAIN = 0.5  # of a step: a row with the values of the row before it and a stamp so near is a repetition
 RESTART = 10.0  # steps: a clock that goes back by more has begun anew
 COARSE = 0.05  # of the rows: where more share the stamp of the row before, stamps are coarser than the samples
@@ -55,12 +57,13 @@ def regular(rows: int, rate: float) -> Clock:
     )
 
 
-def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None) -> Clock:
+def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None, angle: Array | None = None) -> Clock:
     """When rows were sampled, from their time stamps.
 
     Args:
         stamps: as they were recorded [s], shape (n,)
         repeated: whether a row holds the same values as the row before it, shape (n,); no row if not given
+        angle: of a shaft, which shows whether the stamps or the samples scatter, shape (n,)
 
     Raises:
         ValueError: the stamps do not run forward, or are no times
@@ -84,7 +87,7 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None) -> Clock:
         if count := int(again.sum()):
             rows = rows[~again]
             remarks.append(f"{_rows(count)} {_verb(count, 'repeats', 'repeat')} the row before and {_is(count)} left out")
-    found = _regular(stamps[rows], step) or _as_they_are(stamps[rows])
+    found = _regular(stamps[rows], step, None if angle is None else angle[rows]) or _as_they_are(stamps[rows])
     time = found.time
     if time[0] > LATE:
         time = time - time[0]
@@ -117,7 +120,7 @@ def _step(stamps: Array) -> float:
     return float(np.median(forward))
 
 
-def _regular(stamps: Array, step: float) -> Clock | None:
+def _regular(stamps: Array, step: float, angle: Array | None) -> Clock | None:
     """The time of a regular clock, if the stamps lie about one."""
     if np.ptp(stamps) > MOST * step:
         return None
@@ -140,7 +143,25 @@ def _regular(stamps: Array, step: float) -> Clock | None:
     gaps = _gaps(ticks, stamps, period)
     if scatter <= EXACT * period and (np.diff(stamps) > 0.0).all():
         return Clock(stamps, np.arange(len(stamps)), gaps)
+    if angle is not None and (np.diff(stamps) > 0.0).all() and _follows(angle, time, stamps - time):
+        said = f"rows were sampled at uneven instants, as the angle shows: by {scatter * 1e3:.3g} ms about a clock of "
+        return Clock(stamps, np.arange(len(stamps)), (*gaps, f"{said}{1.0 / period:.4g} Hz; the stamps are taken"))
     return Clock(time, np.arange(len(stamps)), (*gaps, _told(scatter, period)))
+
+
+def _follows(angle: Array, time: Array, late: Array) -> bool:
+    """Whether an angle is as much further as a sample is late: second differences, which see little of the motion itself."""
+    if len(angle) < 5:
+        return False
+    speed = np.gradient(angle, time)
+    smooth = np.convolve(speed, np.ones(5) / 5.0, "same")[1:-1]
+    expected, seen = smooth * np.diff(late, 2), np.diff(angle, 2)
+    square = float(expected @ expected)
+    if square == 0.0:
+        return False
+    slope = float(expected @ seen) / square
+    sigma = float(np.sqrt(np.mean((seen - slope * expected) ** 2) / square))
+    return slope > 0.5 + SURE * sigma
 
 
 def _of_coarse_stamps(stamps: Array, step: float) -> Clock | None:

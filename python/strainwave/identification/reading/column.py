@@ -24,6 +24,7 @@ class Column:
         which: what else its name says, as the number of a joint
         robot: whether its name is that of a robot's joint channel
         said: whether a person said what it is
+        neighbour: whether it is the angle of another joint than the one that is asked for
         unit: its unit in the file; None where none is stated
         values: in SI units, once they are read
     """
@@ -34,6 +35,7 @@ class Column:
     which: str = ""
     robot: bool = False
     said: bool = False
+    neighbour: bool = False
     unit: str | None = None
     values: Array | None = None
 

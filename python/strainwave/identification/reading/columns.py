@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,8 +15,8 @@ from strainwave.identification.reading.apparent import apparent
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.missing_units import missing_units
-from strainwave.identification.reading.names import meaning, which_of, words_of
+from strainwave.identification.reading.missing_units import Assumed, missing_units
+from strainwave.identification.reading.names import UNITS, meaning, which_of, words_of
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Array = NDArray[np.float64]
@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 
 SAY = "say what they are with --column"
 FEW = 4  # names that are listed where none says anything
+NEIGHBOURS = "other_angles"  # as what a person names the angles of other joints
 FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
 
 
@@ -45,7 +46,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
             continue
         sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
         channel = Channel(found.quantity, found.side if sided else None, found.commanded)
-        if not any(column.channel == channel for column in said):
+        if not any(column.channel == channel and not column.neighbour for column in said):
             unit = "s" if content == "dates" else found.unit or label.unit or None
             told.append(Column(position, label, channel, found.which, found.robot, unit=unit))
     return said + _of_one_joint(table, told, mapping)
@@ -54,7 +55,9 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
 def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
     """The columns that a person named."""
     found = []
-    for name, wanted in mapping.columns.items():
+    each = [(name, wanted) for name, wanted in mapping.columns.items() if name != NEIGHBOURS]
+    each += [(NEIGHBOURS, wanted.strip()) for wanted in mapping.columns.get(NEIGHBOURS, "").split(",") if wanted.strip()]
+    for name, wanted in each:
         channel = CHANNELS[ALIASES.get(name, name)]
         places = places_of(table.labels, wanted)
         if len(places) != 1:
@@ -65,7 +68,11 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
         told = meaning(label)
         unit = label.unit or (told.unit if told and told.quantity == channel.quantity else None) or None
         unit = "s" if table.contents[places[0]] == "dates" else unit
-        found.append(Column(places[0], label, channel, said=True, unit=unit))
+        which = (told.which if told else "") or str(places[0] + 1)
+        is_neighbour = name == NEIGHBOURS
+        found.append(
+            Column(places[0], label, channel, which if is_neighbour else "", said=True, unit=unit, neighbour=is_neighbour)
+        )
     return found
 
 
@@ -83,10 +90,16 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
             there = f"it has {listed(known)}" if known else f"its columns name none; {apparent(table) or SAY}"
             raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; {there}"))
         several_joints = len(known) > 1
-        return [
+        own = [
             replace(column, robot=column.robot or (several_joints and column.which == joint))
             for column in columns
             if column.which in ("", joint) or column.which not in known
+        ]
+        angle = next((column for column in own if column.channel.quantity == "angle" and column.which == joint), None)
+        return own + [
+            replace(column, neighbour=True)
+            for column in columns
+            if angle is not None and column.which in known and column.which != joint and column.channel == angle.channel
         ]
     if len(several) == 1 and _are_two_encoders(columns, several[0]):
         return list(columns)
@@ -133,9 +146,10 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     raw = {column.position: numbers[str(column.position)] for column in columns}
     known, told = _with_units(table, columns, mapping)
     try:
-        assumed = missing_units(known, raw)
+        assumed = missing_units([column for column in known if not column.neighbour], raw)
     except ValueError as error:
         raise ValueError(one_line(f"{table.file} {error}")) from None
+    known = _as_the_joint(known, assumed)
     if assumed:
         taken = ", ".join(f"{c.name} in {' '.join(assumed[c.position]).strip()}" for c in known if c.position in assumed)
         told.append(f"no unit is stated: {taken}; --unit NAME=UNIT says another one")
@@ -149,6 +163,13 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         remarks.append(f"left out, as no row holds a number: {listed(column.name for column in empty)}")
         found = [column for column in found if column not in empty]
     return _whole_rows(table, found, remarks)
+
+
+def _as_the_joint(columns: Sequence[Column], assumed: Mapping[int, Assumed]) -> list[Column]:
+    """The columns, with angles of other joints in the unit of the one that is asked for."""
+    own = next((c for c in columns if not c.neighbour and c.channel.quantity == "angle" and not c.channel.commanded), None)
+    unit = UNITS["angle"] if own is None else own.unit or assumed[own.position].unit
+    return [replace(c, unit=c.unit or unit) if c.neighbour else c for c in columns]
 
 
 def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:

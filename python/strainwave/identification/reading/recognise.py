@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ from strainwave.messages import listed, one_line, quoted
 
 Array = NDArray[np.float64]
 
+MOVES = 0.02  # rad: another joint that moves by less rests
 RATES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")  # Hz
 STEPS = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
 
@@ -43,6 +44,8 @@ class Recognised:
         remarks: what was left out, assumed or put right, in short sentences
         constants: numbers that a person gave with it
         recording: the channels in SI units, with the names of `CHANNELS`
+        neighbours: the columns of the recording with the angles of other joints that move, by what the file calls the joints
+        joint: what it calls the joint whose recording it is; empty where it says nothing of it
     """
 
     path: Path
@@ -54,6 +57,8 @@ class Recognised:
     remarks: tuple[str, ...]
     constants: Mapping[str, float]
     recording: Recording
+    neighbours: Mapping[str, str] = field(default_factory=dict)
+    joint: str = ""
 
 
 def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognised:
@@ -83,13 +88,16 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     columns, more = read(table, chosen(table, said), said)
     remarks += more
     try:
-        found = kind_of(columns, said)
+        found = kind_of([column for column in columns if not column.neighbour], said)
     except UndecidedError as undecided:
         unused = "".join(f"; {remark}" for remark in _unused(table, columns))
         raise ValueError(one_line(f"{table.file}: {undecided}{unused}")) from None
     remarks += found.remarks
     series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
-    remarks += _unwrap(table, series, found.columns)
+    neighbours = _neighbours(columns) if found.kind == "log" else {}
+    series |= {name: column.si for name, column in neighbours.items()}
+    used = {**found.columns, **neighbours}
+    remarks += _unwrap(table, series, used)
     if found.kind in ("log", "encoders", "effort", "breakaway"):
         try:
             when = _clock(series, said, found.kind)
@@ -98,7 +106,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         if when is not None:
             remarks += when.remarks
             series = {"time": when.time} | {name: values[when.rows] for name, values in series.items() if name != "time"}
-    remarks += _unused(table, found.columns.values())
+    remarks += _unused(table, used.values())
     return Recognised(
         Path(path),
         found.kind,
@@ -108,8 +116,15 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         found.why,
         tuple(remarks),
         dict(said.constants),
-        Recording(series, {name: _unit(name, found.columns) for name in series}, table.title),
+        Recording(series, {name: _unit(name, used) for name in series}, table.title),
+        {column.which: name for name, column in neighbours.items()},
+        found.columns["output_angle"].which if "output_angle" in found.columns else "",
     )
+
+
+def _neighbours(columns: Sequence[Column]) -> dict[str, Column]:
+    """The angles of other joints that move, by names for the recording."""
+    return {f"angle_of_joint_{column.which}": column for column in columns if column.neighbour and np.ptp(column.si) > MOVES}
 
 
 def _with_single_numbers(table: OpenTable, said: FileMapping) -> tuple[FileMapping, list[str]]:
@@ -164,7 +179,8 @@ def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock 
         others = [values for name, values in series.items() if name != "time"]
         repeated = np.zeros(count, bool)
         repeated[1:] = np.all([np.diff(values) == 0.0 for values in others], axis=0)
-        return clock(series["time"], repeated)
+        angle = next((values for name, values in series.items() if name in ("input_angle", "output_angle", "angle")), None)
+        return clock(series["time"], repeated, angle)
     if "rate" in said.constants:
         return regular(count, said.constants["rate"])
     if kind in ("log", "breakaway"):

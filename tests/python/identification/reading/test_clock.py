@@ -126,3 +126,13 @@ def test_a_rate_alone_gives_the_time(rows: int, rate: float) -> None:
 def test_a_rate_must_be_positive() -> None:
     with pytest.raises(ValueError, match=r"^rate = -1.0 Hz must lie in \(0, inf\)$"):
         regular(10, -1.0)
+
+
+@pytest.mark.parametrize("samples", [True, False])
+def test_an_angle_tells_whether_its_samples_or_its_stamps_are_uneven(samples: bool) -> None:
+    even = np.arange(0.0, 4.0, 0.002)
+    uneven = even + np.random.default_rng(1).uniform(-2e-4, 2e-4, len(even))
+    angle = np.round(np.sin(2.0 * (uneven if samples else even)) / 1e-5) * 1e-5
+    found = clock(uneven, angle=angle)
+    assert found.time == pytest.approx(uneven if samples else even, abs=2e-5)
+    assert ("sampled at uneven instants" in found.remarks[0]) == samples

@@ -1,0 +1,64 @@
+"""Torque by other joints: terms of the energy against an arm in closed form, and what is found in its log."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from strainwave.identification.dynamics.coupling import _Arm, _shares
+from strainwave.identification.experiments.motion import Motion
+from strainwave.identification.identify import identify
+from strainwave.identification.reading.mapping import FileMapping
+
+from tests import arms
+
+
+@pytest.mark.parametrize("joint", ["1", "2", "3"])
+@pytest.mark.parametrize("named", [False, True])
+def test_terms_of_the_energy_make_up_the_torque_of_an_arm(joint: str, named: bool) -> None:
+    """By Lagrange's equations in closed form (tests.arms); names that tell no order allow more terms, and the same sum."""
+    random = np.random.default_rng(int(joint))
+    q, dq, ddq = random.uniform(-2.0, 2.0, (3, 3, 500))  # at any state: no motion is needed
+    names = {"1": "a", "2": "b", "3": "c"} if named else {each: each for each in "123"}
+    known = np.ones(500, bool)
+    moving = {
+        names[str(place + 1)]: Motion(np.arange(500.0), q[place], dq[place], ddq[place], known, 1, 1.0) for place in range(3)
+    }
+    arm = _Arm(names[joint], moving)
+    own = moving[names[joint]]
+    rigid = [own.acceleration, np.sin(own.angle), np.cos(own.angle)]
+    columns = np.stack([*rigid, *(term.torque(arm) for term in arm.terms())], axis=1)
+    torque = arms.Links().torques(q, dq, ddq)[int(joint) - 1]
+    assert columns @ _shares(columns, torque) == pytest.approx(torque, abs=1e-6)
+
+
+def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> None:
+    joint = arms.Joint()
+    done = arms.run((joint,) * 3, arms.fourier(40.0, (0, 1, 2), seed=3))
+    arms.mat(tmp_path / "arm.mat", arms.Recorder(rate=250.0)(done))
+    found = identify("hfuc-25-100", [tmp_path / "arm.mat"], mapping=lambda path: FileMapping(joint="2"))
+    (finding,) = found.findings
+    assert finding.error < 0.02  # 9 % without the terms
+    (said,) = (remark for remark in finding.remarks if "move too" in remark)
+    assert said.startswith("joints 1, 3 move too: ")
+    (coulomb,) = (each.value for each in finding.told if each.path == "gear.friction_input.coulomb")
+    print(f"\nCoulomb {coulomb:.4g}, truth {joint.coulomb}, error held out {finding.error:.3g}")
+    assert coulomb == pytest.approx(joint.coulomb, rel=0.05)
+
+
+def test_a_log_of_one_joint_has_no_terms_of_others(tmp_path: Path) -> None:
+    done = arms.run((arms.Joint(),) * 3, arms.fourier(12.0, (1,), seed=4))
+    arms.mat(tmp_path / "arm.mat", arms.Recorder(rate=250.0)(done))
+    found = identify("hfuc-25-100", [tmp_path / "arm.mat"], mapping=lambda path: FileMapping(joint="2"))
+    assert not any("move too" in remark for remark in found.findings[0].remarks)
+
+
+def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Path) -> None:
+    done = arms.run((arms.Joint(),) * 3, arms.fourier(20.0, (1, 2), seed=5))
+    arms.headerless(tmp_path / "arm.csv", arms.Recorder(rate=250.0, step=1e-4)(done))
+    columns = {"time": "1", "output_angle": "3", "output_speed": "9", "current": "15"}
+    alone = identify("hfuc-25-100", [tmp_path / "arm.csv"], mapping=lambda path: FileMapping(columns=columns))
+    said = FileMapping(columns={**columns, "other_angles": "4"})
+    together = identify("hfuc-25-100", [tmp_path / "arm.csv"], mapping=lambda path: said)
+    assert together.findings[0].error < 0.5 * alone.findings[0].error
