@@ -28,6 +28,7 @@ def identify(
     side: Side = None,
     joint: Joint = None,
     kind: Kind = None,
+    accept: Annotated[bool, typer.Option("--accept", help="Use tables and loops although their sizes are doubted.")] = False,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the gear and the numbers.")] = Path("out/identify"),
 ) -> None:
     """Find out what files of measurements are, and what gear they show.
@@ -58,7 +59,7 @@ def identify(
             done += 1
             bar.update(task, description=name, completed=min(done, len(paths)))
 
-        found = identified(gear, paths, mapping=said, progress=turn)
+        found = identified(gear, paths, mapping=said, accept=accept, progress=turn)
         bar.update(task, description="report", completed=len(paths))
         files = identify_files(found) | {"gear.toml": gear_file.text(found.gear_set)}
         files["report.html"] = identify_report(found, Provenance.of_this_command(paths))
@@ -110,6 +111,7 @@ def _of_file(finding: Finding) -> Iterator[str]:
         return
     held_out = f"; error on data held out: {100.0 * finding.error:.2g} % of what varies" if math.isfinite(finding.error) else ""
     yield f"  {finding.model}{held_out}"
+    yield from (f"  DOUBT: {doubt}" for doubt in finding.doubts)
     yield from (f"  {remark}" for remark in finding.remarks[:MOST_REMARKS])
 
 

@@ -15,7 +15,6 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion, regression
 from strainwave.identification.contact import breakaway, presliding
 from strainwave.identification.curves import curves_of, curves_of_orders
-from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.fitting.estimate import Estimate
@@ -23,6 +22,7 @@ from strainwave.identification.known import Known, TorqueConstant, with_torque
 from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.suspicion import clipped_loop, of_levels, too_fast, unlike_set
 from strainwave.identification.twin import Twin, twin
 from strainwave.identification.warmed import warmed
 from strainwave.messages import listed
@@ -50,7 +50,9 @@ def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
         "breakaway": breakaway,
     }
     if file.kind not in of_kind:
-        raise ValueError("torque without motion tells orders alone: strainwave orders finds them")
+        unused = [remark for remark in file.remarks if remark.startswith("columns not used")]
+        hint = f" ({unused[0]}: does it hold texts?)" if unused else ""
+        raise ValueError(f"torque without motion tells orders alone: strainwave orders finds them{hint}")
     return of_kind[file.kind](file, known)
 
 
@@ -78,9 +80,15 @@ def friction_of(file: Recognised, table: Recording, uncertain: float, known: Kno
         uncertain: standard deviation of the torque constant that its torques rest on, over its value [1]
         known: before it
     """
-    found = twin(known.gear_set, friction=table, side=file.side, sources={"friction": file.path.name})
-    finding = _of_twin(file, found)
-    finding = replace(finding, told=tuple(_as_uncertain(each, uncertain) for each in finding.told))
+    ratio = abs(known.gear_set.gear.kinematics.ratio) if file.side == "output" else 1.0
+    fast = too_fast(ratio * table.values("speed", "rad/s"))
+    if fast and not known.accept:
+        raise ValueError(f"{fast}; if they are right, --accept")
+    side = "output" if file.side == "output" else known.side  # one that was only found is doubted if the set speaks against it
+    found = twin(known.gear_set, friction=table, side=side, sources={"friction": file.path.name})
+    finding = _of_twin(file, found, known.accept)
+    told = tuple(_as_uncertain(each, uncertain) for each in finding.told)
+    finding = replace(finding, told=told, remarks=(*finding.remarks, *of_levels(table)))
     if finding.refused or known.knows_better("friction_input", finding.told):
         return finding, known
     gear = known.gear_set.gear.replace(friction_input=found.gear_set.gear.friction_input)
@@ -104,9 +112,11 @@ def _as_uncertain(told: Told, relative: float, beside: float = 0.0) -> Told:
 
 def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     at_input = "input_angle" in file.recording
+    if clipped := clipped_loop(file.recording):
+        raise ValueError(clipped)
     friction = known.friction if at_input else None
     found = twin(known.gear_set, friction=friction, torsion=file.recording, sources={"torsion": file.path.name})
-    finding = _of_twin(file, found)
+    finding = _of_twin(file, found, known.accept)
     parts = {"stiffness", "hysteresis"}
     if finding.refused or known.knows_better("stiffness", finding.told):
         return finding, known
@@ -114,13 +124,15 @@ def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     return finding, _with_gear(known, gear, found, parts).judged("stiffness", finding.told)
 
 
-def _of_twin(file: Recognised, found: Twin) -> Finding:
+def _of_twin(file: Recognised, found: Twin, accept: bool) -> Finding:
     evidence = found.evidence[-1]
-    remarks = (*file.remarks, *evidence.remarks)
+    exceeded = tuple(f"beyond what the maker allows: {check}" for check in found.ratings if check.exceeded)
+    remarks = (*file.remarks, *evidence.remarks, *exceeded)
     curves = curves_of(evidence.fit)
-    if doubts := evidence.doubts:
-        refused = "; ".join(f"{doubt.what}. What to do: {doubt.remedy}" for doubt in doubts)
-        return Finding(file.path.name, file, evidence.candidates[0][0], (), np.nan, remarks, refused, curves=curves)
+    doubts = tuple(f"{doubt.what}. What to do: {doubt.remedy}" for doubt in evidence.doubts)
+    if doubts and (evidence.unexplained or not accept):
+        refused = "; ".join(doubts)
+        return Finding(file.path.name, file, evidence.candidates[0][0], (), np.nan, remarks, refused=refused, curves=curves)
     own = {evidence.path(estimate) for estimate in evidence.fit.estimates}
     gear = found.gear_set.gear
     told = tuple(
@@ -129,7 +141,7 @@ def _of_twin(file: Recognised, found: Twin) -> Finding:
         if v.path in own
     )
     share = float(evidence.error[0] / np.std(evidence.fit.experiment.measured))
-    return Finding(file.path.name, file, evidence.candidates[0][0], told, share, remarks, curves=curves)
+    return Finding(file.path.name, file, evidence.candidates[0][0], told, share, remarks, doubts, curves=curves)
 
 
 def _with_gear(known: Known, gear: Any, found: Twin, parts: set[str], friction: Recording | None = None) -> Known:
@@ -218,16 +230,14 @@ def log_of(file: Recognised, known: Known) -> Taken:
         remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
         recording = recording.select([name for name in recording.names if name != "current"])
     log = MotionLog.of(recording, drive)
+    if np.ptp(recording[log.effort]) == 0.0:
+        raise ValueError(f"{log.effort} never changes: a set value, a limit, or a channel that was not recorded")
     before = regression(log, drive)
     if before.reversed:
         remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive)
         before = regression(log, drive)
-    if file.neighbours:
-        log, told = _with_neighbours(file, log, drive)
-        before = regression(log, drive)
-        remarks += told
     if not before.share > EXPLAINED or before.inertia <= 0.0:
         raise ValueError(
             f"inertia, friction and gravity explain {100.0 * max(before.share, 0.0):.0f} % of the variation of {log.effort}: "
@@ -236,24 +246,10 @@ def log_of(file: Recognised, known: Known) -> Taken:
         )
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
-        remarks.append(f"{spoilt_rows} samples of {log.effort} are outliers or clipped, and left out")
+        share = f"{spoilt_rows} samples of {log.effort}, {100.0 * spoilt_rows / len(recording):.2g} %"
+        remarks.append(f"{share}, are outliers or clipped, and left out")
     said = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     return Taken(log, drive, recording, tuple(remarks), in_current, said)
-
-
-def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[MotionLog, list[str]]:
-    """The log with the torque by other joints that move, and what to know of it."""
-    found = coupled(
-        log, drive, file.recording.time, {name: file.recording[at] for name, at in file.neighbours.items()}, file.joint
-    )
-    errors = f"error {100.0 * found.before:.2g} % of what varies without and {100.0 * found.after:.2g} % with them"
-    terms = list(found.log.regressors)
-    which = f"joints {listed(found.joints)} move too: "
-    if not terms:
-        return log, [f"{which}the torque shows nothing of them"]
-    own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
-    fitted_beside = f"{len(terms)} terms of them are fitted beside, {listed(terms)}; {errors}"
-    return found.log, [f"{which}{fitted_beside}; numbers are as sure as these terms: {own}"]
 
 
 def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
@@ -274,7 +270,7 @@ def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
 
 
 def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    taken = log_of(file, known)
+    taken, before = log_of(file, known), known.gear_set.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
     log = taken.log
     priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
@@ -288,7 +284,10 @@ def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
         remarks += errors.remarks
         known = _with_error(known, errors, file.path.name)
     every, curves = (*file.remarks, *remarks), curves_of(best.fit)
-    return Finding(file.path.name, file, best.name, tuple(told), best.error, every, curves=curves), known
+    law = best.fit.parts[0].model.gear.friction_input
+    unlike = None if in_current else unlike_set(law, before.friction_input, log.motion.speed, log.effort)
+    doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed))))
+    return Finding(file.path.name, file, best.name, tuple(told), best.error, every, doubts, curves=curves), known
 
 
 def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], name: str) -> Known:

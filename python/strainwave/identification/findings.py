@@ -56,6 +56,7 @@ class Finding:
         told: its numbers
         error: rms on data held out over the rms of what varied [1]; not a number where nothing was held out
         remarks: what to know of it, in short sentences
+        doubts: what speaks against the file as it was taken, though it is used
         refused: why nothing was found; empty where something was
         same_as: the file that shows the same measurement; empty where none does
         what: what it is, where the kind of the file does not say it
@@ -69,6 +70,7 @@ class Finding:
     told: tuple[Told, ...] = ()
     error: float = np.nan
     remarks: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
     refused: str = ""
     same_as: str = ""
     what: str = ""

@@ -10,6 +10,7 @@ from typing import Any
 from strainwave import kinematics
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
+from strainwave.files.tables import FORMATS
 from strainwave.identification import steady_runs
 from strainwave.identification.duplicates import same_as
 from strainwave.identification.each_file import fitted
@@ -19,12 +20,15 @@ from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.steady_runs import Run, run_of
+from strainwave.identification.suspicion import other_format
+from strainwave.messages import listed
 
 # What is needed to understand a file comes before it: friction before a loop that has it inside, both before logs, and what
 # happens at rest after what tells friction that slides.
 TURNS: dict[Kind, int] = {
     "friction": 0, "effort": 0, "torsion": 2, "encoders": 4, "log": 5, "presliding": 6, "breakaway": 7,
 }  # fmt: skip
+BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 RUNS = 1  # records at constant speed, all together
 ALIKE = 1e-9  # relative: two ratios that are one
 
@@ -51,6 +55,7 @@ def identify(
     files: Sequence[str | Path],
     *,
     mapping: Callable[[Path], FileMapping] | None = None,
+    accept: bool = False,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Identified:
     """Finds out what files of measurements are, fits each, and puts together what they tell of one gear.
@@ -58,8 +63,9 @@ def identify(
     Args:
         start: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
         files: tables of friction, torsion loops, logs of the drive, records of two encoders, records at constant speed,
-            friction at rest, in any format and order
+            friction at rest, in any format and order; of a folder all files that may be such
         mapping: what a person says of a file, where it says it not itself
+        accept: whether tables and loops are used in spite of doubts about their sizes
         progress: called with the name of each file as its turn comes
 
     Returns:
@@ -70,10 +76,11 @@ def identify(
     """
     if not files:
         raise ValueError("identify needs at least one file of measurements")
-    read = [_recognised(Path(path), mapping) for path in files]
+    paths = [file for path in files for file in _files(Path(path))]
+    read = [_recognised(path, mapping) for path in paths]
     recognised = [each for each in read if isinstance(each, Recognised)]
     start = _with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
-    found = _Found(Known(start), same_as(recognised))
+    found = _Found(Known(start, accept=accept), same_as(recognised), mapping)
     runs = list(found.runs(recognised))
     steady = {run.file.path for run in runs}
     for turn in range(max(TURNS.values()) + 1):
@@ -86,29 +93,38 @@ def identify(
                 found.take(file)
     found.take_turns(runs)
     own = [each if isinstance(each, Finding) else found.findings[each.path] for each in read]
-    findings = (*_named_apart(own, files, found.copies), *found.together)
+    findings = (*_named_apart(own, paths, found.copies), *found.together)
     numbers = numbers_of(findings)
     if not numbers:
-        reasons = "; ".join(f"{each.name}: {each.refused}" for each in findings if each.refused)
-        raise ValueError(f"no file tells anything of the gear: {reasons or 'nothing in them is told with certainty'}")
+        raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, findings))}")
     return Identified(start, findings, numbers, _with_means(found.known.gear_set, numbers))
+
+
+def _why_nothing(finding: Finding) -> str:
+    """Why a file tells no number."""
+    if finding.refused or finding.part_of:
+        return f"{finding.name}: {finding.refused or f'a part of the {finding.part_of}'}"
+    whys = dict.fromkeys(told.why for told in finding.told if told.why)
+    fitted = f"{finding.model} was fitted, but {'; '.join(whys)}" if whys else "nothing was fitted"
+    return f"{finding.name}: {fitted}; see whether columns, units and sides are what they are taken for"
 
 
 class _Found:
     """What is found, file by file."""
 
-    def __init__(self, known: Known, copies: Mapping[str, str]) -> None:
-        self.known, self.copies = known, copies
+    def __init__(self, known: Known, copies: Mapping[str, str], said: Callable[[Path], FileMapping] | None) -> None:
+        self.known, self.copies, self.said = known, copies, said
         self.findings = dict[Path, Finding]()
         self.together = list[Finding]()
 
     def take(self, file: Recognised) -> None:
         """Fits a file; one that shows what another one shows tells its numbers, and changes nothing of the gear."""
-        before = _with_ratio(self.known, file)
+        side = self.said(file.path).side if self.said is not None else None
+        before = replace(_with_ratio(self.known, file), side=side)
         try:
             found, after = fitted(file, before)
         except (ValueError, FloatingPointError) as error:
-            found, after = Finding(file.path.name, file, refused=str(error)), before
+            found, after = Finding(file.path.name, file, refused=_without_name(str(error), file.path)), before
         self.findings[file.path] = found
         if str(file.path) not in self.copies:
             self.known = _with_kinematics(after, self.known.gear_set)
@@ -145,9 +161,8 @@ class _Found:
             self.together.append(Finding("friction over the angle", refused=str(error)))
 
 
-def _named_apart(findings: Sequence[Finding], files: Sequence[str | Path], copies: Mapping[str, str]) -> tuple[Finding, ...]:
+def _named_apart(findings: Sequence[Finding], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[Finding, ...]:
     """The findings by the names of their files; with their folders, where names come twice."""
-    paths = [Path(path) for path in files]
     names = [path.name if sum(path.name == each.name for each in paths) == 1 else str(path) for path in paths]
     by_path = dict(zip(map(str, paths), names, strict=True))
     return tuple(
@@ -157,10 +172,30 @@ def _named_apart(findings: Sequence[Finding], files: Sequence[str | Path], copie
 
 
 def _recognised(path: Path, mapping: Callable[[Path], FileMapping] | None) -> Recognised | Finding:
+    if path.is_dir() and not Path(path, BAG).is_file():
+        known = listed(f"*{suffix}" for suffix in FORMATS)
+        return Finding(path.name, refused=f"the folder holds no file that may be a measurement, as {known}")
+    if other := other_format(path):
+        return Finding(path.name, refused=other)
     try:
         return recognise(path, mapping(path) if mapping is not None else None)
     except (ValueError, OSError) as error:
-        return Finding(path.name, refused=str(error).removeprefix(f"{path}: "))
+        return Finding(path.name, refused=_without_name(str(error), path))
+
+
+def _without_name(told: str, path: Path) -> str:
+    """What is told of a file, without its name before it, as the name is told beside it."""
+    for name in (str(path), path.name):
+        for end in (": ", " "):
+            told = told.removeprefix(name + end)
+    return told
+
+
+def _files(path: Path) -> list[Path]:
+    """A file; of a folder the files in it that may be measurements; the folder itself where there are none, or it is a bag."""
+    if not path.is_dir() or Path(path, BAG).is_file():
+        return [path]
+    return sorted(file for file in path.rglob("*") if file.suffix.lower() in FORMATS and file.is_file()) or [path]
 
 
 # ---- The ratio ---------------------------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.evidence.verdict import numbers
 from strainwave.identification.findings import Told
+from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 
 MODULATING = ("cyclic", "thermal")  # laws that vary another one
@@ -26,12 +27,16 @@ class Known:
         gear_set: the set, with what earlier files have told of it
         friction: the recording of a friction table, if one was given
         told: parts of the gear that earlier files have told
+        side: what a person says of the side of the file that is fitted next; None where nothing
+        accept: whether files are used in spite of doubts about their sizes
         sigmas: standard deviation of the first number of friction and spring, as the file has it that tells the part
     """
 
     gear_set: GearSet
     friction: Recording | None = None
     told: frozenset[str] = frozenset()
+    side: Side | None = None
+    accept: bool = False
     sigmas: Mapping[str, float] = field(default_factory=dict)
 
     def knows_better(self, part: str, told: Sequence[Told]) -> bool:

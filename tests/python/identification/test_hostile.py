@@ -1,0 +1,200 @@
+"""Files as they should not be: each is used and it is said how, or refused with reason and remedy; none crashes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.identification.identify import Identified, identify
+from strainwave.identification.reading.mapping import FileMapping
+
+from tests.python.command import strainwave
+from tests.python.identification.candidates.test_motion import TRUTH, record
+from tests.python.identification.test_further_kinds import SPEEDS, table, write
+
+CONSTANT = 0.08  # N.m/A
+UNITS = {"speed": "rad/s", "torque": "N.m"}
+SPEED = np.array([*SPEEDS, *(-each for each in SPEEDS)])
+TORQUE = np.sign(SPEED) * (0.05 + 3e-4 * np.abs(SPEED))
+LOG = record(TRUTH, 0.05, 3)
+CURRENT, ANGLE = LOG["current"], LOG.values("input_angle", "rad")
+
+
+def motor_of(start: sw.GearSet) -> sw.GearSet:
+    motor = sw.motor.DC(resistance=0.4, torque_constant=CONSTANT, back_emf=CONSTANT, inertia=1e-4 - start.gear.input_inertia)
+    sources = {f"motor.{each['name']}": sw.Entry("measured", uncertainty=0.0) for each in motor.fields}
+    return start.replace(motor=motor, sources={**start.sources, **sources})
+
+
+START = motor_of(sw.GearSet.read("hfuc-20-80"))
+Make = Callable[[Path], Path]
+
+
+def text(name: str, content: str | bytes) -> Make:
+    def make(folder: Path) -> Path:
+        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        return folder / name
+
+    return make
+
+
+def log(**changed: np.ndarray) -> Make:
+    def make(folder: Path) -> Path:
+        recording = LOG
+        for name, values in changed.items():
+            recording = recording.with_column(name, values, LOG.unit(name))
+        recording.to_csv(folder / "log.csv")
+        return folder / "log.csv"
+
+    return make
+
+
+def friction(speed: object, torque: object) -> Make:
+    return lambda folder: write(folder / "table.csv", {"speed": speed, "torque": torque}, UNITS)
+
+
+def twisted(twist_factor: float = 1.0, torque_factor: float = 1.0, limit: float = np.inf) -> Make:
+    twist = 1.5e-3 * np.interp(np.linspace(0.0, 5.0, 200), range(6), [0, 1, -1, 1, -1, 1])
+    torque = np.clip(np.asarray(START.gear.trace(twist)), -limit, limit) * torque_factor
+    columns = {"twist": twist * twist_factor, "torque": torque}
+    return lambda folder: write(folder / "loop.csv", columns, {"twist": "rad", "torque": "N.m"})
+
+
+def folder_of(*, empty: bool) -> Make:
+    def make(folder: Path) -> Path:
+        (folder / "bench").mkdir()
+        (folder / "bench" / "notes.md").write_text("a note")
+        if not empty:
+            table(folder / "bench" / "table.csv")
+        return folder / "bench"
+
+    return make
+
+
+def one_way() -> np.ndarray:
+    return np.cumsum(np.abs(np.gradient(ANGLE)))
+
+
+def with_texts() -> str:
+    rows = [
+        f"{speed}{' 1/min' if place % 2 else ''},{torque}"
+        for place, (speed, torque) in enumerate(zip(SPEED, TORQUE, strict=True))
+    ]
+    return "\n".join(["speed [rad/s],torque [N.m]", *rows])
+
+
+REFUSED: dict[str, tuple[Make, str]] = {
+    "a picture": (text("photo.csv", b"\x89PNG\r\n\x1a\n" + bytes(range(256))), r"it is a picture \(PNG\): export"),
+    "a spreadsheet": (text("sheet.csv", b"PK\x03\x04" + bytes(60)), "a ZIP archive, as spreadsheets are: export"),
+    "an empty file": (text("nothing.csv", ""), "nothing.csv: is empty"),
+    "a header only": (text("head.csv", "speed [rad/s],torque [N.m]\n"), "has a header but no rows"),
+    "three rows": (text("few.csv", "time [s],input_angle [rad],current [A]\n0,0,0\n1,1,1\n2,2,2\n"), "has 3 samples; at least"),
+    "a wrong delimiter": (text("bars.csv", "speed|torque\n1|0.05\n2|0.06\n3|0.07\n4|0.08\n"), "bars.csv: "),
+    "no file": (lambda folder: folder / "none.csv", "cannot be read: No such file"),
+    "an empty folder": (folder_of(empty=True), r"holds no file that may be a measurement, as \*\.csv"),
+    "texts among numbers": (text("texts.csv", with_texts()), r"columns not used: speed \[rad/s\]: does it hold texts"),
+    "a constant current": (log(current=np.full(len(CURRENT), 1.0)), "current never changes: a set value, a limit"),
+    "a shaft that stands": (log(input_angle=np.full(len(ANGLE), 1.0)), "the angle never changes"),
+    "a log one way": (log(input_angle=one_way()), "record motion both ways"),
+    "degrees called radians": (log(input_angle=np.degrees(ANGLE)), "see whether columns, units and sides"),
+    "swapped columns of a log": (log(input_angle=CURRENT, current=ANGLE), "log.csv: .*(both ways|units)"),
+    "swapped columns of a table": (friction(TORQUE, SPEED), "the gear it starts from has.*units of both columns"),
+    "a table of mN.m called N.m": (friction(SPEED, 1e3 * TORQUE), "perhaps the torque is in mN.m, not in N.m"),
+    "a table of 1/min called rad/s": (friction(30.0 / np.pi * SPEED, TORQUE), "speeds may be in 1/min"),
+    "a reversed torque of a table": (friction(SPEED, -TORQUE), "the torque drives the motion.*give it the sign of the speed"),
+    "rest in a table": (friction([*SPEED, 0.0], [*TORQUE, 0.0]), "sample 12 has speed 0.*leave it out"),
+    "two speeds only": (friction([10.0, 100.0] * 3, [0.053, 0.08] * 3), "at least 4|different speeds"),
+    "a loop in degrees": (twisted(twist_factor=180.0 / np.pi), "perhaps the angle is in deg, not in rad"),
+    "a loop reversed": (twisted(torque_factor=-1.0), "reverse the sign of one of the two columns"),
+    "a clipped loop": (twisted(limit=15.0), "torque stays at 15 N.m for .* samples while twist goes on"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_used_is_refused_with_reason_and_remedy(tmp_path: Path, name: str) -> None:
+    make, told = REFUSED[name]
+    with pytest.raises(ValueError, match=f"(?s)no file tells anything of the gear: .*{told}"):
+        identify(START, [make(tmp_path)])
+
+
+def outlying() -> np.ndarray:
+    random, values = np.random.default_rng(1), CURRENT.copy()
+    hit = random.choice(len(values), len(values) // 50, replace=False)
+    values[hit] += 20.0 * random.standard_normal(len(hit))
+    return values
+
+
+LIMIT = 0.6 * float(np.abs(CURRENT).max())
+SAID: dict[str, tuple[Make, str]] = {
+    "a reversed current": (log(current=-CURRENT), "current is counted against the motion: its sign is turned round"),
+    "outliers": (log(current=outlying()), r"samples of current, [\d.]+ %, are outliers or clipped, and left out"),
+    "a clipped current": (log(current=np.clip(CURRENT, -LIMIT, LIMIT)), r"%, are outliers or clipped, and left out"),
+}
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_a_spoilt_log_is_used_and_what_was_done_is_said(tmp_path: Path, name: str) -> None:
+    make, told = SAID[name]
+    found = identify(START, [make(tmp_path)])
+    assert any(re.search(told, remark) for remark in found.findings[0].remarks)
+    number = next(each.told for each in found.numbers if each.told.path == "load.inertia")
+    assert number.value == pytest.approx(TRUTH["inertia"], abs=max(4.0 * number.sigma, 0.02 * TRUTH["inertia"]))
+
+
+def test_milliamperes_called_amperes_are_doubted(tmp_path: Path) -> None:
+    found = identify(START, [log(current=1e3 * CURRENT)(tmp_path)])
+    (doubt,) = found.findings[0].doubts
+    assert "a factor of 1000 lies between mA and A" in doubt
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (friction(SPEED[:6], TORQUE[:6]), "it holds one direction only: a zero error of the torque"),
+        (friction(SPEED, np.full(len(SPEED), 0.05)), "all its torques are of one size"),
+    ],
+)
+def test_what_a_table_cannot_tell_is_said(tmp_path: Path, make: Make, told: str) -> None:
+    assert any(told in remark for remark in identify(START, [make(tmp_path)]).findings[0].remarks)
+
+
+def both(folder: Path) -> Identified:
+    (folder / "again").mkdir()
+    files = [table(folder / "one.csv"), table(folder / "again" / "one.csv")]
+    return identify(START, files)
+
+
+def test_a_file_given_twice_counts_once(tmp_path: Path) -> None:
+    found = both(tmp_path)
+    assert found.findings[1].same_as == found.findings[0].name
+    number = next(each for each in found.numbers if each.told.path.endswith("coulomb"))
+    assert number.mean_of == (number.source,)
+
+
+def test_a_doubted_table_is_used_if_it_is_accepted(tmp_path: Path) -> None:
+    path = friction(SPEED, 1e3 * TORQUE)(tmp_path)
+    found = identify(START, [path], accept=True)
+    assert "867 times" in found.findings[0].doubts[0]
+    assert next(each.told.value for each in found.numbers if "coulomb" in each.told.path) == pytest.approx(50.0)
+    said = identify(START, [path], mapping=lambda _: FileMapping(side="input"))
+    assert not said.findings[0].doubts
+
+
+def test_a_folder_stands_for_the_measurements_in_it(tmp_path: Path) -> None:
+    found = identify(START, [folder_of(empty=False)(tmp_path)])
+    assert [each.name for each in found.findings] == ["table.csv"]
+
+
+def test_one_bad_file_does_not_stop_the_command_and_only_bad_files_do(tmp_path: Path) -> None:
+    good, bad = table(tmp_path / "good.csv"), text("photo.csv", b"\x89PNG\r\n\x1a\n")(tmp_path)
+    done = strainwave("identify", "hfuc-20-80", good, bad, "--out", "out", folder=tmp_path)
+    assert done.returncode == 0
+    assert "NOT USED: its name says .csv, but it is a picture (PNG)" in done.stdout
+    done = strainwave("identify", "hfuc-20-80", bad, "--out", "out2", folder=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stdout + done.stderr
+    assert not (tmp_path / "out2").exists()
