@@ -15,6 +15,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion, regression
 from strainwave.identification.contact import breakaway, presliding
 from strainwave.identification.curves import curves_of, curves_of_orders
+from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.fitting.estimate import Estimate
@@ -238,6 +239,10 @@ def log_of(file: Recognised, known: Known) -> Taken:
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive)
         before = regression(log, drive)
+    if file.neighbours:
+        log, told = _with_neighbours(file, log, drive)
+        before = regression(log, drive)
+        remarks += told
     if not before.share > EXPLAINED or before.inertia <= 0.0:
         raise ValueError(
             f"inertia, friction and gravity explain {100.0 * max(before.share, 0.0):.0f} % of the variation of {log.effort}: "
@@ -250,6 +255,21 @@ def log_of(file: Recognised, known: Known) -> Taken:
         remarks.append(f"{share}, are outliers or clipped, and left out")
     said = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     return Taken(log, drive, recording, tuple(remarks), in_current, said)
+
+
+def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[MotionLog, list[str]]:
+    """The log with the torque by other joints that move, and what to know of it."""
+    found = coupled(
+        log, drive, file.recording.time, {name: file.recording[at] for name, at in file.neighbours.items()}, file.joint
+    )
+    errors = f"error {100.0 * found.before:.2g} % of what varies without and {100.0 * found.after:.2g} % with them"
+    terms = list(found.log.regressors)
+    which = f"joints {listed(found.joints)} move too: "
+    if not terms:
+        return log, [f"{which}the torque shows nothing of them"]
+    own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
+    fitted_beside = f"{len(terms)} terms of them are fitted beside, {listed(terms)}; {errors}"
+    return found.log, [f"{which}{fitted_beside}; numbers are as sure as these terms: {own}"]
 
 
 def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:
