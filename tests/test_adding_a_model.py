@@ -32,6 +32,8 @@ USUAL = "one of the models whose drives run in code of their own, for speed"
 SERIES = "stages become one spring, with which runs are faster"
 PRINTED = "of a gear that a printed table of four stiffnesses is made into"
 SHEET = "what a data sheet tells of a gear"
+AT_REST = "a law of sliding of which the numbers stand in a law of bristles, too"
+SAID = "the ratio that a person says of files"
 RIGID = "what a rigid drive that is moved by hand or motor carries"
 TRIED = "identification/candidates/"  # where a fit of each model starts that is tried on a measurement, is said there
 ELSEWHERE = {
@@ -68,9 +70,11 @@ ELSEWHERE = {
         "analysis/linear.py": "holds the input while the output vibrates",
         "friction/asymmetric.hpp": "what it modulates by default",
         "friction/thermal.hpp": "what it modulates by default",
+        "identification/contact.py": AT_REST,
         "identification/dynamics/log.py": LOG,
     },
     "Stribeck": {
+        "identification/contact.py": AT_REST,
         "specialised.hpp": USUAL,
         "friction/cyclic.hpp": "what it modulates by default",
     },
@@ -112,17 +116,21 @@ ELSEWHERE = {
     },
     "StrainWave": {
         "files/datasheet.py": SHEET,
+        "identification/identify.py": SAID,
         "identification/evidence/explain.py": "the ratio that two encoders show, as one of teeth",
     },
     "Stochastic": {"specialised.hpp": USUAL, "analysis/steady.py": STEADY_RUNNING},
     "LuGre": {
+        "identification/contact.py": "whose breakaway torque ramps tell",
         "specialised.hpp": USUAL,
     },
     "Cyclic": {
         "any.hpp": BOUND_TO_ANY,
+        "identification/steady_runs.py": "waves found over the angle, around the friction that is known",
     },
     "Thermal": {
         "any.hpp": BOUND_TO_ANY,
+        "identification/warmed.py": "how the friction that is known falls while a drive warms up",
     },
     "Preisach": {"any.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
@@ -136,7 +144,7 @@ ELSEWHERE = {
         "studies/actuator_ramp.py": SERIES,
         "rig/virtual/printed.py": PRINTED,
     },
-    "PlainRatio": {"rig/virtual/printed.py": PRINTED},
+    "PlainRatio": {"identification/identify.py": SAID, "rig/virtual/printed.py": PRINTED},
     "Regimes": {"rig/virtual/printed.py": PRINTED},
     "Piecewise": {"specialised.hpp": USUAL},
     "ThreeSegment": {
