@@ -21,14 +21,15 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, Squared
-from strainwave.identification.fitting.problem import Problem, Record
+from strainwave.identification.fitting.problem import Problem, Record, Weights
 from strainwave.identification.fitting.unknowns import AT, Plan, plan
 from strainwave.messages import listed, quoted, shortened
 from strainwave.simulation.resolution import warn_of_bristles
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps end far below it where residuals are small
-ROUGH = 1e-3  # the same of the pass that finds how the channels weigh
+ROUGH = 1e-3  # the same of the passes that find how the channels weigh
+ROUGH_PASSES = 4  # at most, of one step each, behind the first
 PASSES = 5  # at most, of those that are exact
 SETTLED = 0.2  # relative change of weights that calls for no further pass
 OF_GEAR = (FrictionTable, TorsionLoop)  # what is measured on a gear, also where the model is of a drive
@@ -273,12 +274,17 @@ def _solved(problem: Problem, named: Literal["linear", "soft_l1"]) -> Fit:
         _check_motion(record.experiment, predicted)
     channels = sum(len(record.experiment.channels) for record in records)
     alone = channels == 1 and not problem.plan.priors and isinstance(loss, Squared)  # where weights change nothing
-    for tolerance in (TOLERANCE,) if alone else (ROUGH, *PASSES * (TOLERANCE,)):
-        before, x = weights, problem.solve(x, weights, loss, tolerance)
+    if not alone:
+        x = problem.solve(x, weights, loss, ROUGH)
+        for _ in range(ROUGH_PASSES):
+            before, weights = weights, problem.weights(x, weights, loss)
+            if _change(before, weights) < SETTLED:
+                break
+            x = problem.solve(x, weights, loss, ROUGH, trials=2)  # where it stands, and one step
+    for _ in range(1 if alone else PASSES):
+        before, x = weights, problem.solve(x, weights, loss, TOLERANCE)
         weights = problem.weights(x, before, loss)
-        if tolerance == TOLERANCE and all(
-            np.abs(np.log(new.rows / old.rows)).max() < SETTLED for new, old in zip(weights, before, strict=True)
-        ):
+        if _change(before, weights) < SETTLED:
             break
     estimates, covariance = problem.estimates(x, weights, loss)
     parts = tuple(
@@ -286,6 +292,11 @@ def _solved(problem: Problem, named: Literal["linear", "soft_l1"]) -> Fit:
         for name, record, (predicted, _) in zip(problem.names, records, problem.predict(x), strict=True)
     )
     return Fit(parts[0].model, estimates, covariance, parts, problem.plan, named, problem.evaluations)
+
+
+def _change(before: Sequence[Weights], after: Sequence[Weights]) -> float:
+    """The largest relative change of weights."""
+    return max(float(np.abs(np.log(new.rows / old.rows)).max()) for old, new in zip(before, after, strict=True))
 
 
 def _check_kinds(model: object, loss: object) -> None:

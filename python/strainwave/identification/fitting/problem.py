@@ -236,8 +236,16 @@ class Problem:
             found.append(Weights(1.0 / sigma, np.full((channels, 1), together)))
         return found
 
-    def solve(self, start: Array, weights: Sequence[Weights], loss: Loss, tolerance: float, held: Sequence[int] = ()) -> Array:
-        """The unknowns of least cost; those held stay where they start."""
+    def solve(
+        self,
+        start: Array,
+        weights: Sequence[Weights],
+        loss: Loss,
+        tolerance: float,
+        held: Sequence[int] = (),
+        trials: int = TRIALS,
+    ) -> Array:
+        """The unknowns of least cost, or those of the last step that may be tried; those held stay where they start."""
         from scipy.optimize import least_squares
 
         low, high = self.limits().T
@@ -290,7 +298,7 @@ class Problem:
                     xtol=tolerance,
                     ftol=tolerance,
                     gtol=tolerance,
-                    max_nfev=TRIALS,
+                    max_nfev=trials,
                 )
             except _SettledError as settled:
                 return with_free(settled.part)
