@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, friction, loads
 from strainwave.equality import ComparedByFields
-from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, per_torque
+from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, per_torque
+from strainwave.identification.experiments.stages import series_compliance
 from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
@@ -130,6 +131,7 @@ def fit_motion(
     found = {name: regression(log, drive) for name, log in logs.items()}
     start, free = _start(drive, found, inertia)
     load = [path for path in free if path.startswith("load.")] if own_load else []
+    logs, found = _rigid(logs, drive, found)
     logs = {name: _with_delay(log, start, free, found[name]) for name, log in logs.items()}
     fastest = max(float(np.abs(log.motion.speed).max()) for log in logs.values())
     tried = [_candidate(each, logs, free, load, kept, priors or {}) for each in _frictions(start, fastest)]
@@ -150,7 +152,7 @@ def _start(drive: Drive, found: Mapping[str, Regression], inertia: str) -> tuple
     law = friction.Coulomb(
         coulomb=max(middle["coulomb"], least), breakaway=max(middle["coulomb"], least), viscous=max(middle["viscous"], 0.0)
     )
-    drive = drive.replace(gear=drive.gear.replace(friction_input=law))
+    drive = drive.replace(gear=drive.gear.replace(friction_input=law, friction_mesh=FRICTIONLESS))  # what is sought anew
     total = max(middle["inertia"], 1e-9)
     if inertia == "load.inertia":
         carried = max(total - drive.motor.inertia - drive.gear.input_inertia, 0.02 * total) * ratio**2
@@ -158,6 +160,33 @@ def _start(drive: Drive, found: Mapping[str, Regression], inertia: str) -> tuple
         return drive.replace(load=load), [inertia, "load.gravity_torque", "load.gravity_phase"]
     rest = total - drive.gear.input_inertia - inertia_of(drive) / ratio**2
     return drive.replace(motor=drive.motor.replace(inertia=max(rest, 0.02 * total))), [inertia]
+
+
+def natural_frequency(drive: Drive, carried: float) -> float:
+    """Of an inertia on the spring of the gear, its input held [Hz]; infinite where nothing gives way, or it has play."""
+    softness = 1.0 / stiffness if (stiffness := drive.gear.stiffness.tangent(0.0)) > 0.0 else 0.0
+    softness += series_compliance(drive.gear)
+    return float(1.0 / (2.0 * np.pi * np.sqrt(softness * carried))) if softness * carried > 0.0 else np.inf
+
+
+def _rigid(
+    logs: Mapping[str, MotionLog], drive: Drive, found: Mapping[str, Regression]
+) -> tuple[dict[str, MotionLog], dict[str, Regression]]:
+    """The logs where their drive is rigid: below what gear and load vibrate with, where less is left unexplained than in all.
+
+    A spring that was taken from a catalogue may be none of this drive.
+    """
+    rigid, again = dict(logs), dict(found)
+    rotor, ratio = drive.motor.inertia + drive.gear.input_inertia, drive.gear.kinematics.ratio
+    for name, log in logs.items():
+        frequency = natural_frequency(drive, max(found[name].inertia - rotor, 0.0) * ratio**2)
+        try:
+            below = log.below(frequency)
+        except ValueError:  # it moves as fast as it vibrates
+            continue
+        if (there := regression(below, drive)).share > found[name].share:
+            rigid[name], again[name] = below, there
+    return rigid, again
 
 
 def _with_delay(log: MotionLog, drive: Drive, free: Sequence[str], found: Regression) -> MotionLog:

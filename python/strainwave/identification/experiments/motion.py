@@ -6,7 +6,7 @@ an equation that is linear does not bias it (`dynamics.inverse_dynamics` says wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -25,6 +25,7 @@ REACH = 20  # samples compared, each side: there the response of the filter is b
 EDGE = 5  # samples of the decimated series that the ends of the filters spoil, each side
 GAP = 2.5  # intervals: a longer one is a gap, over which nothing is known
 CATMULL_ROM = np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]]) / 2  # of 1, u, u2, u3: of four samples
+SLOW = 0.5  # of the power of the acceleration: of a motion that is slower than vibrations (assumed)
 FEWEST = 200  # samples that a motion is worked out from
 
 
@@ -70,6 +71,27 @@ class Motion(ComparedByFields):
         response = signal.sosfiltfilt(signal.butter(4, PASS_BAND * self.cutoff, fs=1.0 / self.step, output="sos"), impulse)
         distance = self.every * np.arange(-REACH, REACH + 1)[:, np.newaxis] - np.arange(self.every)
         return np.ascontiguousarray(response[half + distance])
+
+    def below(self, frequency: float) -> Motion:
+        """The same, compared far below a vibration of this frequency [Hz], and not for one period of it behind a reversal.
+
+        Friction that turns over makes a load ring on its spring. That ring averages out over time, but not over what is left of
+        it where the reversal itself takes no part.
+
+        Raises:
+            ValueError: too little of the motion is as slow as that
+        """
+        turned = self.time[1:][np.diff(np.sign(self.speed)) != 0.0]
+        last = np.concatenate(([-np.inf], turned))[np.searchsorted(turned, self.time, "right")]
+        cutoff = min(self.cutoff, frequency)
+        every = max(self.every, _every(cutoff, self.step))
+        known = self.known & (self.time - last > 1.0 / frequency)
+        known[: EDGE * every] = known[-EDGE * every :] = False
+        left = replace(self, known=known, every=every, cutoff=cutoff)
+        slow = np.mean(left.filtered(self.acceleration) ** 2) if len(left.rows) else 0.0
+        if slow < SLOW * np.mean(self.acceleration[known] ** 2):
+            raise ValueError(f"the shaft itself moves about as fast as a vibration of {frequency:.3g} Hz")
+        return left
 
     def filtered(self, series: Array) -> Array:
         """Series on the grid in the pass band, at the samples compared: shape (…, n) becomes (…, rows).
@@ -128,13 +150,18 @@ def motion_of(time: Array, angle: Array, cutoff: float | None = None, slid: floa
     frequency, power, of_noise, noise = spectra(regular, step)
     if cutoff is None:
         cutoff = widest_cutoff(frequency, power, of_noise, 1.0 / step)
-    every = max(1, round(1.0 / (step * 2.0 * PASS_BAND * cutoff)))  # at twice the pass band, where noise is white
+    every = _every(cutoff, step)
     smooth = signal.sosfiltfilt(signal.butter(4, cutoff, fs=1.0 / step, output="sos"), regular)
     quick = signal.sosfiltfilt(signal.butter(4, min(WIDER * cutoff, 0.4 / step), fs=1.0 / step, output="sos"), regular)
     speed, acceleration = _rate(quick, step), _second_rate(smooth, step)
     known = ~near_rest(regular, every, noise) & ~_in_gap(time, grid, step, every) & ~_turning(regular, speed, slid)
     known[: EDGE * every] = known[-EDGE * every :] = False
     return Motion(grid, smooth, speed, acceleration, known, every, cutoff)
+
+
+def _every(cutoff: float, step: float) -> int:
+    """How many samples one that is compared stands for: at twice the pass band residuals of noise are white."""
+    return max(1, round(1.0 / (step * 2.0 * PASS_BAND * cutoff)))
 
 
 def _rate(series: Array, step: float) -> Array:

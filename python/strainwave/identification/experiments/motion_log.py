@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, arguments, friction, loads
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
+from strainwave.identification.experiments.branches import noise
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
 from strainwave.identification.experiments.motion import Motion, motion_of
@@ -40,7 +42,7 @@ class MotionLog(ComparedByFields):
     Args:
         motion: of the input
         effort: what was compared: `current`, `input_torque`, `joint_torque` (the motor's, counted at the output) or `voltage`
-        measured: in the pass band, shape (1, n)
+        force: the effort on the grid of the motion, shape (m,)
         extra: torque of other bodies that hold the output back, on the grid of the motion [N.m]; zero if nothing is known
         regressors: series on the grid whose share in the torque of the output is an unknown, by name
         delayed: whether a delay of the effort is an unknown
@@ -50,7 +52,7 @@ class MotionLog(ComparedByFields):
 
     motion: Motion
     effort: str
-    measured: Array
+    force: Array
     extra: Array
     regressors: Mapping[str, Array] = field(default_factory=dict)
     delayed: bool = False
@@ -95,9 +97,14 @@ class MotionLog(ComparedByFields):
         motion = replace(motion, known=motion.known & (on_grid(sound.astype(float)) == 1.0))
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
-            motion, effort, motion.filtered(force)[np.newaxis], known,
+            motion, effort, force, known,
             {name: on_grid(recording[name]) for name in regressors}, samples=len(recording),
         )  # fmt: skip
+
+    @cached_property
+    def measured(self) -> Array:
+        """The effort in the pass band, shape (1, n)."""
+        return self.motion.filtered(self.force)[np.newaxis]
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -119,6 +126,16 @@ class MotionLog(ComparedByFields):
         described += [(f"share of {name}", "1") for name in self.regressors]
         starts = self.starts or (0.0,) * len(described)
         return tuple(Nuisance(name, unit, start) for (name, unit), start in zip(described, starts, strict=True))
+
+    def below(self, frequency: float) -> MotionLog:
+        """The same, compared far below a vibration of load and gear of this frequency [Hz]: above, the drive is not rigid.
+
+        Raises:
+            ValueError: too little of the motion is left
+        """
+        motion = self.motion.below(frequency)
+        _check_both_ways(motion)
+        return replace(self, motion=motion)
 
     def with_delay(self) -> MotionLog:
         """The same, with a delay of the effort behind the motion as an unknown."""
@@ -288,15 +305,16 @@ def _check_both_ways(motion: Motion) -> None:
 def spoilt(values: Array) -> NDArray[np.bool_]:
     """Samples that are outliers among their neighbours, or clipped at the end of the range.
 
-    Outliers by the median of seven and the median deviation from it (Hampel 1974, 6 standard deviations). Clipped: the largest
-    or smallest level that comes again and again, though an outlier may lie beyond.
+    Outliers: farther off the median of seven than six standard deviations of the noise (Hampel 1974). The noise is that of
+    second differences: the median follows both noise and motion, so that what is off it would tell too little. Clipped: the
+    largest or smallest level that comes again and again, though an outlier may lie beyond.
     """
     from scipy import ndimage
 
-    off = np.abs(values - ndimage.median_filter(values, 7, mode="nearest"))
-    scale = float(np.median(off)) / 0.6745
-    outliers = off > OUTLYING * scale if scale > 0.0 else np.zeros(len(values), bool)
     clipped = _clipped(values) | _clipped(-values)
+    off = np.abs(values - ndimage.median_filter(values, 7, mode="nearest"))
+    scale = noise(values[~clipped]) if np.median(off) > 0.0 else np.inf  # without noise extremes look like outliers
+    outliers = off > OUTLYING * scale
     spoilt_ones: NDArray[np.bool_] = outliers | clipped
     return spoilt_ones
 

@@ -177,6 +177,50 @@ def test_outliers_and_clipped_samples_are_found_and_no_others() -> None:
     assert np.mean(np.delete(spoilt(outlying), hit)) < 0.01
 
 
+def test_noise_and_what_is_smooth_are_no_outliers() -> None:
+    random = np.random.default_rng(5)
+    for smooth in (np.sin(TIME), np.sin(40.0 * TIME), np.abs(np.sin(3.0 * TIME))):
+        assert np.mean(spoilt(smooth)) < 2e-3
+        for noise in (1e-4, 1e-2, 0.3):
+            assert np.mean(spoilt(smooth + noise * random.standard_normal(len(TIME)))) < 1e-3
+
+
+def ringing(truth: dict[str, float], stiffness: float, seed: int) -> sw.Recording:
+    """A record of a load on a spring, its motor moved as by a stiff servo: joint and motor by semi-implicit Euler."""
+    step, damping = 1e-4, 12.0
+    time = np.arange(0.0, 20.0, step)
+    wanted = RATIO * (0.9 * np.sin(0.7 * time) + 0.25 * np.sin(2.9 * time + 0.6) - 0.25 * np.sin(0.6))
+    angle = speed = turned = turning = 0.0
+    rows = []
+    for k in range(len(time)):
+        spring = stiffness * (angle / RATIO - turned) + damping * (speed / RATIO - turning)
+        friction = truth["coulomb"] * np.tanh(speed / 0.05) + truth["viscous"] * speed
+        rate = (wanted[min(k + 1, len(time) - 1)] - wanted[k]) / step
+        servo = 1.0 * (wanted[k] - angle) + 0.03 * (rate - speed)
+        if k % 20 == 0:
+            rows.append((time[k], angle, servo))
+        speed += step * (servo - friction - spring / RATIO) / MOTOR
+        turning += step * (spring - truth["gravity"] * np.sin(turned + truth["phase"])) / truth["inertia"]
+        angle, turned = angle + step * speed, turned + step * turning
+    clock, motor, torques = np.array(rows).T
+    current = torques / 0.08 + 0.05 * np.random.default_rng(seed).standard_normal(len(clock))
+    columns = {"time": clock, "input_angle": motor, "current": current}
+    return sw.Recording(columns, {"time": "s", "input_angle": "rad", "current": "A"})
+
+
+def test_a_load_that_rings_on_its_spring_moves_no_friction() -> None:
+    truth = TRUTH | {"inertia": 1.6}
+    stiff = drive().replace(gear=drive().gear.replace(stiffness=sw.stiffness.Linear(k=1.2e4)))
+    best = fit_motion({"log": MotionLog.of(ringing(truth, 1.2e4, 1), stiff)}, stiff)[0]
+    log = best.fit.parts[0].experiment
+    assert isinstance(log, MotionLog)
+    assert log.motion.cutoff == pytest.approx(np.sqrt(1.2e4 / 1.6) / (2.0 * np.pi), rel=0.05)
+    values = {each.path: each.value for each in best.fit.estimates}
+    assert values[NAMES["coulomb"]] == pytest.approx(truth["coulomb"], rel=0.01)
+    assert values[NAMES["viscous"]] == pytest.approx(truth["viscous"], rel=0.02)
+    assert values[NAMES["gravity"]] == pytest.approx(truth["gravity"], rel=0.005)
+
+
 def test_a_log_that_does_not_tell_the_torque_or_the_motion_is_refused() -> None:
     only = sw.Recording({"time": TIME, "input_angle": RATIO * ANGLE}, {"time": "s", "input_angle": "rad"})
     with pytest.raises(ValueError, match="which tell the torque"):
