@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.file_options import Columns, Joint, Units
+from strainwave.file_options import Columns, Joint, Kind, Units
 
 if TYPE_CHECKING:
     from strainwave.identification.orders.measured import OrdersFound
@@ -26,6 +26,7 @@ def orders(
     ] = None,
     rate: Annotated[float | None, typer.Option(help="Samples per second of files without time, in Hz.")] = None,
     joint: Joint = None,
+    kind: Kind = None,
     highest: Annotated[float | None, typer.Option(help="Order up to which ripple is looked for.")] = None,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
 ) -> None:
@@ -52,7 +53,7 @@ def orders(
         for path in paths:
             status.update(path.name)
             try:
-                found.append(_of_file(path, ratio, column or (), unit or (), side, rate, joint, highest))
+                found.append(_of_file(path, ratio, column or (), unit or (), side, rate, joint, kind, highest))
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(path) in str(error) else f"{path}: {error}")) from None
         status.update("report")
@@ -77,6 +78,7 @@ def _of_file(
     side: str | None,
     rate: float | None,
     joint: str | None,
+    kind: Any,
     highest: float | None,
 ) -> OrdersFound:
     from dataclasses import replace
@@ -85,7 +87,7 @@ def _of_file(
     from strainwave.identification.reading.channels import CHANNELS
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.recognise import recognise
-    from strainwave.messages import pairs
+    from strainwave.messages import listed, pairs
 
     where: Any = side
     known = set(CHANNELS)
@@ -95,7 +97,12 @@ def _of_file(
         constants={} if rate is None else {"rate": rate},
         joint=joint,
         side=where,
+        kind=kind,
     )
     read = recognise(path, said)
     found = orders_found(read.recording, path.name, ratio=ratio, side=where, highest=highest)
-    return replace(found, remarks=(*read.remarks, *found.remarks))
+    remarks = [*read.remarks, *found.remarks]
+    if read.neighbours:
+        which = f"joints {listed(read.neighbours)} move too"
+        remarks.append(f"{which}: their torque may look like slow lines, as of orders below 60; a record of one joint has none")
+    return replace(found, remarks=tuple(remarks))

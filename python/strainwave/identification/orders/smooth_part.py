@@ -17,6 +17,7 @@ STEADY = 1e-3  # of the speed: what varies by less is constant
 KNOTS = 6  # of the friction over speed, in each direction
 TREND = 4  # periods of the angle, the longest somewhat longer than the span, in the slow trend over it
 GATE = 0.05  # of a fast speed: around it a sample counts half; friction turns over at rest, where ripple is not told
+LOST = 0.98  # of the residual, that a loss under load must leave at most to be taken for one
 OUTLIER = 8.0  # robust standard deviations of the residual, beyond which a sample counts as a mistake
 
 
@@ -57,6 +58,11 @@ def moving(angle: Array, torque: Array) -> Moving:
     gate = speed**2 / (speed**2 + (GATE * fast) ** 2)
     weight = gate * taper(len(angle))
     smooth, turning = _fitted(torque, friction, rest, weight)
+    if np.any(sense > 0.0) and np.any(sense < 0.0):  # a share of the load is lost, one way and the other
+        lossy = np.concatenate([friction, (sense * np.abs(smooth - turning))[:, None]], axis=1)
+        other, otherwise = _fitted(torque, lossy, rest, weight)
+        if np.sum((weight * (torque - other)) ** 2) < LOST * np.sum((weight * (torque - smooth)) ** 2):
+            friction, smooth, turning = lossy, other, otherwise
     left = torque - smooth
     wrong = _outliers(left, weight)
     if wrong.any():

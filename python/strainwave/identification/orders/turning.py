@@ -20,6 +20,8 @@ FEWEST = 64  # samples
 LARGEST_STEP = 0.45 * tau  # between samples of an angle that wraps; beyond it the sense is a guess
 LONGEST_GAP = 8  # samples missing in a row that are filled with a straight line
 JITTER = 0.35  # of a step, by which a time stamp may be off
+UNEVEN = 4.0  # steps, that one of twenty steps may be long: others are no clock
+GAP = 2.5  # steps without a row, between which nothing is known
 REST = 1e-3  # of the fastest speed, below which a shaft counts as resting
 
 
@@ -50,8 +52,9 @@ class Evenly(ComparedByFields):
 def evenly(recording: Recording, names: Sequence[str], rate: float | None = None) -> Evenly:
     """The named columns, each row at its place in an even time.
 
-    Stamps are rounded to whole steps of their median distance, so that jitter of the stamps does not matter. Where rows are
-    missing for long, the longest stretch without such a gap is taken, and that is said.
+    Stamps are rounded to whole steps of their median distance, so that jitter of the stamps does not matter; where they are
+    more uneven than that, rows are put on an even clock by interpolation. Where rows are missing for long, the longest stretch
+    without such a gap is taken. Both is said.
 
     Args:
         recording: with or without the column `time`
@@ -90,10 +93,7 @@ def _placed(columns: dict[str, Array], time: Array) -> Evenly:
     whole = np.rint(steps / step)
     off = np.abs(steps - whole * step)
     if float(np.quantile(off, 0.95)) > JITTER * step:
-        raise ValueError(
-            f"time is not even: steps between samples vary around {step:.4g} s by more than {JITTER:.0%} of it; orders need "
-            "samples at equal distances in time; resample the log, or leave the time out"
-        )
+        return _resampled(columns, time, step)
     place = np.concatenate([[0], np.cumsum(whole)]).astype(int)
     first = np.concatenate([[True], np.diff(place) > 0])
     remarks = []
@@ -120,6 +120,30 @@ def _placed(columns: dict[str, Array], time: Array) -> Evenly:
     filled = {name: np.interp(everywhere, place, values[stretch]) for name, values in columns.items()}
     exact = float(np.polyfit(place, time, 1)[0])
     return Evenly(filled, measured, exact, True, float(time[0]), tuple(remarks))
+
+
+def _resampled(columns: dict[str, Array], time: Array, step: float) -> Evenly:
+    """Rows of a clock that is not even, put on one that is by interpolation between them."""
+    from scipy.interpolate import Akima1DInterpolator
+
+    steps = np.diff(time)
+    if (often := float(np.quantile(steps, 0.95))) > UNEVEN * step:
+        raise ValueError(
+            f"time is not even: every second step between samples is longer than {step:.4g} s, and every twentieth longer than "
+            f"{often:.4g} s; orders need samples at nearly equal distances: leave the time out, or record at a fixed rate"
+        )
+    stretch = _longest(np.rint((time - time[0]) / step).astype(int))
+    remarks = [f"its clock is not even: rows are put on one of {1.0 / step:.4g} Hz by interpolation"]
+    if stretch.stop - stretch.start < len(time):
+        remarks.append(f"rows are missing for more than {LONGEST_GAP} samples; the longest stretch without such a gap is used")
+    when = time[stretch]
+    grid = np.arange(when[0], when[-1], step)
+    if len(grid) < FEWEST:
+        raise ValueError(f"between gaps the recording has no more than {len(grid)} samples; orders need {FEWEST} or more")
+    after = np.clip(np.searchsorted(when, grid), 1, len(when) - 1)
+    measured = when[after] - when[after - 1] < GAP * step
+    found = {name: np.asarray(Akima1DInterpolator(when, values[stretch])(grid)) for name, values in columns.items()}
+    return Evenly(found, measured, step, True, float(when[0]), tuple(remarks))
 
 
 def _longest(place: NDArray[np.int_]) -> slice:

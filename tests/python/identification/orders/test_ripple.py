@@ -11,6 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from tests import arms
+
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "output_angle": "rad", "torque": "N.m"}
 MOTIONS: dict[str, Callable[[Array], Array]] = {
@@ -139,3 +141,21 @@ def test_what_cannot_show_orders_is_refused_with_the_reason() -> None:
     columns = joint("to and fro")
     with pytest.raises(ValueError, match="torque does not change"):
         found({**columns, "torque": np.ones(len(columns["time"]))})
+
+
+def arm(seed: int, ratio: float, ripple: dict[float, float], jitter: float = 0.0) -> dict[str, Array]:
+    """A joint of an arm with presliding, a fall at low speed and a loss under load, from plain NumPy (tests.arms)."""
+    joint = arms.Joint(ratio=ratio, ripple=ripple)
+    seen = arms.Recorder(rate=250.0, jitter=jitter, seed=seed)(arms.run((joint,) * 3, arms.fourier(20.0, (1,), seed, size=1.2)))
+    return {"time": seen["time"], "output_angle": seen["q"][1], "torque": seen["motor_torque"][1]}
+
+
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_a_loss_under_load_and_friction_of_an_arm_are_no_lines(seed: int) -> None:
+    assert not found(arm(seed, 100.0, {})).lines
+
+
+def test_the_ratio_of_a_joint_whose_clock_is_not_even() -> None:
+    told = found(arm(1, 80.0, {2.0: 0.006, 4.0: 0.002}, jitter=1.6e-3))
+    assert "its clock is not even: rows are put on one of " in told.remarks[0]
+    assert told.candidates[0].ratio == 80
