@@ -142,8 +142,8 @@ def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
     if side is None:
         raise UndecidedError(
             f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated: --side input if the motor was turned "
-            "with the output locked, --side output if the output was loaded with the input locked; or, if the motor was moved to "
-            "and fro at rest, --kind presliding"
+            "with the output locked, --side output if the output was loaded with the input locked; or, if the motor was moved "
+            "to and fro at rest, --kind presliding"
         )
     turns = len(turning_points(angle.si))
     shape = f"a torsion loop with {turns} reversals" if turns else "one branch of a torsion loop, which tells stiffness only"
@@ -253,7 +253,7 @@ def _at_rest(columns: Sequence[Column], mapping: FileMapping, kind: Kind) -> Fou
     effort: Quantity = "torque" if _measured(columns, "torque") else "current"
     angle, force = _needed(columns, "angle", kind), _needed(columns, effort, kind)
     side = mapping.side or angle.channel.side or ("output" if angle.robot else "input")
-    found = {"angle": angle, effort: force}
+    found: dict[str, Column] = {"angle": angle, effort: force}
     moved = f"{angle.name} moves by {1e3 * np.ptp(angle.si):.3g} mrad in all"
     if kind == "presliding":
         turns = len(turning_points(angle.si))
