@@ -141,6 +141,7 @@ class DriveLog(ComparedByFields):
 
     def step(self, model: Drive) -> float:
         """The largest step of a simulation of a model [s]."""
+        arguments.drive(model)
         return fine_enough(model, self.dt, SHORTER * self.dt)
 
     def stands_still(self, predicted: Array) -> bool:

@@ -67,6 +67,7 @@ def bootstrap(
         progress: is called with how many draws are done, and how many there are
 
     Raises:
+        TypeError: `found` is no fit
         ValueError: too few draws
         FloatingPointError: no draw could be fitted
 

@@ -64,6 +64,10 @@ def combinations(found: Fit, *, untold: float = UNTOLD) -> tuple[Combination, ..
         found: what `fit` found; parameters that are 0 take no part
         untold: relative standard deviation above which a direction counts as not told
 
+    Raises:
+        TypeError: `found` is no fit
+        ValueError: `untold` is negative
+
     Valid near the estimates: to first order, sum and product of two parameters cannot be told apart.
 
     Source: Gutenkunst et al., PLoS Computational Biology 3 (2007) 1871-1878.

@@ -244,7 +244,13 @@ def fit(
 
 
 def solved_problem(found: Fit) -> tuple[Problem, Array]:
-    """The least squares of a fit, and the unknowns that solve it."""
+    """The least squares of a fit, and the unknowns that solve it.
+
+    Raises:
+        TypeError: not a fit
+    """
+    if not isinstance(found, Fit):
+        raise TypeError(f"found must be a Fit, which sw.fit returns, not {shortened(found)}")
     models = [_core.with_numbers(found.model, list(numbers)) for numbers in found.plan.numbers]
     experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
     problem = problem_of(found.plan, [part.name for part in found.parts], models, experiments, masks)

@@ -70,6 +70,7 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
         confidence: of the interval
 
     Raises:
+        TypeError: `found` is no fit
         ValueError: the fit has no such unknown
 
     Source: Bates & Watts, Nonlinear regression analysis (1988), section 6.1; adjustment: Chandler & Bate, Biometrika 94 (2007)

@@ -93,3 +93,8 @@ def test_the_beginning_of_a_log_has_the_command_that_the_log_has_there(duration:
     time = FINE[early.command.duration >= FINE]
     assert early.command.duration == early.time[-1] <= duration
     assert early.command.value(time).tolist() == whole.command.value(time).tolist()
+
+
+def test_a_log_is_stepped_for_a_drive_alone() -> None:
+    with pytest.raises(TypeError, match=r"must be a drive, as sw\.Drive"):
+        log_of(np.sin(FINE)).step(sw.Gear())  # type: ignore[arg-type]

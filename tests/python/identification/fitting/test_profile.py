@@ -73,3 +73,10 @@ def test_an_unknown_that_the_fit_does_not_have_is_refused() -> None:
     found = sw.fit(sw.Gear(friction_input=LAW), table(0), FREE)
     with pytest.raises(ValueError, match=r'^the fit has no unknown "damping"; it has friction_input.coulomb, '):
         profile(found, "damping")
+
+
+@pytest.mark.parametrize("verb", [lambda x: sw.profile(x, "damping"), sw.bootstrap, sw.combinations])
+@pytest.mark.parametrize("other", [np.zeros(3), sw.Gear(), None], ids=["array", "gear", "nothing"])
+def test_what_is_no_fit_is_refused(verb: Any, other: Any) -> None:
+    with pytest.raises(TypeError, match=r"^found must be a Fit, which sw\.fit returns, not "):
+        verb(other)
