@@ -207,7 +207,7 @@ def test_the_reference_drive_rests_there(command: float) -> None:
     stays(DRIVE, state, command)
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(smooth_drives)
 def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:
     """What has no equilibrium says so; in all others no side accelerates, nor does the current or the controller."""
