@@ -13,6 +13,7 @@ scaling      time over steps, members and Maxwell elements
 files        ever more members run to files: time, memory and files
 overhead     what a call, storing, derivatives and sampling cost, and a process that imports the package or shows its help
 loop_fit     a torsion loop fitted, beside SciPy with finite differences; and the convex fit
+drive_fit    a whole drive fitted to a log, beside SciPy with finite differences around strainwave's simulation and solve_ivp
 marker_angle the angle of a target from pictures of its markers: error, bias, stated uncertainty, time of a picture
 peak         operations a second, beside the most that the processor does
 
@@ -28,6 +29,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 import actuator
+import drive_fit
 import ensemble
 import files
 import loop_fit
@@ -50,6 +52,7 @@ PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "files": lambda console, peers, quick: files.run(console),
     "overhead": lambda console, peers, quick: overhead.run(console),
     "loop_fit": lambda console, peers, quick: loop_fit.run(console),
+    "drive_fit": lambda console, peers, quick: drive_fit.run(console),
     "marker_angle": lambda console, peers, quick: marker_angle.run(console, quick),
     "peak": lambda console, peers, quick: peak.run(console),
 }

@@ -163,6 +163,19 @@ def of_angles(value: Callable[[Content], float]) -> Callable[[Content], Found]:
     return found
 
 
+def fit_ahead_of_integrators(content: Content) -> Found:
+    """Lead over the fastest of SciPy's integrators."""
+    own, *others = content["results"]
+    around = [row for row in others if "solve_ivp" in row["name"]]
+    fastest = min(around, key=lambda row: float(row["cpu_time"]))
+    return Found(fastest["cpu_time"] / own["cpu_time"], f"{fastest['name']}, CPU time")
+
+
+def time_of_fit(content: Content) -> Found:
+    own = content["results"][0]
+    return Found(own["wall_time"], f"{own['runs']} runs; {own['cpu_time']:.1f} s of all cores")
+
+
 def more(without: float, including: float) -> float:
     return including / without - 1.0
 
@@ -205,6 +218,8 @@ TARGETS = (
     Target("a cascade at 1 kHz over a continuous one", "overhead", 1.5, True, beside(times, "cascade", "delay of 0.3 ms")),
     Target("import of the package [s]", "overhead", 0.3, True, beside(whole, "import strainwave")),
     Target("strainwave --help [s]", "overhead", 0.3, True, beside(whole, "strainwave --help")),
+    Target("fit of a whole drive: lead over solve_ivp", "drive_fit", 50, False, fit_ahead_of_integrators),
+    Target("its time [s]", "drive_fit", 3, True, time_of_fit),
     Target("angle of a target: rms error [µrad]", "marker_angle", 26, True, of_angles(lambda own: 1e6 * own["rms"])),
     Target("its bias [µrad]", "marker_angle", 2, True, of_angles(lambda own: 1e6 * abs(own["bias"]))),
     Target("CPU time of a frame of 640 x 480 [ms]", "marker_angle", 5, True, of_angles(lambda own: 1e3 * own["cpu_time"])),
