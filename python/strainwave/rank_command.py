@@ -13,7 +13,8 @@ from strainwave.file_options import Columns, Constants, Gear, Joint, Kind, Mappi
 def rank(
     gear: Gear,
     paths: Annotated[
-        list[Path], typer.Argument(metavar="FILE…", help="Tables of friction, torsion loops or logs, each by itself.")
+        list[Path],
+        typer.Argument(metavar="FILE…", help="Tables of friction, torsion and presliding loops, logs, each by itself."),
     ],
     mapping: Mapping = None,
     column: Columns = None,

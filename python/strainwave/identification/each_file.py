@@ -32,6 +32,7 @@ EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and fr
 FRICTION = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law that has them
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
+UNLIKE = 0.1  # relative: two inertias that differ by more are not one
 EXACTLY = 1e-6  # relative: a number that a person gives is fitted as nearly as that
 ANGLES = ("input_angle", "output_angle")
 
@@ -306,7 +307,7 @@ def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     every, curves = (*file.remarks, *remarks), curves_of(best.fit)
     law = best.fit.parts[0].model.gear.friction_input
     unlike = None if in_current else unlike_set(law, before.friction_input, log.motion.speed, log.effort)
-    doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed))))
+    doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed), _unlike_said(taken))))
     return Finding(file.path.name, file, best.name, tuple(told), best.error, every, doubts, curves=curves), known
 
 
@@ -341,6 +342,20 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         resistance=constants.get("resistance", getattr(given, "resistance", 0.0)),
     )
     return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current
+
+
+def _unlike_said(taken: Taken) -> str | None:
+    """That the inertia that a person gave is not what the log shows; None where it is, or none was given."""
+    if "load.inertia" not in taken.said:
+        return None
+    drive, shown = taken.drive, regression(taken.log, taken.drive).inertia
+    given = drive.motor.inertia + drive.gear.input_inertia + taken.said["load.inertia"] / drive.gear.kinematics.ratio**2
+    if abs(shown - given) <= UNLIKE * given:
+        return None
+    return (
+        f"the log shows a total inertia of {shown:.3g} kg·m² at the input, but that of the load as it was given makes "
+        f"{given:.3g} with motor and gear: see whether load_inertia, motor_inertia, ratio and torque constant are right"
+    )
 
 
 def _loaded(file: Recognised) -> Recording:

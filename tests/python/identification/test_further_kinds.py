@@ -14,6 +14,8 @@ from strainwave.identification.rank import rank
 from strainwave.identification.reading.mapping import FileMapping, MappingFile
 from strainwave.identification.reading.recognise import recognise
 
+from tests.python.identification.candidates.test_motion import TRUTH, record
+
 START = "hfuc-20-80"
 SPEEDS = (1.0, 3.0, 10.0, 30.0, 100.0, 250.0)  # rad/s
 COULOMB, VISCOUS = 0.05, 3e-4
@@ -225,3 +227,24 @@ def test_a_constant_torque_at_the_output_is_taken_off_a_table(tmp_path: Path) ->
     path = write(tmp_path / "loaded.csv", {"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
     found = identify(START, [path], mapping=lambda _: FileMapping(constants={"load_torque": 1.6}))
     assert told(found, "coulomb")[0] == pytest.approx(COULOMB, rel=1e-6)
+
+
+def test_an_inertia_of_the_load_that_is_said_is_not_fitted(tmp_path: Path) -> None:
+    record(TRUTH, 0.05, 3).to_csv(tmp_path / "log.csv")
+    motor = {"torque_constant": 0.08, "motor_inertia": 1e-4 - sw.load(START).input_inertia}
+
+    def found_with(load: dict[str, float]) -> Identified:
+        return identify(START, [tmp_path / "log.csv"], mapping=lambda _: FileMapping(constants=motor | load))
+
+    free, held = found_with({}), found_with({"load_inertia": TRUTH["inertia"]})
+    wrong = found_with({"load_inertia": 1.5 * TRUTH["inertia"]})
+    assert "load.inertia" in {each.told.path for each in free.numbers}
+    assert "load.inertia" not in {each.told.path for each in held.numbers}
+    assert told(held, "viscous")[1] <= 1.05 * told(free, "viscous")[1]
+    assert not held.findings[0].doubts
+    assert "see whether load_inertia" in wrong.findings[0].doubts[0]
+
+
+def test_a_table_and_a_loop_tell_the_same_as_in_a_twin(tmp_path: Path) -> None:
+    path = table(tmp_path / "table.csv")
+    assert identify(START, [path]).gear_set.gear == sw.twin(START, friction=path).gear_set.gear
