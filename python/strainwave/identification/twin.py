@@ -37,6 +37,7 @@ from strainwave.simulation.run import simulate
 CONTRADICTION = 3.0  # standard deviations
 SURE = 0.9973002039367398  # the share of a normal distribution within three
 TRIED = 2  # likely causes of a bad fit that are fitted, best first
+UNSURE = 1.2  # times the standard deviation within one law: what other laws say is then worth telling
 NAMES: dict[Kind, str] = {"friction": "friction table", "torsion": "torsion loop", "log": "drive log"}
 Measurement = Recording | str | Path
 
@@ -214,6 +215,14 @@ def _from_friction(gear: Gear, recording: Recording, source: str, side: str | No
     remarks = [f"valid between {low:.4g} and {high:.4g} rad/s at the input; validated by leaving out speeds in turn"]
     if best.name == "Coulomb and viscous":
         remarks.append("no fall of torque towards low speed within this range: breakaway and Stribeck speed are not seen")
+    within = np.sqrt(np.diag(best.fit.covariance)).tolist()
+    unsure = [
+        e.path.rpartition(".")[2] for e, sigma in zip(best.fit.estimates, within, strict=True) if e.sigma > UNSURE * sigma
+    ]
+    if unsure:
+        remarks.append(
+            f"other laws are about as likely: what they say of {', '.join(unsure)} is part of its standard deviation"
+        )
     remarks += [*_thinned(table.samples, len(table.speed)), *_unused(recording, ("speed", "torque", *BESIDE))]
     if (left_out := int(np.sum(~best.fit.training))) > 0:
         remarks.append(f"{left_out} of {len(table.speed)} rows are outliers, and left out")

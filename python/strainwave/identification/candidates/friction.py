@@ -16,6 +16,7 @@ from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.steady_shapes import Shape, beside_speed, over_speed
 from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit, fit
 
 Array = NDArray[np.float64]
@@ -95,6 +96,11 @@ class FrictionCandidate(ComparedByFields):
             return self._found("viscous_torque") / float(innermost(self.law).reference_speed)
         return self._found("viscous")
 
+    def estimate(self, other: Estimate) -> Estimate | None:
+        """Its number of the same name as one of another law; none where it has none."""
+        name = other.path.rpartition(".")[2]
+        return next((each for each in self.fit.estimates if each.path.rpartition(".")[2] == name), None)
+
     def _found(self, name: str) -> float:
         return next(each.value for each in self.fit.estimates if each.path.rpartition(".")[2] == name)
 
@@ -142,7 +148,8 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
     Returns:
         candidates, best first: the one with fewest parameters whose error of predictions from the rest of the table lies within
         one standard error of the least, the difference taken sample by sample, or is larger by what may be chance; behind it
-        the others by their error
+        the others by their error. The standard deviations of the first have inside how far laws that are about as likely stray
+        from its numbers
 
     Raises:
         ValueError: fewer than four speeds, or a law of the gear that a table cannot tell
@@ -169,6 +176,7 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
     if not trusted.all():
         _warn(table, trusted, best)
         found = [_on_all(each, table, trusted) for each in found]
+    found[0] = _less_sure(*found)
     return [replace(each, fit=_written(each, gear, known)) for each in found]
 
 
@@ -302,6 +310,26 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
         return within or (candidate.parameters < best.parameters and _chance(candidate, best) > BY_CHANCE)
 
     return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))
+
+
+def _less_sure(best: FrictionCandidate, *others: FrictionCandidate) -> FrictionCandidate:
+    """The best law, its numbers as uncertain as the choice among laws makes them (Buckland1997, eq. 9).
+
+    Numbers that laws have in common stray by law more than within one. Laws count by Akaike's weights; none becomes surer.
+    """
+    least = min(each.information for each in (best, *others))
+    if not np.isfinite(least):
+        return best
+
+    def sigma(estimate: Estimate) -> float:
+        found = [(each.information, other) for each in others if (other := each.estimate(estimate)) is not None]
+        said = [(best.information, estimate), *((i, other) for i, other in found if np.isfinite(other.sigma))]
+        weights = np.exp([0.5 * (least - information) for information, _ in said])
+        strays = [float(np.hypot(other.sigma, other.value - estimate.value)) for _, other in said]
+        return max(estimate.sigma, float(weights @ strays / weights.sum())) if np.any(weights) else estimate.sigma
+
+    told = tuple(replace(each, sigma=sigma(each)) for each in best.fit.estimates)
+    return replace(best, fit=replace(best.fit, estimates=told))
 
 
 def _squares(candidate: FrictionCandidate) -> Array:

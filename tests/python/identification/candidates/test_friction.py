@@ -97,6 +97,25 @@ def test_magnitudes_over_speeds_of_both_signs_are_understood() -> None:
     assert FrictionTable.of(recording).torque == pytest.approx([-0.2, -0.1, 0.1, 0.2])
 
 
+def test_a_law_chosen_by_a_hair_makes_its_numbers_no_surer_than_the_laws_beside_it() -> None:
+    truth = sw.friction.Stribeck(coulomb=0.0380, breakaway=0.0433, stribeck_speed=2.6, viscous=4.5e-4)
+    speed = np.pi / 30.0 * np.array([5, 10, 20, 30, 50, 100, 200, 400, 800, 1200, 1800, 2500, 3000.0])
+    both = np.concatenate((speed, -speed))
+    distances, hairs = [], 0
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        noise = 0.01 * truth.steady(both) * random.normal(size=26) + 1.5e-3 * random.normal(size=26)
+        best, *others = fit_friction(FrictionTable(both, truth.steady(both) + noise), sw.Gear())
+        coulomb = best.fit.estimates[0]
+        distances.append((coulomb.value - truth.coulomb) / coulomb.sigma)
+        hairs += best.name != "with a fall at low speed"
+        for other in others:
+            if other.information < best.information:  # as likely, so it counts
+                assert coulomb.sigma > 0.25 * abs(other.coulomb - coulomb.value)
+    assert hairs > 0
+    assert np.max(np.abs(distances)) < 2.5
+
+
 def test_three_speeds_are_too_few_and_four_are_enough() -> None:
     speed = np.array([1.0, 2.0, 5.0, 10.0])
     with pytest.raises(ValueError, match="at least 4 speeds, one of them to validate; this one has 3"):
