@@ -1,7 +1,7 @@
 """Torque of a joint by the joints that move with it, without a model of the arm.
 
 The energy of an arm of rigid links is a sum of products of two speeds, or of gravity, with sines and cosines of sums of the
-angles; the inertia of two joints depends on the angles of those behind the first of them alone (Khalil & Dombre 2002, ch. 9).
+angles; the inertia of two joints depends on the angles of those behind the first of them alone (KhalilDombre2002, ch. 9).
 Lagrange's equations make of each such term of the energy one of the torque, centrifugal and Coriolis forces included:
 
 .. math:: \\frac{\\mathrm d}{\\mathrm dt} \\frac{\\partial E}{\\partial \\dot q_j} - \\frac{\\partial E}{\\partial q_j}
@@ -163,7 +163,7 @@ class _Term:
 
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """Forward selection of terms by orthogonal least squares (Chen, Billings & Luo 1989), checked on other blocks of time.
+    """Forward selection of terms by orthogonal least squares (ChenBillingsLuo1989), checked on other blocks of time.
 
     Attributes:
         torque: shape (n,)
