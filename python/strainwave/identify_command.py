@@ -20,7 +20,7 @@ MOST_REMARKS = 5  # of a file on the terminal; the report has all
 
 def identify(
     gear: Gear,
-    paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Measurements of one gear, of any kind.")],
+    paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Measurements of one gear, or folders of them.")],
     mapping: Mapping = None,
     column: Columns = None,
     unit: Units = None,
@@ -44,10 +44,12 @@ def identify(
 
     from strainwave.files import gear_file
     from strainwave.files.writing import making, write_all, written
+    from strainwave.identification.identify import files_of
     from strainwave.identification.identify import identify as identified
     from strainwave.report.identify import identify_files, identify_report
     from strainwave.report.provenance import Provenance
 
+    paths = [file for path in paths for file in files_of(path)]
     said = said_of(mapping, column, unit, constant, side, joint, kind)
     columns = (SpinnerColumn(), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:

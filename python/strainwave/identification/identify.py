@@ -28,6 +28,7 @@ from strainwave.messages import listed
 TURNS: dict[Kind, int] = {
     "friction": 0, "effort": 0, "torsion": 2, "encoders": 4, "log": 5, "presliding": 6, "breakaway": 7,
 }  # fmt: skip
+SETTINGS = {".json", ".jsonl"}  # of a folder these are seldom measurements, and are read where they are named
 BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 RUNS = 1  # records at constant speed, all together
 ALIKE = 1e-9  # relative: two ratios that are one
@@ -76,7 +77,7 @@ def identify(
     """
     if not files:
         raise ValueError("identify needs at least one file of measurements")
-    paths = [file for path in files for file in _files(Path(path))]
+    paths = [file for path in files for file in files_of(Path(path))]
     read = [_recognised(path, mapping) for path in paths]
     recognised = [each for each in read if isinstance(each, Recognised)]
     start = _with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
@@ -191,11 +192,12 @@ def _without_name(told: str, path: Path) -> str:
     return told
 
 
-def _files(path: Path) -> list[Path]:
+def files_of(path: Path) -> list[Path]:
     """A file; of a folder the files in it that may be measurements; the folder itself where there are none, or it is a bag."""
     if not path.is_dir() or Path(path, BAG).is_file():
         return [path]
-    return sorted(file for file in path.rglob("*") if file.suffix.lower() in FORMATS and file.is_file()) or [path]
+    kept = FORMATS.keys() - SETTINGS
+    return sorted(file for file in path.rglob("*") if file.suffix.lower() in kept and file.is_file()) or [path]
 
 
 # ---- The ratio ---------------------------------------------------------------------------------------------------------

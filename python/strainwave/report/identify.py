@@ -226,10 +226,15 @@ def _number(each: Number, found: Identified) -> dict[str, Any]:
                 "value": uncertain(each.of_file(name).value, each.of_file(name).sigma),
                 "distance": "" if name == each.source else _sigmas(distance(each.of_file(each.source), each.of_file(name))),
                 "in_mean": len(each.mean_of) > 1 and name in each.mean_of,
-                "same_as": same_as.get(name, ""),
                 "contradicts": name in each.contradicts,
             }
             for name in files
+            if not same_as.get(name) or name == each.source
+        ],
+        "copies": [
+            f"{name} {uncertain(each.of_file(name).value, each.of_file(name).sigma)}"
+            for name in each.others
+            if same_as.get(name)
         ],
     }
 
