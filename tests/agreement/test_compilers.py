@@ -12,6 +12,8 @@ import pytest
 
 from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, compilation, compiler, drives, zig
 
+# Templates are made and warned of, but g++ writes no code, which takes the most time; the clang of ziglang always does.
+CHECKED = {"g++": (*STRICT, "-fsyntax-only"), "clang++": STRICT}
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
 
 RUN_TIME_CHOICE = """
@@ -23,7 +25,7 @@ RUN_TIME_CHOICE = """
 
 
 def stepped(scalar: str, drive: str) -> str:
-    """Makes the compiler write out the step of a drive."""
+    """Makes the compiler go through the step of a drive."""
     arguments = (
         f"const {drive}&, const {drive}::State&, const strainwave::Interval<strainwave::Input<{scalar}>>&, const {scalar}&"
     )
@@ -41,14 +43,14 @@ def test_every_header_stands_on_its_own(name: str, tmp_path: Path) -> None:
 @both
 def test_every_model_steps_in_a_drive_of_static_type(name: str, tmp_path: Path) -> None:
     steps = [stepped(scalar, drive) for scalar in ("double", "float") for drive in drives(scalar)]
-    assert compilation(compiler(name), tmp_path, {"static.cpp": HEADERS + "".join(steps)}, *STRICT) == (0, "")
+    assert compilation(compiler(name), tmp_path, {"static.cpp": HEADERS + "".join(steps)}, *CHECKED[name]) == (0, "")
 
 
 @both
 def test_models_chosen_at_run_time_step_in_every_scalar(name: str, tmp_path: Path) -> None:
     scalars = ("double", "strainwave::Dual<4>", "strainwave::Pack<8>")
     steps = [stepped(scalar, f"strainwave::AnyDrive<{scalar}>") for scalar in scalars]
-    assert compilation(compiler(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}, *STRICT) == (0, "")
+    assert compilation(compiler(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}, *CHECKED[name]) == (0, "")
 
 
 def test_a_pack_steps_in_the_vector_registers_of_neon(tmp_path: Path) -> None:
