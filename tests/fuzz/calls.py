@@ -38,16 +38,23 @@ METHODS = ("__getitem__", "__contains__", "__eq__", "__add__", "__sub__", "__mul
 RESULTS = (
     "Agreement",
     "BearingOrders",
+    "Bootstrap",
+    "Combination",
     "Derivatives",
     "Difference",
     "Ensemble",
+    "ExperimentPlan",
     "Fit",
     "FrequencyResponse",
+    "Identified",
     "Linearisation",
     "Orders",
+    "Profile",
     "RatingCheck",
+    "Ripple",
     "Run",
     "Seen",
+    "TransmissionError",
     "Twin",
 )
 NOT_CALLED = {
@@ -150,13 +157,19 @@ def valid() -> Mapping[str, Any]:
         "read.drive": drive, "save.drive": drive, "ScenarioFile.save.path": "file.toml",
         "orders.recording": turning(), "order_spectrum.recording": turning(), "column": "torque", "order": [2.0],
         "orders.angle": "input_angle", "order_spectrum.angle": "input_angle", "balls": 9, "ball_diameter": 1.0,
-        "pitch_diameter": 10.0, "contact_angle": 0.1, "outer_speed": 0.0,
+        "pitch_diameter": 10.0, "contact_angle": 0.1, "outer_speed": 0.0, "found": fitted(), "confidence": 0.95, "draws": 20,
+        "seed": 0, "untold": 0.1, "profile.path": "friction_input.viscous", "interval.path": "friction_input.viscous",
+        "files": ["nothing.csv"], "ripple.recording": turning(), "ratio": 50.0,
     }  # fmt: skip
 
 
 def friction_table() -> sw.Recording:
     speed = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0])
     return sw.Recording({"speed": speed, "torque": 0.02 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
+
+
+def fitted() -> sw.Fit:
+    return sw.fit(sw.Gear(), friction_table(), ["friction_input.viscous"])
 
 
 def turning() -> sw.Recording:
@@ -176,7 +189,8 @@ def instances() -> tuple[Any, ...]:
         valid()["recording"], sw.linearise(drive), sw.ScenarioFile(command), *sw.compare(run, run)[:1],
         sw.simulate_many(drive, command, {"load.inertia": [0.1, 0.2]}, 1e-3),
         sw.derivatives(drive, command, ["load.inertia"], 1e-3), sw.frequency_response(drive, 50.0, 0.5),
-        sw.fit(drive.gear, table, ["friction_input.viscous"]), sw.GearSet.read("hfuc-25-100"),
+        fitted(), sw.profile(fitted(), "friction_input.viscous"), sw.bootstrap(fitted(), 20), *sw.combinations(fitted()),
+        sw.GearSet.read("hfuc-25-100"),
         Quantity(value=1.0, unit="N.m", source="assumed"), FrictionTable.of(table), loop,
         DriveLog.of(run.select(["time", "command", "output_angle"]), drive),
     )  # fmt: skip

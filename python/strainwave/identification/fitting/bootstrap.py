@@ -44,7 +44,7 @@ class Bootstrap(ComparedByFields):
 
     def interval(self, path: str, confidence: float = 0.95) -> tuple[float, float]:
         """The interval that holds this share of the draws, as much beyond it on either side (percentiles)."""
-        confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
+        path, confidence = arguments.text("path", path), arguments.number("confidence", confidence, low=0.0, high=1.0)
         if path not in self.paths:
             raise ValueError(f"there is no estimate of {quoted(path)}; there are {listed(self.paths)}")
         ends = np.quantile(self.values[:, self.paths.index(path)], [0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence])

@@ -85,7 +85,7 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
     >>> print(profile(found, "friction_input.coulomb"))
     friction_input.coulomb lies between 0.01992 and 0.02003 N.m
     """
-    confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
+    path, confidence = arguments.text("path", path), arguments.number("confidence", confidence, low=0.0, high=1.0)
     problem, best = solved_problem(found)
     tied = {each.path for each in found.plan.tied}
     unknowns = [each for each in found.estimates if each.path not in tied]
