@@ -44,6 +44,11 @@ class Told:
         """The part of the standard deviation that no other file shares."""
         return float(np.sqrt(max(self.sigma**2 - self.common**2, 0.0)))
 
+    @property
+    def is_phase(self) -> bool:
+        """Whether it is an angle that begins anew with each turn, so that its size means nothing."""
+        return ".phase" in self.path or self.path.endswith("_phase")
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -156,7 +161,7 @@ def mean_of(told: Sequence[Told]) -> tuple[Told, float]:
     first, own = told[0], np.array([each.own for each in told])
     if len(told) == 1 or own.min() <= 0.0:
         return first, 1.0
-    off, common = np.array([_off(each, first) for each in told]), np.array([each.common for each in told])
+    off, common = np.array([difference(each, first) for each in told]), np.array([each.common for each in told])
     weight = _weights(own, common)
     mean = float(weight @ off)
     left = np.linalg.solve(_covariance(own, common), off - mean)
@@ -185,14 +190,14 @@ def _covariance(own: Array, common: Array) -> Array:
 
 def distance(one: Told, other: Told) -> float:
     """How far two files are apart in a number, in standard deviations of their difference; what they share is no difference."""
-    off = _off(one, other)
+    off = difference(one, other)
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     return abs(off) / sigma if sigma > 0.0 else (0.0 if off == 0.0 else np.inf)
 
 
-def _off(one: Told, other: Told) -> float:
-    """The difference of two values; of phases, which begin anew with each turn, the shorter way round."""
+def difference(one: Told, other: Told) -> float:
+    """The difference of two values; of phases the shorter way round."""
     off = one.value - other.value
-    if ".phase" in one.path or one.path.endswith("_phase"):
+    if one.is_phase:
         off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
     return off

@@ -133,7 +133,7 @@ def _torque(file: Recognised, known: Known, side: Side) -> tuple[Array, float, S
         return recording.values("joint_torque", "N.m"), 0.0, "output"
     if "input_torque" in recording:
         return recording.values("input_torque", "N.m"), 0.0, "input"
-    counted: Side = side if "torque" in recording else "input"
+    counted: Side = side if "torque" in recording else file.side or "input"
     with_it, uncertain = with_torque(file, known.gear_set)
     return with_it.values("torque", "N.m"), uncertain, counted
 

@@ -15,7 +15,7 @@ from strainwave import Drive
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.evidence import verdict
-from strainwave.identification.findings import AGREE, APART, Finding, Number, Told, distance
+from strainwave.identification.findings import AGREE, APART, Finding, Number, Told, difference, distance
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.channels import KINDS
 from strainwave.report import figures
@@ -297,32 +297,24 @@ def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
     copies = {finding.name for finding in found.findings if finding.same_as}
     parts: dict[str, list[Number]] = {}
     for each in found.numbers:
-        if each.others and (each.told.value != 0.0 or _is_phase(each.told)):
+        if each.others and (each.told.value != 0.0 or each.told.is_phase):
             parts.setdefault(each.told.path.partition(" of ")[0].rpartition(".")[0], []).append(each)
     for place, (part, numbers) in enumerate(parts.items()):
         rows = [(name_of(each.told), list(_rows(each, copies))) for each in numbers]
         yield part.removeprefix("gear.").replace("_", " ").capitalize(), Markup(plots.comparison(rows, f"comparison-{place}"))
 
 
-def _is_phase(told: Told) -> bool:
-    """Whether a number is an angle that begins anew with each turn, so that its size means nothing."""
-    return told.unit == "rad" and "phase" in told.path
-
-
 def _rows(each: Number, copies: set[str]) -> Iterator[plots.Row]:
-    taken, phase, mean = each.told, _is_phase(each.told), len(each.mean_of) > 1
-    scale = 1.0 if phase else abs(taken.value)  # a phase has no size: of it, 1 rad is 100 %
+    taken, mean = each.told, len(each.mean_of) > 1
+    scale = 1.0 if taken.is_phase else abs(taken.value)  # a phase has no size: of it, 1 rad is 100 %
     title = f"mean of {len(each.mean_of)} files" if mean else each.source
     yield plots.Row(title, 0.0, 100.0 * taken.sigma / scale, "value taken")
     for name in [each.source, *each.others] if mean else each.others:
         other = each.of_file(name)
-        off = other.value - taken.value
-        if phase:
-            off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
         look = "contradicts" if name in each.contradicts else "copy of another" if name in copies else "agrees"
         if look == "agrees" and mean and name not in each.mean_of:
             look = "not in the mean"
-        yield plots.Row(name, 100.0 * off / scale, 100.0 * other.sigma / scale, look)
+        yield plots.Row(name, 100.0 * difference(other, taken) / scale, 100.0 * other.sigma / scale, look)
 
 
 # ---- As files --------------------------------------------------------------------------------------------------------
