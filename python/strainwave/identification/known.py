@@ -145,6 +145,8 @@ class TorqueConstant:
 def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
     """A recording with a torque, where only the current of the motor was measured; and what is uncertain of all of it [1].
 
+    Beside the speed or angle of the output the torque of the motor is counted there, by the ratio.
+
     Raises:
         ValueError: the torque constant is needed, and not known
     """
@@ -153,4 +155,6 @@ def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
     constant = TorqueConstant.of(file, gear_set)
     if constant is None:
         raise ValueError("it tells the current alone; give the torque constant of the motor, with --constant torque_constant=…")
-    return file.recording.with_column("torque", constant.value * file.recording["current"], "N.m"), constant.relative
+    counted = abs(gear_set.gear.kinematics.ratio) if file.side == "output" else 1.0
+    torque = counted * constant.value * file.recording["current"]
+    return file.recording.with_column("torque", torque, "N.m"), constant.relative

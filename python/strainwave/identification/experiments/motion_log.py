@@ -294,7 +294,10 @@ def per_torque(drive: Drive, effort: str, motion: Motion) -> float:
 def _check_both_ways(motion: Motion) -> None:
     forward, backward = (int(np.sum(way * motion.speed[motion.rows] > 0.0)) for way in (1.0, -1.0))
     if forward + backward == 0:
-        raise ValueError("the shaft hardly moves: all of the log is rest, reversals or gaps; record a larger motion")
+        raise ValueError(
+            "the shaft hardly moves: all of the log is rest, reversals or gaps; record a larger motion, or, if it went to and "
+            "fro before it slid, say so with --kind presliding"
+        )
     if min(forward, backward) < FEWEST:
         raise ValueError(
             f"the shaft moves forward in {forward} and backward in {backward} of the samples compared; {FEWEST} of each are "

@@ -78,6 +78,8 @@ def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
         return _table_or_samples(columns)
     if "angle" in has and "torque" in has:
         return _loop_or_turns(columns, mapping)
+    if "angle" in has and "current" in has:
+        return _to_and_fro_or_turns(columns)
     if effort:
         return "effort"
     raise UndecidedError(
@@ -114,6 +116,17 @@ def _loop_or_turns(columns: Sequence[Column], mapping: FileMapping) -> Kind:
         return "torsion"
     is_spring = torque.min() < 0.0 < torque.max() and np.corrcoef(angle, torque)[0, 1] ** 2 > LOADED**2
     return "torsion" if is_spring else "effort"
+
+
+def _to_and_fro_or_turns(columns: Sequence[Column]) -> Kind:
+    """Whether currents beside angles without time are ripple while the shaft turns on; asked where it goes to and fro."""
+    angle, current = _measured(columns, "angle")[0], _measured(columns, "current")[0]
+    if not turning_points(angle.si):
+        return "effort"
+    raise UndecidedError(
+        f"{pair(angle, current)} go to and fro without time: friction before it slides, with --kind presliding, or samples of "
+        "a log if their rate is known, with --constant rate=HZ"
+    )
 
 
 def _friction(columns: Sequence[Column], mapping: FileMapping) -> Found:
@@ -237,6 +250,8 @@ def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
             _put(found, column.channel.quantity, column)
     effort = listed(found[name].name for name in ("torque", "current") if name in found)
     side = mapping.side or next((column.channel.side for column in found.values() if column.channel.side), None)
+    robot = next((column.name for column in found.values() if column.robot), None) if side is None else None
+    side = "output" if robot else side
     if "speed" in found:
         why = f"it holds {effort} at one speed, {found['speed'].si.mean():.4g} rad/s: a record at constant speed"
     elif "angle" in found:
@@ -246,7 +261,8 @@ def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
         why = f"it holds {effort} at {mapping.constants['speed']:.4g} rad/s, as was said: a record at constant speed"
     else:
         why = f"it holds {effort} and nothing that moves: the output was locked, or the speed was constant and is not stated"
-    return Found("effort", found, side, (why,))
+    told = (f"{robot} is what robots call a channel of a joint: it is taken to be at the output",) if robot else ()
+    return Found("effort", found, side, (why, *told))
 
 
 def _at_rest(columns: Sequence[Column], mapping: FileMapping, kind: Kind) -> Found:

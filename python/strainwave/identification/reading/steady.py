@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 STEADY = 0.05  # of the speed, by which it changes at most within a stretch
 REST = 0.02  # of the largest speed: what is slower rests
 LEAST = 50  # rows of a stretch
+NOISE = 2.0  # median deviations of the speed, by which medians of rows beside may differ (4 standard deviations of theirs)
 BESIDE = 10  # rows over which a change is looked for
 
 
@@ -31,7 +32,8 @@ def stretches(speed: Array) -> list[slice]:
     change = np.zeros(len(speed))
     change[BESIDE:-BESIDE] = np.abs(smooth[2 * BESIDE :] - smooth[: -2 * BESIDE])
     change[:BESIDE] = change[-BESIDE:] = np.inf
-    steady = (change < STEADY * np.abs(smooth)) & (np.abs(smooth) > REST * np.abs(smooth).max())
+    noise = NOISE * float(np.median(np.abs(speed - smooth)))
+    steady = (change < np.maximum(STEADY * np.abs(smooth), noise)) & (np.abs(smooth) > REST * np.abs(smooth).max())
     edges = np.flatnonzero(np.diff(np.concatenate([[False], steady, [False]]).astype(int)))
     return [slice(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= LEAST]
 

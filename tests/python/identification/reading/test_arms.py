@@ -118,3 +118,21 @@ def test_a_noisy_constant_speed_is_one_speed(tmp_path: Path) -> None:
     resting[1] += 0.3 * np.arange(resting.shape[1]) / arms.FINE
     arms.constant_speed(tmp_path / "a.csv", arms.run((JOINT,) * 3, resting), 1, 500.0)
     assert recognise(tmp_path / "a.csv").kind == "effort"
+
+
+def test_a_motor_that_goes_to_and_fro_without_time_is_asked_for(tmp_path: Path) -> None:
+    angle = 90.0 * np.sin(np.linspace(0.0, 20.0, 400))
+    rows = np.column_stack([angle, np.sign(angle)])
+    np.savetxt(tmp_path / "a.csv", rows, "%.6f", ",", header="motor_angle_deg,motor_current", comments="")
+    with pytest.raises(
+        ValueError, match=r"motor_angle_deg and motor_current go to and fro .*--kind presliding, .*--constant rate=HZ"
+    ):
+        recognise(tmp_path / "a.csv")
+
+
+def test_constant_speed_in_the_words_of_robots_is_at_the_output(tmp_path: Path) -> None:
+    time = np.arange(0.0, 10.0, 0.01)
+    rows = np.column_stack([0.3 * time, np.full(len(time), 0.3), np.full(len(time), 0.5)])
+    np.savetxt(tmp_path / "a.csv", rows, "%.6f", ",", header="q,dq,current", comments="")
+    found = recognise(tmp_path / "a.csv")
+    assert (found.kind, found.side) == ("effort", "output")
