@@ -258,12 +258,13 @@ def _with_means(gear_set: GearSet, numbers: Sequence[Number]) -> GearSet:
     for number in numbers:
         if len(number.mean_of) < 2 or not number.told.path.startswith("gear."):
             continue
-        told_by_best = [
+        names = [Path(name).name for name in number.mean_of]
+        told_by_one = [
             path
             for path, entry in gear_set.sources.items()
-            if plain(path) == number.told.path and number.source in entry.source and "[" not in path
+            if plain(path) == number.told.path and "[" not in path and any(entry.source.endswith(name) for name in names)
         ]
-        for path in told_by_best:
+        for path in told_by_one:
             try:
                 gear = gear_set.gear.replace({path.removeprefix("gear."): number.told.value})
             except ValueError:  # a mean that the law does not allow beside its other numbers

@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 STEADY = 0.05  # of the usual speed, by which most of a record of one speed differs from it at most
 MOSTLY = 0.95  # of the rows
 ROWS = 200  # over which the speed of an angle is told
+WHOLE = 0.98  # of a turn, from which on it is one
 SPEEDS = 4  # different ones that tell a law
 SURE = 3.0  # standard deviations: a parabola that is smaller is none
 CHANCE = 1e-3  # probability that chance alone gives a wave, over all orders
@@ -44,12 +45,14 @@ class Point:
         torque: [N.m]
         sigma: standard deviation of the torque by its scatter [N.m]
         temperature: mean of the stretch, or as a person gave it [K]; not a number where neither tells it
+        whole: whether it is a mean over whole turns, as far as an angle tells
     """
 
     speed: float
     torque: float
     sigma: float
     temperature: float
+    whole: bool = True
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,15 @@ def run_of(file: Recognised, known: Known) -> Run | None:
         torque = torque * ratio if side == "output" else torque / ratio
     load = file.constants.get("load_torque", 0.0)
     held = load if side == "output" else load / known.gear_set.gear.kinematics.ratio
+    angle = _angle(file, side)
+    if angle is not None:
+        parts = [_whole_turns(angle, part) for part in parts]
     points = tuple(_points(file.recording, speed, torque - held, parts, file.constants.get("temperature", np.nan)))
+    if angle is not None:
+        turns = [abs(angle[part][-1] - angle[part][0]) / TURN for part in parts]
+        points = tuple(replace(point, whole=each > WHOLE) for point, each in zip(points, turns, strict=True))
+        if min(turns) <= WHOLE:
+            told = (*told, "less than a turn at one speed does not average out what varies over the turn")
     return Run(file, side, points, _turning(file, torque - held, side) if one else None, uncertain, told)
 
 
@@ -147,13 +158,23 @@ def _points(recording: Recording, speed: Array, torque: Array, parts: Sequence[s
         yield Point(float(np.median(speed[part])), float(torque[part].mean()), sigma, float(np.mean(warm[part])))
 
 
+def _angle(file: Recognised, side: Side) -> Array | None:
+    """The angle of the input at each row, where it was measured."""
+    name = next((name for name in ("input_angle", "angle") if name in file.recording), None)
+    return None if name is None or side == "output" else file.recording.values(name, "rad")
+
+
+def _whole_turns(angle: Array, part: slice) -> slice:
+    """The rows of a stretch up to its last whole turn, which average out what varies over the turn; all of less than one."""
+    way = np.abs(angle[part] - angle[part][0])
+    turns = float(way[-1] // TURN)
+    return part if turns < 1.0 else slice(part.start, part.start + max(int(np.argmax(way >= turns * TURN)), 1))
+
+
 def _turning(file: Recognised, torque: Array, side: Side) -> Recording | None:
     """Angle and torque, where the angle of the input turns once or more."""
-    name = next((name for name in ("input_angle", "angle") if name in file.recording), None)
-    if name is None or side == "output":
-        return None
-    angle = file.recording.values(name, "rad")
-    if abs(angle[-1] - angle[0]) < TURN:
+    angle = _angle(file, side)
+    if angle is None or abs(angle[-1] - angle[0]) < TURN:
         return None
     return Recording({"angle": angle, "torque": torque}, {"angle": "rad", "torque": "N.m"})
 
@@ -184,8 +205,13 @@ def joined(runs: Sequence[Run], known: Known) -> tuple[Finding, Known]:
     if len(sides) > 1:
         raise ValueError("some were measured at the input, some at the output: give the files of each side by themselves")
     points = [point for run in runs for point in run.points]
+    whole = [point for point in points if point.whole]
+    short = len(points) - len(whole) if _different(whole) >= SPEEDS else 0
+    points = whole if short else points
     speed, torque, signed = _signed(points)
-    different = len(np.unique(np.round(speed / np.abs(speed).max(), 2)))
+    if short:
+        signed = (*signed, f"{short} means over less than a turn are left out, as what varies over the turn is in them")
+    different = _different(points)
     if different < SPEEDS:
         raise ValueError(
             f"{len(runs)} {'record' if len(runs) == 1 else 'records'} at {different} different "
@@ -201,6 +227,12 @@ def joined(runs: Sequence[Run], known: Known) -> tuple[Finding, Known]:
     file = Recognised(Path(JOINED), "friction", {}, {}, side, why, signed, {}, Recording(columns, units))
     finding, after = friction_of(file, file.recording, max(run.uncertain for run in runs), known)
     return replace(finding, name=JOINED, what="a table of steady friction, of many files"), after
+
+
+def _different(points: Sequence[Point]) -> int:
+    """How many speeds are not alike."""
+    sizes = np.array([point.speed for point in points])
+    return len(np.unique(np.round(np.log(np.abs(sizes)), 1) * np.sign(sizes))) if len(sizes) else 0
 
 
 def _signed(points: Sequence[Point]) -> tuple[Array, Array, tuple[str, ...]]:
@@ -257,8 +289,8 @@ def _numbers(found: PositionFit, uncertain: float) -> Iterator[Told]:
     for each in found.estimates:
         common = uncertain * abs(each.value)
         sigma = float(np.hypot(each.sigma, common))
-        if "[" in each.path and each.path not in waves:
-            continue
+        if each.path == "viscous" or ("[" in each.path and each.path not in waves):
+            continue  # the table of the same records tells the viscous part
         sure = each.path in waves or abs(each.value) > SURE * each.sigma
         why = "" if sure else "it is no larger than what chance may make"
         yield Told(f"gear.friction_input.{each.path}", each.unit, each.value, sigma, "position_dependent", why, common)

@@ -23,6 +23,7 @@ BEGINNINGS = {
     b"%PDF": "a PDF document", b"PK\x03\x04": "a ZIP archive, as spreadsheets are", b"\x1f\x8b": "packed (gzip)",
     b"\xd0\xcf\x11\xe0": "an old Excel or Word file", b"<!DOCTYPE": "a web page", b"<html": "a web page",
 }  # fmt: skip
+BEGIN = 2048  # letters that are looked at
 TEXTS = (".csv", ".txt", ".tsv", ".log", ".dat")
 
 
@@ -31,10 +32,20 @@ def other_format(path: Path) -> str | None:
     if path.suffix.lower() not in TEXTS or not path.is_file():
         return None
     with path.open("rb") as file:
-        begin = file.read(16)
+        begin = file.read(BEGIN)
+    if separator := _other_separator(begin):
+        return f'its columns are separated by "{separator}": separate them by commas, semicolons or tabs'
     found = next((what for letters, what in BEGINNINGS.items() if begin.startswith(letters)), None)
     what = f"its name says {path.suffix}, but it is {found}"
     return None if found is None else f"{what}: export the measurement as CSV with one header line"
+
+
+def _other_separator(begin: bytes) -> str | None:
+    """A separator of columns that tables are not read with, if two lines in a row have it equally often, and no other one."""
+    lines = [line for line in begin.decode("utf-8", "ignore").splitlines() if line.strip() and not line.startswith("#")][:2]
+    if len(lines) < 2 or any(each in line for line in lines for each in ",;\t"):
+        return None
+    return next((each for each in "|:^~" if lines[0].count(each) == lines[1].count(each) > 0), None)
 
 
 def clipped_loop(recording: Recording) -> str | None:

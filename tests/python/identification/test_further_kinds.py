@@ -248,3 +248,18 @@ def test_an_inertia_of_the_load_that_is_said_is_not_fitted(tmp_path: Path) -> No
 def test_a_table_and_a_loop_tell_the_same_as_in_a_twin(tmp_path: Path) -> None:
     path = table(tmp_path / "table.csv")
     assert identify(START, [path]).gear_set.gear == sw.twin(START, friction=path).gear_set.gear
+
+
+def test_records_with_an_angle_are_averaged_over_whole_turns(tmp_path: Path) -> None:
+    """1.25 turns of a wave of the second order: over all of them the mean is off by the wave's last quarter."""
+    files = []
+    for each in SPEEDS:
+        for speed in (each, -each):
+            time = np.linspace(0.0, 1.2501 * 2.0 * np.pi / each, 4000)
+            torque = np.sign(speed) * (COULOMB + VISCOUS * each + 0.02 * np.sin(2.0 * each * time))
+            columns = {"time": time, "input_angle": speed * time, "input_torque": torque}
+            path = tmp_path / f"turn_{speed:+.0f}.csv"
+            files.append(write(path, columns, {"time": "s", "input_angle": "rad", "input_torque": "N.m"}))
+    found = identify(START, files)
+    assert told(found, "coulomb")[0] == pytest.approx(COULOMB, rel=2e-3)
+    assert len(found.findings) == len(files) + 2  # the table, and friction over the angle

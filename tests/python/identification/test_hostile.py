@@ -93,7 +93,7 @@ REFUSED: dict[str, tuple[Make, str]] = {
     "an empty file": (text("nothing.csv", ""), "nothing.csv: is empty"),
     "a header only": (text("head.csv", "speed [rad/s],torque [N.m]\n"), "has a header but no rows"),
     "three rows": (text("few.csv", "time [s],input_angle [rad],current [A]\n0,0,0\n1,1,1\n2,2,2\n"), "has 3 samples; at least"),
-    "a wrong delimiter": (text("bars.csv", "speed|torque\n1|0.05\n2|0.06\n3|0.07\n4|0.08\n"), "bars.csv: "),
+    "a wrong delimiter": (text("bars.csv", "speed|torque\n1|0.05\n2|0.06\n"), r"separated by .\|.: separate them by commas"),
     "no file": (lambda folder: folder / "none.csv", "cannot be read: No such file"),
     "an empty folder": (folder_of(empty=True), r"holds no file that may be a measurement, as \*\.csv"),
     "texts among numbers": (text("texts.csv", with_texts()), r"columns not used: speed \[rad/s\]: does it hold texts"),

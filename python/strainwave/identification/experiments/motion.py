@@ -88,8 +88,8 @@ class Motion(ComparedByFields):
         known = self.known & (self.time - last > 1.0 / frequency)
         known[: EDGE * every] = known[-EDGE * every :] = False
         left = replace(self, known=known, every=every, cutoff=cutoff)
-        slow = np.mean(left.filtered(self.acceleration) ** 2) if len(left.rows) else 0.0
-        if slow < SLOW * np.mean(self.acceleration[known] ** 2):
+        rows = len(left.rows)
+        if not rows or np.mean(left.filtered(self.acceleration) ** 2) < SLOW * np.mean(self.acceleration[known] ** 2):
             raise ValueError(f"the shaft itself moves about as fast as a vibration of {frequency:.3g} Hz")
         return left
 
