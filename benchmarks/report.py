@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 TABLES = FOLDER / "tables"  # as the page of the documentation has them
 RUN = datetime.now(UTC).isoformat(timespec="seconds")  # which run a table is of: when its process began
-DISTRIBUTIONS = ("strainwave", "numpy", "scipy", "numba", "casadi", "scikit-sundae", "diffrax", "jax", "scikit-image")
+DISTRIBUTIONS = ("strainwave", "numpy", "scipy", "numba", "casadi", "scikit-sundae", "diffrax", "jax", "scikit-image", "mujoco")
 
 
 @dataclass(frozen=True)

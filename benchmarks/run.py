@@ -14,6 +14,7 @@ files        ever more members run to files: time, memory and files
 overhead     what a call, storing, derivatives and sampling cost, and a process that imports the package or shows its help
 loop_fit     a torsion loop fitted, beside SciPy with finite differences; and the convex fit
 drive_fit    a whole drive fitted to a log, beside SciPy with finite differences around strainwave's simulation and solve_ivp
+mujoco_fit   a drive with two inertias fitted, beside MuJoCo's own identification
 marker_angle the angle of a target from pictures of its markers: error, bias, stated uncertainty, time of a picture
 peak         operations a second, beside the most that the processor does
 
@@ -34,6 +35,7 @@ import ensemble
 import files
 import loop_fit
 import marker_angle
+import mujoco_fit
 import overhead
 import peak
 import scaling
@@ -53,6 +55,7 @@ PARTS: dict[str, Callable[[Console, Sequence[str], bool], None]] = {
     "overhead": lambda console, peers, quick: overhead.run(console),
     "loop_fit": lambda console, peers, quick: loop_fit.run(console),
     "drive_fit": lambda console, peers, quick: drive_fit.run(console),
+    "mujoco_fit": lambda console, peers, quick: mujoco_fit.run(console),
     "marker_angle": lambda console, peers, quick: marker_angle.run(console, quick),
     "peak": lambda console, peers, quick: peak.run(console),
 }
