@@ -61,6 +61,7 @@ ELSEWHERE = {
     "Viscous": {
         "specialised.hpp": USUAL,
         "identification/dynamics/log.py": LOG,
+        "identification/experiments/motion_log.py": "of no torque: what a drive needs without its friction",
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
     "CurrentSource": {"identification/each_file.py": "whatever its motor, a log tells the current along a motion"},
