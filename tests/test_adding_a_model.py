@@ -61,7 +61,7 @@ ELSEWHERE = {
     "Viscous": {
         "specialised.hpp": USUAL,
         "identification/dynamics/log.py": LOG,
-        "identification/experiments/motion_log.py": "of no torque: what a drive needs without its friction",
+        "identification/experiments/motion_log.py": "by which a place without friction is known",
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
     "CurrentSource": {"identification/each_file.py": "whatever its motor, a log tells the current along a motion"},
