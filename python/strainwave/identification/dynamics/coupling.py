@@ -7,7 +7,8 @@ Lagrange's equations make of each such term of the energy one of the torque, cen
 .. math:: \\frac{\\mathrm d}{\\mathrm dt} \\frac{\\partial E}{\\partial \\dot q_j} - \\frac{\\partial E}{\\partial q_j}
 
 Which terms an arm has, its geometry says, which is not known here: those are taken, one after another, that explain the torque
-best, for as long as they also predict blocks of time that they were not chosen by.
+best, for as long as they also predict blocks of time that they were not chosen by. A term of one more joint must explain twice
+as much, as joints of an arm often move in like periods, and many terms then explain the same.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ BLOCKS = 10  # of time; the odd ones are left for who compares models, of the ot
 MOST = 40  # terms
 PATIENCE = 4  # terms that may bring nothing before the search ends
 BETTER = 0.99  # of the error, that the terms of a step must leave at most
+PLAIN = 0.5  # what a term counts for each other joint in it
 INDEPENDENT = 1e-3  # of a term's size, that must not be told by terms before it
 RIGID = 3  # of what a joint has by itself: inertia and gravity
 SLOW = (0.1, 0.5)  # of the usual speed, at which friction may fall
@@ -71,7 +73,7 @@ def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Arra
     block = np.minimum((BLOCKS * (log.time - log.time[0]) / np.ptp(log.time)).astype(int), BLOCKS - 1)
     terms = list(arm.terms())
     columns, base = _columns(own, arm, terms), own.filtered(_alone(itself)).T
-    search = _Search(torque, base, block % 4 == 0, block % 4 == 2)
+    search = _Search(torque, base, np.array([term.plain(joint) for term in terms]), block % 4 == 0, block % 4 == 2)
     loss = search.transmitted(columns[:, search.best(columns)]) * np.sign(own.speed[own.rows])
     search = replace(search, base=np.column_stack([base, loss]))
     places = search.best(columns)
@@ -141,6 +143,11 @@ class _Term:
         wave = f"{'sin' if self.is_sine else 'cos'}({inner.removeprefix('+')})" if self.sum_of else ""
         return " ".join([*(f"dq{name}" for name in self.speeds), *([wave] if wave else [])])
 
+    def plain(self, joint: str) -> float:
+        """Less for each other joint in it: arms move in like periods, so that terms of many joints explain what a few cause."""
+        others = {*self.speeds, *dict(self.sum_of)} - {joint}
+        return float(PLAIN ** len(others))
+
     def torque(self, arm: _Arm) -> Array:
         """What it adds to the torque of the joint, by Lagrange's equations, shape (n,)."""
         moving, own = arm.moving, arm.joint
@@ -167,12 +174,14 @@ class _Search:
 
     Attributes:
         torque: shape (n,)
-        base: columns of what every joint has, and of terms that are taken, shape (n, b)
+        plain: what a term counts for beside others that explain as much, shape (t,)
+        base: columns of what every joint has, shape (n, b)
         train, check: rows that terms are chosen by, and those that check them, shape (n,)
     """
 
     torque: Array
     base: Array
+    plain: Array
     train: NDArray[np.bool_]
     check: NDArray[np.bool_]
 
@@ -186,7 +195,8 @@ class _Search:
         rest = self.torque[self.train] - orthogonal @ (orthogonal.T @ self.torque[self.train])
         while len(taken) < min(MOST, columns.shape[1]):
             squares = np.einsum("ij,ij->j", left, left)
-            scores = np.where(squares > INDEPENDENT**2, (rest @ left) ** 2 / np.maximum(squares, 1e-300), 0.0)
+            explained = (rest @ left) ** 2 / np.maximum(squares, 1e-300)
+            scores = np.where(squares > INDEPENDENT**2, self.plain * explained, 0.0)
             place = int(np.argmax(scores))
             if scores[place] == 0.0:
                 break

@@ -42,9 +42,10 @@ def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> 
     assert finding.error < 0.02  # 9 % without the terms
     (said,) = (remark for remark in finding.remarks if "move too" in remark)
     assert said.startswith("joints 1, 3 move too: ")
-    (coulomb,) = (each.value for each in finding.told if each.path == "gear.friction_input.coulomb")
-    print(f"\nCoulomb {coulomb:.4g}, truth {joint.coulomb}, error held out {finding.error:.3g}")
-    assert coulomb == pytest.approx(joint.coulomb, rel=0.05)
+    told = {each.path.rpartition(".")[2]: each.value for each in finding.told}
+    print(f"\n{told}, truth {joint}, error held out {finding.error:.3g}")
+    assert told["coulomb"] == pytest.approx(joint.coulomb, rel=0.05)
+    assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
 
 
 def test_a_log_of_one_joint_has_no_terms_of_others(tmp_path: Path) -> None:
