@@ -21,7 +21,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.steady_runs import Run, run_of
 from strainwave.identification.suspicion import other_format
-from strainwave.messages import listed
+from strainwave.messages import listed, shortened
 
 # What is needed to understand a file comes before it: friction before a loop that has it inside, both before logs, and what
 # happens at rest after what tells friction that slides.
@@ -73,10 +73,21 @@ def identify(
         what each file tells, and the gear
 
     Raises:
+        TypeError: `files` are no paths, or `mapping` is no function
         ValueError: no file, or none of which anything can be found; a file alone that cannot be used is told in its finding
+
+    >>> import tempfile
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> speed = np.array([2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
+    >>> columns = {"speed": speed, "torque": 0.05 + 3e-4 * speed + 1e-4 * np.array([1, -1, 0, 1, -1, 1, 0])}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     sw.Recording(columns, {"speed": "rad/s", "torque": "N.m"}).to_csv(f"{folder}/table.csv")
+    ...     found = identify("hfuc-25-100", [f"{folder}/table.csv"])
+    >>> found.findings[0].recognised.kind, round(found.gear_set.gear.friction_input.coulomb, 2)
+    ('friction', 0.05)
     """
-    if not files:
-        raise ValueError("identify needs at least one file of measurements")
+    _check_arguments(files, mapping)
     paths = [file for path in files for file in files_of(Path(path))]
     read = [_recognised(path, mapping) for path in paths]
     recognised = [each for each in read if isinstance(each, Recognised)]
@@ -99,6 +110,15 @@ def identify(
     if not numbers:
         raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, findings))}")
     return Identified(start, findings, numbers, _with_means(found.known.gear_set, numbers))
+
+
+def _check_arguments(files: object, mapping: object) -> None:
+    if not isinstance(files, list | tuple) or not all(isinstance(each, str | Path) for each in files):
+        raise TypeError(f"files must be a list of paths, not {shortened(files)}")
+    if mapping is not None and not callable(mapping):
+        raise TypeError(f"mapping must be a function that takes a path, not {shortened(mapping)}")
+    if not files:
+        raise ValueError("identify needs at least one file of measurements")
 
 
 def _why_nothing(finding: Finding) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -138,3 +139,17 @@ def test_means_hold_the_truth_as_often_as_they_say() -> None:
 def test_phases_a_turn_apart_are_equal() -> None:
     one, other = (Told("load.gravity_phase", "rad", value, 0.1, "") for value in (3.1, 3.1 - 2.0 * np.pi))
     assert distance(one, other) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("files", "mapping", "said"),
+    [
+        (3, None, "files must be a list of paths"),
+        ("table.csv", None, "files must be a list of paths"),
+        ([3], None, "files must be a list of paths"),
+        (["table.csv"], 3, "mapping must be a function"),
+    ],
+)
+def test_what_are_no_files_is_refused(files: Any, mapping: Any, said: str) -> None:
+    with pytest.raises(TypeError, match=said):
+        identify("hfuc-20-80", files, mapping=mapping)
