@@ -66,17 +66,18 @@ def monotone(path: Array) -> Array:
 
 
 def slid(path: Array) -> NDArray[np.bool_]:
-    """Samples that are no less than a share of the span behind the last reversal; all before the first.
+    """Samples that are no less than a share of the span behind the last reversal, or behind the beginning.
+
+    A reversal itself is none: it lies between samples, and that at the farthest may be before it or behind.
 
     >>> slid(np.array([0.0, 0.5, 1.0, 0.99, 0.5, 0.0])).tolist()
-    [True, True, True, False, True, True]
+    [False, True, False, False, True, True]
     """
     turns = turning_points(path)
     begun = np.zeros(len(path), int)
     begun[turns] = turns
     begun = np.maximum.accumulate(begun)  # the reversal before each sample
-    behind = np.abs(path - path[begun])
-    slides: NDArray[np.bool_] = (behind >= PRESLIDING * np.ptp(path)) | (behind == 0.0) | (begun == 0)
+    slides: NDArray[np.bool_] = np.abs(path - path[begun]) >= PRESLIDING * np.ptp(path)
     return slides
 
 

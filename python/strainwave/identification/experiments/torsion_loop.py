@@ -14,7 +14,7 @@ from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.branches import monotone, slid, thinned, turning_points
+from strainwave.identification.experiments.branches import PRESLIDING, monotone, slid, thinned, turning_points
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 from strainwave.identification.experiments.stages import series_compliance
 
@@ -46,6 +46,8 @@ class TorsionLoop(ComparedByFields):
         moments: when each sample was taken, as a share of the duration, shape (n,); in equal steps if not given
         input_ratio: ratio of the gear if it was measured at the input, None if at the output
         samples: how many were measured; more than are left in `twist` where each is the mean of several
+        corners: twists [rad] of a beginning and of reversals that are not compared, each with the number of the sample that
+            comes after it
     """
 
     twist: Array
@@ -59,6 +61,7 @@ class TorsionLoop(ComparedByFields):
     moments: Array | None = None
     input_ratio: float | None = None
     samples: int = 0
+    corners: tuple[tuple[int, float], ...] = ()
     channels = ("torque",)
     units = ("N.m",)
 
@@ -67,8 +70,8 @@ class TorsionLoop(ComparedByFields):
         """From columns twist and torque at the output, or input_angle and input_torque with the output locked.
 
         What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque. A long
-        recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a reversal
-        is left out: there friction turns over while its bristles bend, over a distance that no loop tells. Where the gear has
+        recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a beginning
+        or a reversal is left out: there friction turns over while its bristles bend, over a distance that no loop tells. Where the gear has
         stages, what they give way under the torque is taken out of the twist: the rest is that of the spring.
 
         Raises:
@@ -90,9 +93,12 @@ class TorsionLoop(ComparedByFields):
             )
         twist = twist - give * torque
         twist, torque, moments = thinned(twist, torque, _moments(recording))
+        corners: list[tuple[int, float]] = []
         if ratio is not None:
-            twist, torque, moments = twist[settled := slid(twist)], torque[settled], moments[settled]
-        loop = cls(twist, torque, moments=moments, input_ratio=ratio, samples=len(recording))
+            settled = slid(twist)
+            corners = [(int(np.sum(settled[:turn])), float(twist[turn])) for turn in (0, *turning_points(twist))]
+            twist, torque, moments = twist[settled], torque[settled], moments[settled]
+        loop = cls(twist, torque, moments=moments, input_ratio=ratio, samples=len(recording), corners=tuple(corners))
         return replace(loop, history="virgin", twist_zero=0.0) if loop.single_branch else loop
 
     def __post_init__(self) -> None:
@@ -164,8 +170,15 @@ class TorsionLoop(ComparedByFields):
 
     def path(self, twist_zero: float, twist_drift: float = 0.0) -> Array:
         """The twist from its zero, where the gear is virgin, with the run before that a cyclic history needs."""
-        path = self.twist - twist_zero - twist_drift * self._behind_middle
+        places, twists = [place for place, _ in self.corners], [twist for _, twist in self.corners]
+        path = np.insert(self.twist - twist_drift * self._behind_middle, places, twists) - twist_zero
         return np.concatenate(([0.0], path, path)) if self.history == "cyclic" else np.concatenate(([0.0], path))
+
+    @cached_property
+    def compared(self) -> NDArray[np.intp]:
+        """Where the samples stand in the path, counted from its end."""
+        places = np.arange(-len(self.twist) - len(self.corners), 0)
+        return np.delete(places, [place + before for before, (place, _) in enumerate(self.corners)])
 
     def predict(self, model: Gear, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         unknown: dict[str, float] = dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
@@ -173,7 +186,7 @@ class TorsionLoop(ComparedByFields):
         torque_drift, twist_drift = unknown.get("torque_drift", 0.0), unknown.get("twist_drift", 0.0)
         n = len(self.twist)
         torque, slopes = _core.differentiate_loop(model, self.path(twist_zero, twist_drift), list(numbers))
-        *by_numbers, by_shift = slopes[:, -n:]
+        *by_numbers, by_shift = slopes[:, self.compared]
         if self.input_ratio is not None:
             by_numbers = [
                 slope + self._friction_slope(model, number) for slope, number in zip(by_numbers, numbers, strict=True)
@@ -181,13 +194,16 @@ class TorsionLoop(ComparedByFields):
         by_unknowns = {"torque_zero": np.ones(n), "twist_zero": -by_shift, "torque_drift": self._behind_middle}
         if "twist_drift" in unknown:
             by_unknowns["twist_drift"] = self._drift_slope(model, twist_zero, twist_drift)
-        predicted = torque[-n:] + unknown.get("torque_zero", 0.0) + torque_drift * self._behind_middle + self.friction(model)
+        predicted = (
+            torque[self.compared] + unknown.get("torque_zero", 0.0) + torque_drift * self._behind_middle + self.friction(model)
+        )
         return predicted[np.newaxis], np.stack([*by_numbers, *(by_unknowns[name] for name in unknown)])[:, np.newaxis]
 
     def _drift_slope(self, model: Gear, twist_zero: float, twist_drift: float) -> Array:
         """Derivative of the torque by the drift of the twist, by central differences: dual numbers shift all samples alike."""
-        step, n = 1e-6 * float(np.ptp(self.twist)), len(self.twist)
-        ahead, back = (model.trace(self.path(twist_zero, twist_drift + sense * step))[-n:] for sense in (1.0, -1.0))
+        step = 1e-6 * float(np.ptp(self.twist))
+        moved = (model.trace(self.path(twist_zero, twist_drift + sense * step)) for sense in (1.0, -1.0))
+        ahead, back = (torque[self.compared] for torque in moved)
         return np.asarray((ahead - back) / (2.0 * step))
 
     def friction(self, model: Gear) -> Array:
@@ -213,9 +229,15 @@ class TorsionLoop(ComparedByFields):
 
     @cached_property
     def _displacement(self) -> Array:
-        """The path that friction sees [rad]: it must not turn at each wiggle of the noise, as a spring may."""
+        """The path that friction sees [rad]: it must not turn at each wiggle of the noise, as a spring may.
+
+        It begins so far behind the first sample that friction slides there, as it does in all that is left of a loop.
+        """
         twist = monotone(self.twist)
-        return np.concatenate(([self.middle], twist, twist) if self.history == "cyclic" else ([0.0], twist))
+        if self.history == "cyclic":
+            return np.concatenate(([self.middle], twist, twist))
+        sense = np.sign(twist[np.argmax(twist != twist[0])] - twist[0])
+        return np.concatenate(([twist[0] - sense * PRESLIDING * np.ptp(twist)], twist))
 
     def virgin(self) -> TorsionLoop:
         """The same measurement, taken to be the first loading."""

@@ -66,13 +66,15 @@ def test_a_first_loading_is_told_from_a_cycle() -> None:
 def test_a_loop_at_the_input_is_referred_to_the_output() -> None:
     gear = sw.Gear(kinematics=sw.kinematics.StrainWave(flexspline_teeth=100, circular_spline_teeth=102))
     assert gear.kinematics.ratio == -50.0
-    angle, torque = np.array([0.0, 0.5, 0.0]), np.array([0.0, 0.1, -0.02])
+    angle = 0.5 * np.sin(np.linspace(0.03, 3.0, 101))
+    torque = 0.2 * angle + 0.01 * np.sign(np.gradient(angle))
     recording = sw.Recording({"input_angle": angle, "input_torque": torque}, {"input_angle": "rad", "input_torque": "N.m"})
     measured = TorsionLoop.of(recording, gear)
-    assert measured.twist == pytest.approx(angle / -50.0)
-    assert measured.torque == pytest.approx(-50.0 * torque)
+    left = np.isin(angle / -50.0, measured.twist)
+    assert measured.twist == pytest.approx(angle[left] / -50.0)
+    assert measured.torque == pytest.approx(-50.0 * torque[left])
     # virtual work: the torque does the same work on either side
-    assert np.trapezoid(measured.torque, measured.twist) == pytest.approx(np.trapezoid(torque, angle))
+    assert np.trapezoid(measured.torque, measured.twist) == pytest.approx(np.trapezoid(torque[left], angle[left]))
 
 
 def test_a_twist_that_never_changes_is_refused() -> None:
@@ -201,3 +203,31 @@ def test_a_loop_that_cannot_be_one_is_refused() -> None:
         TorsionLoop(measured.twist, -measured.torque)
     with pytest.raises(ValueError, match="gives energy instead of losing it"):
         TorsionLoop(measured.twist[::-1].copy(), measured.torque[::-1].copy())
+
+
+def test_a_loop_from_the_input_tells_the_spring_wherever_its_samples_lie() -> None:
+    """From the first loading on, with bristles that bend; it turns between samples, and its angle counts from anywhere."""
+    ratio, step, law = 80.0, 4e-6, sw.friction.Stribeck(coulomb=0.05, breakaway=0.08, stribeck_speed=3.0, viscous=2e-4)
+    k, knee, slope = 13200.0, 5.3e-4, 22500.0
+    twist = bristle = inside = 0.0
+    rows = []
+    for end in (1.9e-3, -1.9e-3, 1.9e-3, -1.9e-3, 1.9e-3):
+        sense = np.sign(end - twist)
+        while (end - twist) * sense > 0.0:
+            twist += sense * step
+            bristle = float(np.clip(bristle + 40.0 * ratio * sense * step, -0.08, 0.08))
+            inside = float(np.clip(inside + 7000.0 * sense * step, -1.2, 1.2))
+            spring = np.sign(twist) * (k * min(abs(twist), knee) + slope * max(abs(twist) - knee, 0.0))
+            rows.append((twist, spring + inside + ratio * bristle))
+    for samples in (601, 640):
+        angle, torque = np.array(rows)[np.linspace(0, len(rows) - 1, samples).astype(int)].T
+        columns = {"input_angle": -ratio * angle - 0.22, "input_torque": -torque / ratio}
+        recording = sw.Recording(columns, {"input_angle": "rad", "input_torque": "N.m"})
+        gear = sw.load("hfuc-20-80").replace(friction_input=law)
+        assert gear.kinematics.ratio == -ratio
+        loop_there = TorsionLoop.of(recording, gear)
+        best, *_ = fit_loop(loop_there, gear, held_out_blocks(len(loop_there.twist)), friction_measured=True)
+        found = np.asarray(best.fit.gear.stiffness.torque(np.array([2e-4, 1.2e-3])))
+        assert found == pytest.approx([k * 2e-4, k * knee + slope * (1.2e-3 - knee)], rel=3e-3)
+        (element,) = best.fit.gear.hysteresis.breakaway  # type: ignore[union-attr]
+        assert element == pytest.approx(1.2, rel=0.01)

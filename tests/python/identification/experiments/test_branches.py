@@ -52,9 +52,9 @@ def test_noise_on_a_smooth_series_is_told_from_the_series(scale: float) -> None:
 def test_what_lies_just_behind_a_reversal_slides_not_yet() -> None:
     path, corners = zigzag([1.0, 1.0, 1.0])
     settled = slid(path)
+    assert not settled[:8].any()
     for corner in corners:
-        assert settled[corner]
-        assert not settled[corner + 1 : corner + 4].any()
+        assert not settled[corner : corner + 4].any()  # the farthest sample may lie behind the reversal
         assert settled[corner + 5 : corner + 100].all()
 
 

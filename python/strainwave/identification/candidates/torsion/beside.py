@@ -68,7 +68,7 @@ class Elements(Beside):
         traces = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip]).trace(path) for slip in slips.tolist()]
         places = tuple(range(len(slips)))
         put = Choice(places, lambda g, weights: g.replace(hysteresis=_neighbours(weights, slips)))
-        return Library.of([trace[-len(loop.twist) :] for trace in traces], [put])
+        return Library.of([trace[loop.compared] for trace in traces], [put])
 
     def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
         count = range(len(pairs(gear)))
@@ -164,4 +164,4 @@ def _dry(gear: Gear) -> friction.Coulomb | friction.Stribeck | friction.LuGre:
 
 
 def _kept_hysteresis(loop: TorsionLoop, gear: Gear) -> Array:
-    return np.asarray(gear.hysteresis.trace(loop.path(0.0 if loop.single_branch else loop.centre))[-len(loop.twist) :])
+    return np.asarray(gear.hysteresis.trace(loop.path(0.0 if loop.single_branch else loop.centre))[loop.compared])

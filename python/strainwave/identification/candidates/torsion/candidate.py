@@ -242,7 +242,7 @@ def _sparse(loop: TorsionLoop, training: NDArray[np.bool_]) -> tuple[TorsionLoop
     step = -(-len(loop.twist) // STARTS)
     few = slice(None, None, step)
     moments = None if loop.moments is None else loop.moments[few]
-    return replace(loop, twist=loop.twist[few], torque=loop.torque[few], moments=moments), training[few]
+    return replace(loop, twist=loop.twist[few], torque=loop.torque[few], moments=moments, corners=()), training[few]
 
 
 def _zero_columns(loop: TorsionLoop) -> Array:

@@ -203,6 +203,6 @@ def _alone(gear: Gear, law: Law, factor: float) -> Gear:
 
 def _traced(law: Law, loop: TorsionLoop) -> Array:
     try:
-        return np.asarray(law.trace(loop.path(loop.centre))[-len(loop.twist) :])
+        return np.asarray(law.trace(loop.path(loop.centre))[loop.compared])
     except ValueError:  # beyond the bound of its springs
         return np.full(len(loop.twist), np.nan)
