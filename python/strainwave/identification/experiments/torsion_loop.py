@@ -71,8 +71,8 @@ class TorsionLoop(ComparedByFields):
 
         What was measured at the input is referred to the output: twist = input_angle / i, torque = i input_torque. A long
         recording is thinned to the means of equal stretches. Of a loop at the input, what was measured just behind a beginning
-        or a reversal is left out: there friction turns over while its bristles bend, over a distance that no loop tells. Where the gear has
-        stages, what they give way under the torque is taken out of the twist: the rest is that of the spring.
+        or a reversal is left out: there friction turns over while its bristles bend, over a distance that no loop tells. Where
+        the gear has stages, what they give way under the torque is taken out of the twist: the rest is that of the spring.
 
         Raises:
             ValueError: a loop at the input of a gear with stages
