@@ -407,6 +407,7 @@ def test_what_sticks_holds_no_more_than_its_breakaway(
     assert np.abs(run[place]).max() <= breakaway * (1.0 + 1e-14)
 
 
+@settings(max_examples=30)  # drawing a drive takes longer than the law
 @given(drives, st.floats(0.0, 1e9))
 def test_a_drive_is_never_slower_at_large_twists_than_at_rest(drive: Drive, twist: float) -> None:
     """Else a run away to them would be taken for one that its steps can follow."""
