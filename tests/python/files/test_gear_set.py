@@ -56,7 +56,7 @@ def counted(part: Any, path: str = "") -> Iterator[str]:
             yield from counted(getattr(part, field["name"]), f"{name}.")
 
 
-@settings(max_examples=40)  # each of them has a hundred numbers
+@settings(max_examples=20)  # each of them has a hundred numbers
 @given(drives)
 def test_the_paths_are_those_of_the_drives_parameters_and_its_counts(drive: sw.Drive) -> None:
     counts = set(counted(drive))
@@ -85,7 +85,7 @@ def test_a_file_without_motor_or_load_is_loaded_as_its_gear(tmp_path: Path) -> N
 # Where numbers come from
 
 
-@settings(max_examples=40)  # each of them has a hundred numbers
+@settings(max_examples=20)  # each of them has a hundred numbers
 @given(drives)
 def test_of_a_drive_each_number_has_the_source_given_or_says_that_it_may_be_none(drive: sw.Drive) -> None:
     """No number that nobody gave has the source: it does nothing, or equals its default."""

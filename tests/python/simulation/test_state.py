@@ -16,7 +16,7 @@ from tests.reference_drive import DRIVE, SMOOTH
 from tests.strategies import drives
 
 
-@settings(max_examples=40)  # each of them has a hundred numbers
+@settings(max_examples=20)  # each of them has a hundred numbers
 @given(drives)
 def test_a_state_maps_names_to_finite_numbers_each_with_a_unit(drive: sw.Drive) -> None:
     rest = drive.rest()
@@ -27,7 +27,7 @@ def test_a_state_maps_names_to_finite_numbers_each_with_a_unit(drive: sw.Drive) 
     assert all(name.startswith(tuple(f"{part}." for part in _core.shape(drive))) for name in rest if "." in name)
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(drives)
 def test_every_number_can_be_replaced_and_nothing_else_changes(drive: sw.Drive) -> None:
     rest = drive.rest()
