@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 
 SAY = "say what they are with --column"
 FEW = 4  # names that are listed where none says anything
+STILL = 0.01  # of how far a joint moves, by which others move less that rest
 NEIGHBOURS = "other_angles"  # as what a person names the angles of other joints
 FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
 
@@ -50,6 +51,29 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
             unit = "s" if content == "dates" else found.unit or label.unit or None
             told.append(Column(position, label, channel, found.which, found.robot, unit=unit))
     return said + _of_one_joint(table, told, mapping)
+
+
+def alone_in_motion(table: OpenTable, mapping: FileMapping) -> str | None:
+    """The joint whose angle alone changes, of a file with several of which a person named none."""
+    if mapping.joint is not None or mapping.columns:
+        return None
+    angles: dict[str, int] = {}
+    for place, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
+        found = meaning(label)
+        if content != "numbers" or found is None or found.quantity != "angle" or found.commanded or not found.which:
+            continue
+        if found.which in angles:
+            return None
+        angles[found.which] = place
+    if len(angles) < 2:
+        return None
+    numbers, _ = table.measured([Source(place, which, which, "1") for which, place in angles.items()])
+    spans = {
+        which: float(np.nanmax(values) - np.nanmin(values)) for which, values in numbers.items() if np.isfinite(values).any()
+    }
+    widest = max(spans, key=lambda which: spans[which], default=None)
+    others = [span for which, span in spans.items() if which != widest]
+    return widest if widest is not None and spans[widest] > 0.0 and max(others, default=0.0) < STILL * spans[widest] else None
 
 
 def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
@@ -124,7 +148,8 @@ def _choice(group: Sequence[Column], joints: Sequence[str]) -> str:
     names = listed(column.name for column in group)
     channel = group[0].channel
     name = "command" if channel.commanded else "_".join(filter(None, (channel.side, channel.quantity)))
-    wanted = {"output_torque": "joint_torque", "angle": "input_angle", "speed": "input_speed"}.get(name, name)
+    side = "output" if channel.side == "output" or group[0].robot or len(joints) > 1 else "input"
+    wanted = {"output_torque": "joint_torque", "angle": f"{side}_angle", "speed": f"{side}_speed"}.get(name, name)
     option = as_option("column", wanted, group[0].name)
     if len({column.which for column in group}) == len(group) and len(joints) > 1:
         which = f"it holds {len(joints)} joints ({listed(joints)}), as {names}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from strainwave.files.tables import OpenTable, open_table
 from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.columns import chosen, read
+from strainwave.identification.reading.columns import alone_in_motion, chosen, read
 from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side, meaning
@@ -85,6 +85,9 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     said = mapping or FileMapping()
     table = open_table(path)
     said, remarks = _with_single_numbers(table, said)
+    if (joint := alone_in_motion(table, said)) is not None:
+        said = replace(said, joint=joint)
+        remarks.append(f"joint {joint} alone moves, and is taken; --joint says another one")
     columns, more = read(table, chosen(table, said), said)
     remarks += more
     try:

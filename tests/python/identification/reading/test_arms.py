@@ -136,3 +136,16 @@ def test_constant_speed_in_the_words_of_robots_is_at_the_output(tmp_path: Path) 
     np.savetxt(tmp_path / "a.csv", rows, "%.6f", ",", header="q,dq,current", comments="")
     found = recognise(tmp_path / "a.csv")
     assert (found.kind, found.side) == ("effort", "output")
+
+
+def test_the_joint_that_moves_alone_is_taken_and_told(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    alone = arms.Recorder(rate=200.0)(arms.run((JOINT,) * 3, arms.fourier(4.0, (2,), seed=1)))
+    arms.mat(tmp_path / "one.mat", alone)
+    found = recognise(tmp_path / "one.mat")
+    is_joint(found, alone, 2)
+    assert "joint 3 alone moves, and is taken; --joint says another one" in found.remarks
+    arms.mat(tmp_path / "all.mat", seen)
+    with pytest.raises(
+        ValueError, match=r"it holds 3 joints \(1, 2, 3\).* say which with --joint 1, or .* --column output_angle=q_1"
+    ):
+        recognise(tmp_path / "all.mat")

@@ -73,7 +73,7 @@ def test_counts_without_those_of_a_revolution_are_asked_for(tmp_path: Path) -> N
     with pytest.raises(ValueError, match=message):
         log(tmp_path, header, ANGLE, SPEED, SPEED)
     units = {"Position actual value": "inc/4096", "Velocity actual value": "inc/4096/s"}
-    found = recognise(tmp_path / "log.csv", FileMapping(units=units, side="input"))
+    found = recognise(tmp_path / "log.csv", FileMapping(units=units, side="input", kind="log"))
     assert found.recording["input_speed"] == pytest.approx(SPEED / 4096 * 2.0 * np.pi)
 
 
