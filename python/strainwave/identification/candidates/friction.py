@@ -30,6 +30,7 @@ LESS = 0.5  # of the error that is left without them
 PASSES = 3  # in which outliers hide behind larger ones
 SAME = 1e-7  # of the largest torque: errors below are those of rounding and of where a fit ends
 BY_CHANCE = 0.01  # what explains more with this probability by chance does not count
+TOLD = 0.5  # of a number: with a larger standard deviation a law does not tell it
 STEADY = ("coulomb", "breakaway", "stribeck_speed", "viscous")  # what bristles have in common with a law of steady friction
 
 Plain = (
@@ -315,7 +316,8 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
 def _less_sure(best: FrictionCandidate, *others: FrictionCandidate) -> FrictionCandidate:
     """The best law, its numbers as uncertain as the choice among laws makes them (Buckland1997, eq. 9).
 
-    Numbers that laws have in common stray by law more than within one. Laws count by Akaike's weights; none becomes surer.
+    Numbers that laws have in common stray by law more than within one. Laws that tell a number count, by Akaike's weights; none
+    becomes surer.
     """
     least = min(each.information for each in (best, *others))
     if not np.isfinite(least):
@@ -323,7 +325,7 @@ def _less_sure(best: FrictionCandidate, *others: FrictionCandidate) -> FrictionC
 
     def sigma(estimate: Estimate) -> float:
         found = [(each.information, other) for each in others if (other := each.estimate(estimate)) is not None]
-        said = [(best.information, estimate), *((i, other) for i, other in found if np.isfinite(other.sigma))]
+        said = [(best.information, estimate), *((i, other) for i, other in found if other.sigma < TOLD * abs(other.value))]
         weights = np.exp([0.5 * (least - information) for information, _ in said])
         strays = [float(np.hypot(other.sigma, other.value - estimate.value)) for _, other in said]
         return max(estimate.sigma, float(weights @ strays / weights.sum())) if np.any(weights) else estimate.sigma
