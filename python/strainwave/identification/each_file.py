@@ -119,9 +119,10 @@ def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     friction = known.friction if at_input else None
     found = twin(known.gear_set, friction=friction, torsion=file.recording, sources={"torsion": file.path.name})
     finding = _of_twin(file, found, known.accept)
-    parts = {"stiffness", "hysteresis"}
     if finding.refused or known.knows_better("stiffness", finding.told):
         return finding, known
+    # a loop at the input has friction inside, and what a table says wrong of it becomes hysteresis
+    parts = {"stiffness"} if at_input and "hysteresis" in known.told else {"stiffness", "hysteresis"}
     gear = known.gear_set.gear.replace(**{part: getattr(found.gear_set.gear, part) for part in parts})
     return finding, _with_gear(known, gear, found, parts).judged("stiffness", finding.told)
 

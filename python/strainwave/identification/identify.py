@@ -99,7 +99,7 @@ def identify(
         if turn == RUNS and runs:
             progress(steady_runs.JOINED)
             found.take_runs(runs)
-        for file in recognised:
+        for file in sorted(recognised, key=_friction_inside):
             if file.path not in steady and file.path not in found.findings and TURNS[file.kind] == turn:
                 progress(file.path.name)
                 found.take(file)
@@ -190,6 +190,11 @@ def _named_apart(findings: Sequence[Finding], paths: Sequence[Path], copies: Map
         replace(each, name=name, same_as=by_path.get(copies.get(str(path), ""), ""))
         for each, name, path in zip(findings, names, paths, strict=True)
     )
+
+
+def _friction_inside(file: Recognised) -> bool:
+    """Whether it is a loop at the input: one at the output tells the hysteresis by itself, and goes first."""
+    return file.kind == "torsion" and "input_angle" in file.recording
 
 
 def _recognised(path: Path, mapping: Callable[[Path], FileMapping] | None) -> Recognised | Finding:
