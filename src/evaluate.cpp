@@ -47,7 +47,8 @@ Drive::State break_away(const Drive& drive, const Drive::State& x, const Input<d
 
 Drive::State step_once(const Drive& drive, const Drive::State& x, const Interval<Input<double>>& u, double dt) {
     const auto compiled = drive.compile();
-    const auto smooth = called_step<double, std::remove_cv_t<decltype(compiled)>>;
+    integrate::Steps<double, std::remove_cv_t<decltype(compiled)>> steps;
+    const auto smooth = called_steps(steps);
     const double within = std::min(rounding(compiled.schedule(x)), missed(dt));
     auto at = begun(compiled, x, u.start, within);
     check_bounds<double>(compiled, at, 0.0);

@@ -143,11 +143,19 @@ typename Drive::Evaluation inlined_step(const Drive& drive, const typename Drive
                                         const S& dt) {
     return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
 }
-/// The same, for the compiler to decide.
+/// The same, for the compiler to decide. Of a drive whose gear has bodies within `steps` keeps what they ask for.
 template <class S, class Drive>
 [[gnu::noinline]] typename Drive::Evaluation called_step(const Drive& drive, const typename Drive::Evaluation& from,
-                                                         const Interval<Input<S>>& u, const S& dt) {
-    return drive.evaluate(integrate::exponential_step(drive, from, u, dt), u.end);
+                                                         const Interval<Input<S>>& u, const S& dt,
+                                                         integrate::Steps<S, Drive>& steps) {
+    return drive.evaluate(steps(drive, from, u, dt), u.end);
+}
+/// Such steps, one after the other.
+template <class S, class Drive>
+auto called_steps(integrate::Steps<S, Drive>& steps) {
+    return [&steps](const Drive& drive, const typename Drive::Evaluation& from, const Interval<Input<S>>& u, const S& dt) {
+        return called_step(drive, from, u, dt, steps);
+    };
 }
 
 /// A state from outside where a run begins.
@@ -241,10 +249,12 @@ template <class S, class Record>
 typename CompiledDrive<S>::State run(const CompiledDrive<S>& drive, const typename CompiledDrive<S>::State& start,
                                      const InputSchedule& schedule, Record&& record, const Pause& pause) {
     return run_specialised<S>(drive, start, [&]<class Special>(const Special& special, const typename Special::State& from) {
-        if constexpr (inlines<S, Special>)
+        if constexpr (inlines<S, Special>) {
             return run_stepwise<S>(special, from, schedule, record, pause, inlined_step<S, Special>);
-        else
-            return run_stepwise<S>(special, from, schedule, record, pause, called_step<S, Special>);
+        } else {
+            integrate::Steps<S, Special> steps;
+            return run_stepwise<S>(special, from, schedule, record, pause, called_steps(steps));
+        }
     });
 }
 

@@ -45,7 +45,8 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     using Evaluation = typename Compiled::Evaluation;
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
-    const auto smooth = called_step<double, Compiled>;
+    integrate::Steps<double, Compiled> kept;
+    const auto smooth = called_steps(kept);
     integrate::Adaptive<double, Compiled, decltype(smooth), Unbroken> adaptive(drive, x, smooth, tolerance,
                                                                                1e-2 * (ends.at[1] - ends.at[0]));
     long taken = 0;

@@ -210,6 +210,7 @@ struct Choice {
     SW_VERB(energies)
     SW_VERB(compliance)
     SW_VERB(natural_frequency)
+    SW_VERB(uneven_frequency)
     SW_VERB(decay)
 #undef SW_VERB
 
@@ -282,6 +283,14 @@ struct Choice {
         });
     }
     template <class Mesh>
+    constexpr structure::Reaction<S, State> even_reaction(const State& inner, const structure::Shafts<S>& at, const Mesh& mesh,
+                                                          const structure::Load<S>& load) const {
+        return visit([&](const auto& law) {
+            const auto found = law.even_reaction(own(law, inner), at, mesh, load);
+            return structure::Reaction<S, State>{found.torque, found.input_torque, stored(law, found.rate)};
+        });
+    }
+    template <class Mesh>
     constexpr structure::Settled<S, State> settled(const State& inner, const structure::Shafts<S>& at, const Mesh& mesh,
                                                    const structure::Load<S>& load) const {
         return visit([&](const auto& law) {
@@ -293,6 +302,9 @@ struct Choice {
     // Kinematic errors.
     constexpr bool follows_load() const {
         return visit([](const auto& law) { return kinematic_error::follows_load(law); });
+    }
+    constexpr S side(const Angle<S>& angle) const {
+        return visit([&](const auto& law) { return kinematic_error::side<S>(law, angle); });
     }
     constexpr kinematic_error::Relief<S> relief(const S& torque) const {
         return visit([&](const auto& law) { return kinematic_error::relief(law, torque); });

@@ -271,6 +271,60 @@ struct Drive {
         return y;
     }
 
+    // Bodies within the gear, and both shafts: what masses, dampers and even springs do to them is linear.
+
+    static constexpr int coupled_count = Gear::always_rigid ? 0 : 3 + size_of<S, typename Structure::State>;
+    using Coupled = Array<S, (coupled_count > 0 ? coupled_count : 1)>;
+    constexpr bool couples() const { return !gear.structure.rigid(); }
+    constexpr Coupled coupled(const Continuous& y) const {
+        Coupled z{{y.input_speed, y.transmission_error, y.output_speed}};
+        const auto inner = flattened<S>(y.structure);
+        for (int i = 0; i < inner.size(); ++i) z[3 + i] = inner[i];
+        return z;
+    }
+    constexpr void set_coupled(Continuous& y, const Coupled& z) const {
+        y.input_speed = z[0];
+        y.transmission_error = z[1];
+        y.output_speed = z[2];
+        auto inner = flattened<S>(y.structure);
+        for (int i = 0; i < inner.size(); ++i) inner[i] = z[3 + i];
+        refill(y.structure, inner);
+    }
+    /// For each shaft 1 where it moves as it is driven, else 0: it sticks, or is placed.
+    constexpr Array<S, 2> coupled_mode(const State& x) const {
+        const auto moves = [](const S& slip_direction) { return select(slip_direction == S(0.0), S(0.0), S(1.0)); };
+        return {{moves(x.input_slip_direction), prescribes(load) ? S(0.0) : moves(x.output_slip_direction)}};
+    }
+    constexpr Coupled coupled_rate(const Array<S, 2>& moves, const Coupled& z) const {
+        Continuous y{};
+        y.structure = strainwave::initial_state(gear.structure);
+        set_coupled(y, z);
+        const auto even = gear.even_reaction(y.structure, gear_shafts(State{}, y));
+        Continuous rate{};
+        rate.input_speed = -moves[0] * even.input_torque / input_inertia();
+        rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
+        rate.output_speed = moves[1] * even.torque / output_inertia();
+        rate.structure = even.rate;
+        return coupled(rate);
+    }
+    /// By the angle of the wave generator: there the torque on it jumps.
+    constexpr S side(const State& x) const { return gear.side(generator(x).angle); }
+    constexpr S side(const State& x, const State& after, const S& dt, const S& fraction) const {
+        const structure::Generator<S> from = generator(x), to = generator(after);
+        const S moved = to.angle.within - from.angle.within + S(2.0 * pi) * (to.angle.turns - from.angle.turns);
+        const S begin = dt * from.speed, end = dt * to.speed, bend = S(3.0) * moved - S(2.0) * begin - end;
+        const S way = fraction * (begin + fraction * (bend + fraction * (begin + end - S(2.0) * moved)));
+        return gear.side({from.angle.within + way, from.angle.turns});
+    }
+    constexpr structure::Generator<S> generator(const State& x) const {
+        return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous));
+    }
+    /// What vibrates in the gear where its spring has a stiffness [N.m/rad].
+    constexpr structure::Bodies<S> bodies(const S& stiffness) const {
+        return {input_inertia(), gear.input_inertia, output_inertia(), gear.kinematics.inverse_ratio(), stiffness, gear.damping,
+                load_stiffness<S>(load)};
+    }
+
     /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
     constexpr State aged(State x, const Input& u, const S& dt) const {
         const Contacts at = contacts(x, x.continuous, mesh(x, x.continuous, u), u);

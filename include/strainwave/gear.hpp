@@ -192,6 +192,25 @@ struct Gear {
         mesh.rate = reaction.rate;
         return mesh;
     }
+    /// Turns its sign where the slope of the kinematic error jumps.
+    constexpr S side(const Angle<S>& generator) const { return kinematic_error::side<S>(kinematic_error, generator); }
+    /// The torques of the gear without its kinematic error, on springs that do not vary, its own as stiff as at rest: linear in
+    /// how it stands and moves. Most of what drives bodies within it is here.
+    constexpr structure::Reaction<S, Inner> even_reaction(const Inner& inner, const Shafts& at) const {
+        Mesh mesh{};
+        mesh.per_input = at.inverse_ratio;
+        mesh.per_output = S(1.0);
+        const S gap = structure.gap(inner, at);
+        mesh.twist = structure.spring_twist(inner, at, gap);
+        mesh.twist_rate = structure.spring_twist_rate(inner, at, mesh);
+        if constexpr (!always_rigid) {
+            mesh.apart.deformation = gap;
+            mesh.apart.deformation_rate = structure.deformation_rate(inner, mesh);
+        }
+        mesh.spring = even_stiffness() * mesh.twist + damping * mesh.twist_rate;
+        return structure.even_reaction(inner, at, mesh, load(mesh, S(0.0)));
+    }
+    constexpr S even_stiffness() const { return stiffness.tangent(S(0.0)); }
     /// What the mean stiffness of the spring is multiplied by, and its slope over the angle of the wave generator.
     constexpr variation::Factor<S> stiffness_factor(const Inner& inner, const Shafts& at) const {
         if (!stiffness_variation.active()) return {};
@@ -246,9 +265,8 @@ struct Gear {
     /// The largest stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign, and with it that of the
     /// hysteresis where it is first loaded, at a temperature [K]; on turning back some are up to twice as stiff.
     constexpr S steepest(const S& twist, const S& temperature) const {
-        constexpr int parts = 64;
         S largest = stiffness.tangent(S(0.0));
-        for (int i = -parts; i <= parts; ++i) largest = max(largest, stiffness.tangent(twist * S(double(i) / parts)));
+        over_twists(twist, [&](const S& tangent) { largest = max(largest, tangent); });
         largest = stiffness_variation.largest() * largest;
         const S little(1e-12);  // rad: within any loop's first slope, and more than rounding
         const S remembered = hysteresis.torque(typename Hysteresis::State{}, little) / little;
@@ -256,7 +274,31 @@ struct Gear {
         return softening.of_stiffness(temperature) * largest + softening.of_hysteresis(temperature) * remembered;
     }
 
+    /// What the even reaction leaves out at such twists and temperature, over a turn of the wave generator, random errors apart.
+    constexpr structure::Unevenness<S> unevenness(const S& twist, const S& temperature) const {
+        constexpr int parts = 512;
+        const S even = even_stiffness();
+        S softest = stiffness.tangent(S(0.0));
+        over_twists(twist, [&](const S& tangent) { softest = min(softest, tangent); });
+        softest = (S(2.0) - stiffness_variation.largest()) * softness(temperature) * softest;
+        structure::Unevenness<S> found{max(steepest(twist, temperature) - even, even - softest), S(0.0), S(0.0)};
+        const auto inner = initial_state(structure);
+        for (int i = 0; i < parts; ++i) {
+            const Shafts at = shafts({S((2.0 * i / parts - 1.0) * pi), S(0.0)}, S(0.0), S(0.0), S(0.0));
+            const Engaged stood = engaged_without_noise(inner, at, structure.generator(inner, at));
+            found.slope = max(found.slope, abs(stood.error.slope));
+            found.per_twist = max(found.per_twist, abs(stood.per_twist));
+        }
+        return found;
+    }
+
 private:
+    /// Calls visit(tangent) for the stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign.
+    template <class Visit>
+    constexpr void over_twists(const S& twist, const Visit& visit) const {
+        constexpr int parts = 64;
+        for (int i = -parts; i <= parts; ++i) visit(stiffness.tangent(twist * S(double(i) / parts)));
+    }
     /// Teeth that the kinematic error is told are those of the kinematics, or have its ratio where it is told no teeth.
     constexpr Contradiction<S> problem_of_teeth(const S& ratio) const {
         const facts::Teeth told = facts::teeth(kinematic_error), own = facts::teeth(kinematics);

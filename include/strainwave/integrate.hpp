@@ -17,15 +17,22 @@ constexpr typename System::Evaluation step(const System& system, const typename 
 }
 
 /// The state after such a step, from a state alone. Its memory may yet have to be brought up to date, as the next step does.
+/// `steps` keeps what the next step of the same length would work out again.
+template <class S, class System>
+constexpr typename System::State step(const System& system, const typename System::State& before,
+                                      const Interval<typename System::Input>& u, const S& dt, integrate::Steps<S, System>& steps) {
+    const auto from = system.evaluate(before, u.start);
+    if (!system::has_events(system)) return steps(system, from, u, dt);
+    const auto smooth = [&](const System& moved, const auto& at, const auto& over, const S& h) {
+        return moved.evaluate(steps(moved, at, over, h), over.end);
+    };
+    return integrate::event_driven_step(system, from, u, dt, smooth).state;
+}
 template <class S, class System>
 constexpr typename System::State step(const System& system, const typename System::State& before,
                                       const Interval<typename System::Input>& u, const S& dt) {
-    const auto from = system.evaluate(before, u.start);
-    if (!system::has_events(system)) return integrate::exponential_step(system, from, u, dt);
-    const auto smooth = [](const System& moved, const auto& at, const auto& over, const S& h) {
-        return moved.evaluate(integrate::exponential_step(moved, at, over, h), over.end);
-    };
-    return integrate::event_driven_step(system, from, u, dt, smooth).state;
+    integrate::Steps<S, System> steps;
+    return step(system, before, u, dt, steps);
 }
 
 }  // namespace strainwave

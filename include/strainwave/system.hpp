@@ -34,6 +34,27 @@ constexpr typename System::Continuous relaxation_rate(const System& system, cons
         return zeroed<S>(y);
 }
 
+/// How many of the numbers a matrix couples that is constant until a mode changes: a block z of them, whose rates are A z and what
+/// the system adds to that. Steps take A as it is, however stiff it is. Such a system has
+///
+///     coupled_count                        how many there are at the most
+///     couples()                            whether its models have them
+///     coupled(continuous)                  -> Array<S, coupled_count>, in order; of rates, too
+///     set_coupled(continuous, numbers)     in place
+///     coupled_mode(state)                  -> Array<S, any>: what A depends on beside the system
+///     coupled_rate(mode, numbers)          -> Array<S, coupled_count>: A z
+///     side(state)                          turns its sign where the rates jump as the numbers change
+///     side(state, after, dt, fraction)     on the way from one state to another, `dt` [s] later
+///
+/// Default: none.
+template <class System>
+inline constexpr int coupled_count = [] {
+    if constexpr (requires { System::coupled_count; })
+        return System::coupled_count;
+    else
+        return 0;
+}();
+
 /// The numbers, limited to what they can reach, for a stage of a step may exceed that. `now` is an instant close by.
 template <class System>
 constexpr typename System::Continuous clamped(const System& system, const typename System::Continuous& y,

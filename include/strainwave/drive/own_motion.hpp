@@ -12,9 +12,15 @@ namespace strainwave::own_motion {
 
 namespace detail {
 
+/// Of the gear, where a run of a temperature begins [K].
+template <class S, class Drive>
+constexpr S temperature(const Drive& drive, const S& temperature) {
+    return drive.thermal.at(strainwave::initial_state(drive.thermal), temperature).gear;
+}
+
 template <class S, class Drive>
 constexpr S steepest(const Drive& drive, const S& twist, const S& temperature) {
-    return drive.gear.steepest(twist, drive.thermal.at(strainwave::initial_state(drive.thermal), temperature).gear);
+    return drive.gear.steepest(twist, detail::temperature<S>(drive, temperature));
 }
 
 /// The faster angular frequency [rad/s] of two masses, one spring between them and one behind the output: of gear and load.
@@ -28,15 +34,8 @@ constexpr S of_two_masses(const Drive& drive, const S& stiffness) {
     return sqrt(mean * (S(1.0) + sqrt(max(S(1.0) - share * (of_load / max(mean, S(smallest))), S(0.0)))));
 }
 
-template <class S, class Drive>
-constexpr structure::Bodies<S> bodies(const Drive& drive, const S& stiffness) {
-    const auto& gear = drive.gear;
-    return {drive.input_inertia(), gear.input_inertia,           drive.output_inertia(), gear.kinematics.inverse_ratio(), stiffness,
-            gear.damping,          load_stiffness<S>(drive.load)};
-}
-
 /// How fast speeds decay at most [1/s], of a drive at the beginning of its way whose sides both slide: by damping, friction,
-/// back-EMF and control. The larger eigenvalue of what two speeds do to their rates.
+/// back-EMF and control, but for what steps take exactly. The larger eigenvalue of what two speeds do to their rates.
 template <class S, class Drive>
 constexpr S damping(const Drive& drive) {
     auto x = drive.rest();
@@ -45,7 +44,14 @@ constexpr S damping(const Drive& drive) {
         auto y = x.continuous;
         y.input_speed = S(input_speed);
         y.output_speed = S(output_speed);
-        return drive.derivatives(x, y, typename Drive::Input{}).rate;
+        auto found = drive.derivatives(x, y, typename Drive::Input{}).rate;
+        if constexpr (Drive::coupled_count > 0)
+            if (drive.couples()) {
+                const auto taken = drive.coupled_rate(drive.coupled_mode(x), drive.coupled(y));
+                found.input_speed = found.input_speed - taken[0];
+                found.output_speed = found.output_speed - taken[2];
+            }
+        return found;
     };
     const auto slow = rate(1.0, 1.0), by_input = rate(2.0, 1.0), by_output = rate(1.0, 2.0);
     const S input = slow.input_speed - by_input.input_speed, output = slow.output_speed - by_output.output_speed;
@@ -78,13 +84,14 @@ template <class S, class Drive>
 constexpr S natural_frequency(const Drive& drive, const S& twist, const S& temperature) {
     const S stiffness = detail::steepest<S>(drive, twist, temperature);
     return drive.gear.structure.rigid() ? detail::of_two_masses<S>(drive, stiffness)
-                                        : drive.gear.structure.natural_frequency(detail::bodies<S>(drive, stiffness));
+                                        : drive.gear.structure.natural_frequency(drive.bodies(stiffness));
 }
 
 /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: vibrations, the decay of speeds and of a controlled
 /// current, sensors, what the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times
-/// its length, of a vibration 2.83 times, and 2.5 leaves room. For bodies within the gear stability is enough: a step that is
-/// stable damps a mode that it does not resolve.
+/// its length, of a vibration 2.83 times, and 2.5 leaves room. Of bodies within the gear it is what their even reaction leaves
+/// out, for steps take that exactly; where much is left out, their vibrations, of which stability is enough: a step that is stable
+/// damps a mode that it does not resolve.
 template <class S, class Drive>
 constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const auto& gear = drive.gear;
@@ -95,9 +102,10 @@ constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     if (gear.structure.rigid()) return max(max(detail::of_two_masses<S>(drive, stiffness), decay / S(2.5)), inner);
     const auto x = drive.rest();
     const S softer = S(1.0) + stiffness * gear.compliance(drive.gear_shafts(x, x.continuous), drive.geometry(x, x.continuous));
-    const auto bodies = detail::bodies<S>(drive, stiffness);
-    const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies));
-    return max(max(detail::of_two_masses<S>(drive, stiffness / softer), max(decay, of_bodies) / S(2.5)), inner);
+    const auto bodies = drive.bodies(stiffness);
+    const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies)) / S(2.5);
+    const S uneven = gear.structure.uneven_frequency(bodies, gear.unevenness(twist, detail::temperature<S>(drive, temperature)));
+    return max(max(detail::of_two_masses<S>(drive, stiffness / softer), max(decay / S(2.5), min(uneven, of_bodies))), inner);
 }
 
 /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.

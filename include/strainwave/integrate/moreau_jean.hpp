@@ -1,13 +1,12 @@
 #pragma once
-#include <strainwave/integrate/exponential.hpp>
+#include <strainwave/integrate/coupled.hpp>
 
 namespace strainwave::integrate {
 
-/// One step of Moreau's and Jean's time-stepping scheme, of second order between events and without any: impulses of friction bring
-/// shafts to rest, or break them away, as part of the step (Acary and Brogliato 2008, section 10.1; the forces taken at the
-/// midpoint). What relaxes does so exactly.
+namespace detail {
+
 template <class S, class System>
-constexpr typename System::State moreau_jean_step(const System& system, const typename System::Evaluation& from,
+constexpr typename System::State moreau_jean_part(const System& system, const typename System::Evaluation& from,
                                                   const Interval<typename System::Input>& u, const S& dt) {
     using Continuous = typename System::Continuous;
     auto x = from.state;
@@ -23,6 +22,39 @@ constexpr typename System::State moreau_jean_step(const System& system, const ty
     x.continuous = system::update_mode(system, clamped(x.continuous), now);
     system::finish_step(system, x, dt);
     return x;
+}
+
+/// Steps in parts so short that they follow what a coupled block does by itself.
+template <class S, class System>
+constexpr typename System::State moreau_jean_parts(const System& system, const typename System::Evaluation& from,
+                                                   const Interval<typename System::Input>& u, const S& dt) {
+    constexpr double most = 1e4;
+    auto block = each([&](const S& x) { return dt * x; }, coupled_matrix<S>(system, system.coupled_mode(from.state)));
+    balance(block);
+    const S parts = clip(rint(S(2.0) * detached(largest_column(block)) + S(0.5)), S(1.0), S(most)), share = S(1.0) / parts;
+    auto at = from;
+    for (S done{0.0};;) {
+        const auto left = done < parts;
+        const S next = min(done + S(1.0), parts);
+        const auto part = u.part(done * share, next * share, dt);
+        at.state = chosen<S>(left, moreau_jean_part(system, at, part, share * dt), at.state);
+        done = next;
+        if (!any(done < parts)) return at.state;
+        at = system.evaluate(at.state, part.end);
+    }
+}
+
+}  // namespace detail
+
+/// One step of Moreau's and Jean's time-stepping scheme, of second order between events and without any: impulses of friction bring
+/// shafts to rest, or break them away, as part of the step (Acary and Brogliato 2008, section 10.1; the forces taken at the
+/// midpoint). What relaxes does so exactly. Where the system has a coupled block it is several steps, as many as follow the block.
+template <class S, class System>
+constexpr typename System::State moreau_jean_step(const System& system, const typename System::Evaluation& from,
+                                                  const Interval<typename System::Input>& u, const S& dt) {
+    if constexpr (system::coupled_count<System> > 0)
+        if (system.couples()) return detail::moreau_jean_parts(system, from, u, dt);
+    return detail::moreau_jean_part(system, from, u, dt);
 }
 
 }  // namespace strainwave::integrate

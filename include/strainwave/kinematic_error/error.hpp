@@ -33,4 +33,13 @@ constexpr Relief<S> relief(const Law& law, const S& torque) {
         return {};
 }
 
+/// Turns its sign where the slope of an error jumps; 1 of an error whose slope never does.
+template <class S, class Law>
+constexpr S side(const Law& law, const Angle<S>& angle) {
+    if constexpr (requires { law.side(angle); })
+        return law.side(angle);
+    else
+        return S(1.0);
+}
+
 }  // namespace strainwave::kinematic_error

@@ -157,6 +157,13 @@ struct Misalignment {
             return {scale * select(behind, second.value, first.value), scale * select(behind, second.slope, first.slope)};
         }
 
+        /// Which lobe decides, where one does: by how much it is further out [m].
+        constexpr S side(const Angle<S>& angle) const {
+            if (combine != Combine::max) return S(1.0);
+            const auto [first, second] = lobes(angle);
+            return first.value - second.value;
+        }
+
         /// With w the direction of the lobe and d the centre, both as the turning generator has them, P = w'Nw, X = w'Nd,
         /// D = d'Nd: the displacement solves P x^2 + 2 (P - X) x + (P - 1 - 2 X + D) = 0.
         constexpr Lobes<S> lobes(const Angle<S>& angle) const {
@@ -202,6 +209,7 @@ struct Misalignment {
     }
 
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
+    constexpr S side(const Angle<S>& angle) const { return compile().side(angle); }
 
     /// Radial displacements delta_A and delta_B.
     constexpr Lobes<S> lobes(const Angle<S>& angle) const { return compile().lobes(angle); }

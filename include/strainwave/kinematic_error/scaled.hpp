@@ -52,6 +52,7 @@ struct Scaled {
             const S factor = S(1.0) / (S(1.0) + min(load_sensitivity * abs(torque), S(1e30)));
             return {factor, -load_sensitivity * sign(torque) * factor * factor};
         }
+        constexpr S side(const Angle<S>& angle) const { return kinematic_error::side<S>(law, angle); }
         constexpr Error<S> at(const Angle<S>& angle) const {
             const Error<S> full = law.at(angle);
             return {scale * full.value, scale * full.slope};
@@ -65,6 +66,7 @@ struct Scaled {
 
     constexpr bool follows_load() const { return sought(load_sensitivity) || any(load_sensitivity > S(0.0)); }
     constexpr Relief<S> relief(const S& torque) const { return compile().relief(torque); }
+    constexpr S side(const Angle<S>& angle) const { return compile().side(angle); }
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
 };
 

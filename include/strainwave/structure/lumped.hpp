@@ -45,6 +45,11 @@ struct Lumped {
         return {load.spring * mesh.per_output, load.spring * mesh.per_input + load.turning, {}};
     }
     template <class Mesh>
+    constexpr Reaction<S, State> even_reaction(const State& inner, const Shafts<S>& at, const Mesh& mesh,
+                                               const Load<S>& load) const {
+        return reaction(inner, at, mesh, load);
+    }
+    template <class Mesh>
     constexpr Energies<S> energies(const State&, const Shafts<S>&, const Mesh&, const Load<S>&) const {
         return {};
     }
@@ -61,6 +66,7 @@ struct Lumped {
         return S(0.0);
     }
     constexpr S natural_frequency(const Bodies<S>&) const { return S(0.0); }
+    constexpr S uneven_frequency(const Bodies<S>&, const Unevenness<S>&) const { return S(0.0); }
     constexpr S decay(const Bodies<S>&) const { return S(0.0); }
 };
 

@@ -164,6 +164,7 @@ struct Staged {
             return variation.active() ? variation.at(generator) : variation::Factor<S>{};
         }
         constexpr S most() const { return stiffness * variation.largest(); }
+        constexpr S uneven() const { return most() - stiffness; }
     };
     /// A joint that is deformed, and what it holds.
     struct Strained {
@@ -206,21 +207,13 @@ struct Staged {
         template <class Mesh>
         constexpr Reaction<S, State> reaction(const State& inner, const Shafts<S>& at, const Mesh& stance,
                                               const Load<S>& load) const {
-            const Joints of = joints(inner, at, stance);
-            const Ends torque =
-                at_ends(at.inverse_ratio, load.spring - stance.apart.per_twist * of.bearing.torque, of.spline.torque);
-            const S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
-            State rate{};
-            rate.windup = at.input_speed - inner.generator_speed;
-            rate.generator_speed = (of.coupling.torque - stance.per_input * of.bearing.torque - turning) / load.generator_inertia;
-            rate.radial_lag = inner.generator_speed * at.inverse_ratio - inner.radial_speed;
-            rate.radial_speed = (of.bearing.torque - of.mesh.torque) / radial_inertia;
-            rate.held_angle = inner.held_speed;
-            const Ends inertia = at_ends(at.inverse_ratio, flexspline_inertia, spline_inertia);
-            rate.held_speed = (of.mesh.torque - torque.held) / inertia.held;
-            rate.driving_lead = inner.driving_speed - at.output_speed;
-            rate.driving_speed = (of.mesh.torque - torque.driving) / inertia.driving;
-            return {torque.driving, of.coupling.torque, rate};
+            return reaction(joints(inner, at, stance), inner, at, stance, load);
+        }
+        template <class Mesh>
+        constexpr Reaction<S, State> even_reaction(const State& inner, const Shafts<S>& at, const Mesh& stance,
+                                                   const Load<S>& load) const {
+            const auto even = [](const Joint<Varying>&) { return variation::Factor<S>{}; };
+            return reaction(joints(inner, at, stance, even), inner, at, stance, load);
         }
 
         template <class Mesh>
@@ -285,6 +278,18 @@ struct Staged {
             return sqrt(largest_eigenvalue(
                 bodies, {coupling.most(), bearing.most(), mesh.most(), ends.held, ends.driving, bodies.load_stiffness}));
         }
+        /// Of springs as stiff as they vary by, and of a bearing that a sloped error moves, too: what its force on the generator
+        /// and on the spring differs by, as the largest eigenvalue of b d' + d b' + d d', with b how the bearing deforms by each
+        /// position, and d how the error does, both over the roots of the inertias.
+        constexpr S uneven_frequency(const Bodies<S>& bodies, const Unevenness<S>& of) const {
+            const Ends ends = at_ends(bodies.inverse_ratio, of.stiffness, spline.uneven());
+            const S springs =
+                largest_eigenvalue(bodies, {coupling.uneven(), bearing.uneven(), mesh.uneven(), ends.held, ends.driving, S(0.0)});
+            const S straight = bodies.inverse_ratio * bodies.inverse_ratio / bodies.generator_inertia + S(1.0) / radial_inertia;
+            const S bent = of.slope * of.slope / bodies.generator_inertia + of.per_twist * of.per_twist / flexspline_inertia;
+            const S along_both = abs(bodies.inverse_ratio) * of.slope / bodies.generator_inertia;
+            return sqrt(springs + bearing.most() * (along_both + sqrt(straight * bent) + bent));
+        }
         constexpr S decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
             return largest_eigenvalue(bodies, {coupling.damping, bearing.damping, mesh.damping, ends.held, ends.driving, S(0.0)});
@@ -309,29 +314,52 @@ struct Staged {
             return {select(held_flexspline, of_flexspline, of_spline), select(held_flexspline, of_spline, of_flexspline)};
         }
 
-        static constexpr Strained strained(const Joint<Varying>& joint, const Angle<S>& angle, const S& deformation,
+        static constexpr Strained strained(const Joint<Varying>& joint, const variation::Factor<S>& factor, const S& deformation,
                                            const S& rate) {
-            const variation::Factor<S> factor = joint.factor(angle);
             const S stiff = joint.stiffness * deformation, elastic = factor.value * stiff;
             return {deformation, rate, elastic, elastic + joint.damping * rate, S(0.5) * factor.slope * stiff * deformation};
         }
         static constexpr Strained resting(const Joint<Varying>& joint, const Angle<S>& angle, const S& torque) {
-            const S deformation = torque / (joint.stiffness * joint.factor(angle).value);
-            return strained(joint, angle, deformation, S(0.0));
+            const variation::Factor<S> factor = joint.factor(angle);
+            const S deformation = torque / (joint.stiffness * factor.value);
+            return strained(joint, factor, deformation, S(0.0));
+        }
+
+        template <class Mesh>
+        constexpr Reaction<S, State> reaction(const Joints& of, const State& inner, const Shafts<S>& at, const Mesh& stance,
+                                              const Load<S>& load) const {
+            const Ends torque =
+                at_ends(at.inverse_ratio, load.spring - stance.apart.per_twist * of.bearing.torque, of.spline.torque);
+            const S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
+            State rate{};
+            rate.windup = at.input_speed - inner.generator_speed;
+            rate.generator_speed = (of.coupling.torque - stance.per_input * of.bearing.torque - turning) / load.generator_inertia;
+            rate.radial_lag = inner.generator_speed * at.inverse_ratio - inner.radial_speed;
+            rate.radial_speed = (of.bearing.torque - of.mesh.torque) / radial_inertia;
+            rate.held_angle = inner.held_speed;
+            const Ends inertia = at_ends(at.inverse_ratio, flexspline_inertia, spline_inertia);
+            rate.held_speed = (of.mesh.torque - torque.held) / inertia.held;
+            rate.driving_lead = inner.driving_speed - at.output_speed;
+            rate.driving_speed = (of.mesh.torque - torque.driving) / inertia.driving;
+            return {torque.driving, of.coupling.torque, rate};
         }
 
         template <class Mesh>
         constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance) const {
-            const auto held_flexspline = flexspline_held(at);
             const Angle<S> angle = generator(inner, at).angle;
+            return joints(inner, at, stance, [&](const Joint<Varying>& joint) { return joint.factor(angle); });
+        }
+        template <class Mesh, class FactorOf>
+        constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance, const FactorOf& factor) const {
+            const auto held_flexspline = flexspline_held(at);
             const S in_mesh =
                 at.transmission_error - inner.windup * at.inverse_ratio - inner.radial_lag - inner.held_angle - inner.driving_lead;
             const S on_spline = select(held_flexspline, inner.driving_lead, inner.held_angle);
             const S on_spline_rate = select(held_flexspline, inner.driving_speed - at.output_speed, inner.held_speed);
-            return {strained(coupling, angle, inner.windup, at.input_speed - inner.generator_speed),
-                    strained(bearing, angle, stance.apart.deformation, stance.apart.deformation_rate),
-                    strained(mesh, angle, in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
-                    strained(spline, angle, on_spline, on_spline_rate)};
+            return {strained(coupling, factor(coupling), inner.windup, at.input_speed - inner.generator_speed),
+                    strained(bearing, factor(bearing), stance.apart.deformation, stance.apart.deformation_rate),
+                    strained(mesh, factor(mesh), in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
+                    strained(spline, factor(spline), on_spline, on_spline_rate)};
         }
 
         /// Largest eigenvalue of the inverse of the inertias times the joints, by power iteration. Rayleigh's quotient comes from
@@ -395,11 +423,13 @@ struct Staged {
     SW_OF_CHAIN(spring_twist_rate)
     SW_OF_CHAIN(deformation_rate)
     SW_OF_CHAIN(reaction)
+    SW_OF_CHAIN(even_reaction)
     SW_OF_CHAIN(energies)
     SW_OF_CHAIN(output)
     SW_OF_CHAIN(settled)
     SW_OF_CHAIN(compliance)
     SW_OF_CHAIN(natural_frequency)
+    SW_OF_CHAIN(uneven_frequency)
     SW_OF_CHAIN(decay)
 #undef SW_OF_CHAIN
 };

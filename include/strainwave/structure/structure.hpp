@@ -12,11 +12,13 @@
 ///     spring_twist_rate(inner, shafts, mesh)       rad/s
 ///     deformation_rate(inner, mesh)          rad/s, of what the error leaves of the gap
 ///     reaction(inner, shafts, mesh, load)    -> Reaction
+///     even_reaction(inner, shafts, mesh, load)   -> Reaction, if no spring of its own varied: linear
 ///     energies(inner, shafts, mesh, load)    -> Energies
 ///     output(inner, shafts, mesh, friction)  -> Output, with the friction at the output [N.m]
 ///     settled(inner, shafts, mesh, load)     -> Settled: at rest under the torque of the spring
 ///     compliance(shafts, mesh)               rad/(N.m), of all but the spring
 ///     natural_frequency(bodies)              rad/s, of the fastest mode
+///     uneven_frequency(bodies, unevenness)   rad/s, that what the even reaction leaves out would have by itself
 ///     decay(bodies)                          1/s, by damping alone
 namespace strainwave::structure {
 
@@ -72,6 +74,14 @@ struct Settled {
 template <class S>
 struct Bodies {
     S input_inertia, generator_inertia, output_inertia, inverse_ratio, stiffness, damping, load_stiffness;
+};
+
+/// What of a gear the even reaction leaves out, at the most.
+template <class S>
+struct Unevenness {
+    S stiffness;  ///< of the spring, beside what it has at rest, N.m/rad
+    S slope;      ///< of the kinematic error over the angle of the wave generator, rad/rad
+    S per_twist;  ///< and over the twist of the spring, rad/rad
 };
 
 }  // namespace strainwave::structure
