@@ -25,10 +25,13 @@ void write(const integrate::Square<double, size>& z) {
 /// exp Z, phi_1, phi_2 and phi_3 of each matrix of the input, and whether a pack of several gives the same bits.
 void phi_functions() {
     using Phi = integrate::PhiFunctions<double, size>;
+    using Square = integrate::Square<double, size>;
     using Lanes = Pack<4>;
-    integrate::Square<double, size> z;
+    Square z;
     while (read(z)) {
-        const Phi phi = Phi::of(z);
+        Phi phi;
+        Square given = z;
+        phi.set(given);
         write(phi.exponential);
         write(phi.first);
         write(phi.second);
@@ -37,7 +40,8 @@ void phi_functions() {
         for (int j = 0; j < size; ++j)
             for (int i = 0; i < size; ++i)
                 for (int lane = 0; lane < 4; ++lane) several[j][i].set(lane, z[j][i] * (lane == 1 ? 1.0 : 0.01 * lane));
-        const auto packed = integrate::PhiFunctions<Lanes, size>::of(several);
+        integrate::PhiFunctions<Lanes, size> packed;
+        packed.set(several);
         int different = 0;
         for (int j = 0; j < size; ++j)
             for (int i = 0; i < size; ++i) different += packed.third[j][i][1] != phi.third[j][i];
@@ -45,14 +49,15 @@ void phi_functions() {
     }
 }
 
-/// The numbers after `duration` in steps of one length.
+/// The numbers after some time in steps of one length, where the swing turns as fast as it should without the body.
 template <class S>
-typename StiffFollower<S>::Continuous followed(const StiffFollower<S>& system, double duration, int steps) {
+typename StiffFollower<S>::Continuous followed(const StiffFollower<S>& system, double drive, double duration, int steps) {
     using System = StiffFollower<S>;
-    const Interval<typename System::Input> none{};
+    const typename System::Input turning{S(drive)};
+    const Interval<typename System::Input> u{turning, turning, turning};
     integrate::Steps<S, System> kept;
-    auto at = system.evaluate(typename System::State{{S(0.5), S(0.4794), S(0.0)}}, none.start);
-    for (int i = 0; i < steps; ++i) at = system.evaluate(kept(system, at, none, S(duration / steps)), none.end);
+    auto at = system.evaluate(typename System::State{{S(0.5), S(0.4794), S(40.0)}}, turning);
+    for (int i = 0; i < steps; ++i) at = system.evaluate(kept(system, at, u, S(duration / steps)), turning);
     return at.state.continuous;
 }
 
@@ -61,17 +66,16 @@ int main(int count, char** words) {
         phi_functions();
         return 0;
     }
-    const double kinked = std::atof(words[1]), duration = std::atof(words[2]);
-    for (int i = 3; i < count; ++i) {
+    const double kinked = std::atof(words[1]), told = std::atof(words[2]), drive = std::atof(words[3]),
+                 duration = std::atof(words[4]);
+    for (int i = 5; i < count; ++i) {
         const int steps = std::atoi(words[i]);
-        const StiffFollower<double> system{.kinked = kinked};
-        const auto y = followed(system, duration, steps);
-        const StiffFollower<Dual<1>> with_slope{.frequency = [] {
-            Dual<1> x(2e4);
-            x.slope[0] = 1.0;
-            return x;
-        }(), .kinked = kinked};
-        const auto slope = followed(with_slope, duration, steps);
-        std::printf("%.17g %.17g %.17g %.17g %.17g\n", y.angle, y.place, y.speed, slope.place.slope[0], slope.angle.slope[0]);
+        const StiffFollower<double> system{.kinked = kinked, .told = told};
+        const auto y = followed(system, drive, duration, steps);
+        Dual<1> frequency(2e4);
+        frequency.slope[0] = 1.0;
+        const StiffFollower<Dual<1>> sloped{.frequency = frequency, .kinked = kinked, .told = told};
+        std::printf("%.17g %.17g %.17g %.17g\n", y.angle, y.place, y.speed,
+                    followed(sloped, drive, duration, steps).angle.slope[0]);
     }
 }

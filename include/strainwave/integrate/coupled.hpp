@@ -10,20 +10,23 @@ namespace strainwave::integrate {
 /// of the step, so that A y + n, the rate, is all that the first stage needs.
 template <class S, int n>
 class Coupling {
-    Square<S, n> linear, half_first, half_second, first, second, third;
+    Square<S, n> linear, half_first, half_second;
+    PhiFunctions<S, n> whole;
     S h;
 
 public:
-    constexpr Coupling() = default;
-    constexpr Coupling(const Square<S, n>& a, const S& dt) : linear(a), h(dt) {
+    /// Those of A, over a step of `dt`.
+    constexpr void set(const Square<S, n>& a, const S& dt) {
+        linear = a;
+        h = dt;
         const S half = S(0.5) * dt;
-        PhiFunctions<S, n> phi = PhiFunctions<S, n>::of(each([&](const S& x) { return half * x; }, a));
-        half_first = phi.first;
-        half_second = phi.second;
-        phi = phi.doubled();
-        first = phi.first;
-        second = phi.second;
-        third = phi.third;
+        Square<S, n> z = a;
+        for (auto& column : z.item)
+            for (S& x : column.item) x = half * x;
+        whole.set(z);
+        half_first = whole.first;
+        half_second = whole.second;
+        whole.double_where(dt == dt);  // everywhere
     }
 
     using Numbers = Array<S, n>;
@@ -39,9 +42,9 @@ public:
     constexpr Numbers to_third(const Numbers& second_moved, const Numbers& d2) const {
         return sum(second_moved, moved(S(1.0), half_second, d2));
     }
-    constexpr Numbers with_rate_of_start(const Numbers& at_start) const { return moved(S(1.0), first, at_start); }
+    constexpr Numbers with_rate_of_start(const Numbers& at_start) const { return moved(S(1.0), whole.first, at_start); }
     constexpr Numbers to_fourth(const Numbers& by_start, const Numbers& d3) const {
-        return sum(by_start, moved(S(2.0), second, d3));
+        return sum(by_start, moved(S(2.0), whole.second, d3));
     }
     constexpr Numbers to_end(const Numbers& by_start, const Numbers& d2, const Numbers& d3, const Numbers& d4) const {
         Numbers twice, rest;
@@ -50,7 +53,7 @@ public:
             twice[i] = S(2.0) * both - d4[i];
             rest[i] = d4[i] - both;
         }
-        return sum(by_start, sum(moved(S(1.0), second, twice), moved(S(4.0), third, rest)));
+        return sum(by_start, sum(moved(S(1.0), whole.second, twice), moved(S(4.0), whole.third, rest)));
     }
 
 private:
@@ -163,24 +166,25 @@ private:
             for (int i = 0; i < asked.size(); ++i) same = same && all(mode[i] == asked[i]);
         }
         if (same) return;
-        coupling = Coupling<S, n>(coupled_matrix<S>(system, asked), dt);
+        coupling.set(coupled_matrix<S>(system, asked), dt);
         mode = asked;
         length = dt;
         known = true;
     }
     /// Up to shortly before a moment, past it, and on to the end.
-    static constexpr State in_parts(const System& system, const Evaluation& from, const Interval<Input>& u, const S& dt,
-                                    const S& moment) {
-        const S middle = clip(moment, S(2.0 * brief), S(1.0 - 2.0 * brief));
-        const auto reach = [&](const Evaluation& at, const S& begin, const S& end) {
-            const S taken = (end - begin) * dt;
-            const Coupling<S, n> of_part(coupled_matrix<S>(system, system.coupled_mode(at.state)), taken);
-            return coupled_step(system, at, u.part(begin, end, dt), taken, of_part);
-        };
-        const S before = middle - S(brief), past = middle + S(brief);
-        const Evaluation near = system.evaluate(reach(from, S(0.0), before), u.at(before, dt));
-        const Evaluation beyond = system.evaluate(reach(near, before, past), u.at(past, dt));
-        return reach(beyond, past, S(1.0));
+    constexpr State in_parts(const System& system, const Evaluation& from, const Interval<Input>& u, const S& dt, const S& moment) {
+        const S middle = clip(moment, S(2.0 * brief), S(1.0 - 2.0 * brief)), ends[] = {middle - S(brief), middle + S(brief), S(1.0)};
+        Evaluation at = from;
+        S begin{0.0};
+        for (int i = 0;; ++i) {
+            const S taken = (ends[i] - begin) * dt;
+            const auto part = u.part(begin, ends[i], dt);
+            prepare(system, at.state, taken);
+            const State next = coupled_step(system, at, part, taken, coupling);
+            if (i == 2) return next;
+            at = system.evaluate(next, part.end);
+            begin = ends[i];
+        }
     }
     /// Positive where `x` lies on the same side.
     static constexpr S facing(const S& side, const S& x) { return select(side < S(0.0), -x, x); }

@@ -16,19 +16,10 @@ constexpr Array<S, n> times(const Square<S, n>& a, const Array<S, n>& x) {
         for (int i = 0; i < n; ++i) y[i] = y[i] + a[j][i] * x[j];
     return y;
 }
+/// c becomes a b.
 template <class S, int n>
-constexpr Square<S, n> times(const Square<S, n>& a, const Square<S, n>& b) {
-    Square<S, n> c;
+constexpr void multiply(const Square<S, n>& a, const Square<S, n>& b, Square<S, n>& c) {
     for (int j = 0; j < n; ++j) c[j] = times(a, b[j]);
-    return c;
-}
-/// f(number of `a`, number of `b`, ...) at each place.
-template <class F, class S, int n, class... Others>
-constexpr Square<S, n> each(const F& f, const Square<S, n>& a, const Others&... others) {
-    Square<S, n> c;
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) c[j][i] = f(a[j][i], others[j][i]...);
-    return c;
 }
 
 /// Brings the sums of each row and of each column close to each other: D^-1 Z D takes the place of Z, and D, which is diagonal, is
@@ -69,14 +60,15 @@ constexpr S largest_column(const Square<S, n>& z) {
     return largest;
 }
 
-/// exp Z, and phi_1, phi_2, phi_3 of a matrix Z: phi_k = sum over j of Z^j / (j + k)!.
+/// exp Z, and phi_1, phi_2, phi_3 of a matrix Z: phi_k = sum over j of Z^j / (j + k)!. Worked out in place, for there is little
+/// memory on a microcontroller.
 template <class S, int n>
 struct PhiFunctions {
     Square<S, n> exponential, first, second, third;
 
-    /// By their series where Z is small, and by doubling from there (Skaflestad and Wright 2009). How often is told for each lane
-    /// by itself, so that each has the bits that it has alone.
-    static constexpr PhiFunctions of(Square<S, n> z) {
+    /// Those of `z`, which is lost: by their series where Z is small, and by doubling from there (Skaflestad and Wright 2009). How
+    /// often is told for each lane by itself, so that each has the bits that it has alone.
+    constexpr void set(Square<S, n>& z) {
         constexpr double small = 0.5;
         constexpr int most = 64;
         const Array<S, n> scale = balance(z);
@@ -88,71 +80,66 @@ struct PhiFunctions {
             part = select(large, S(0.5) * part, part);
             doublings = select(large, doublings + S(1.0), doublings);
         }
-        PhiFunctions phi = of_small(each([&](const S& x) { return part * x; }, z));
+        for_each_place([&](int i, int j) { z[j][i] = part * z[j][i]; });
+        set_small(z);
         for (S done{0.0};; done = done + S(1.0)) {
             const auto less = done < doublings;
             if (!any(less)) break;
-            phi.choose(less, phi.doubled());
+            double_where(less);
         }
-        phi.unbalance(scale);
-        return phi;
+        for_each_place([&](int i, int j) {
+            const S by = scale[i] / scale[j];
+            exponential[j][i] = by * exponential[j][i];
+            first[j][i] = by * first[j][i];
+            second[j][i] = by * second[j][i];
+            third[j][i] = by * third[j][i];
+        });
     }
-    /// The same of 2 Z.
-    constexpr PhiFunctions doubled() const {
-        PhiFunctions twice;
-        twice.exponential = times(exponential, exponential);
-        twice.first = each([](const S& moved, const S& one) { return S(0.5) * (moved + one); }, times(exponential, first), first);
-        twice.second = each([](const S& moved, const S& one, const S& two) { return S(0.25) * (moved + (one + two)); },
-                            times(exponential, second), first, second);
-        twice.third = each(
-            [](const S& moved, const S& one, const S& two, const S& three) {
-                return S(0.125) * (moved + (S(0.5) * one + (two + three)));
-            },
-            times(exponential, third), first, second, third);
-        return twice;
+    /// Those of Z become those of 2 Z, in these lanes.
+    template <class Mask>
+    constexpr void double_where(const Mask& lanes) {
+        const auto replace = [&](Square<S, n>& function, const auto& doubled) {
+            Square<S, n> moved;
+            multiply(exponential, function, moved);
+            for_each_place([&](int i, int j) { function[j][i] = select(lanes, doubled(moved[j][i], i, j), function[j][i]); });
+        };
+        replace(third, [&](const S& moved, int i, int j) {
+            return S(0.125) * (moved + (S(0.5) * first[j][i] + (second[j][i] + third[j][i])));
+        });
+        replace(second, [&](const S& moved, int i, int j) { return S(0.25) * (moved + (first[j][i] + second[j][i])); });
+        replace(first, [&](const S& moved, int i, int j) { return S(0.5) * (moved + first[j][i]); });
+        replace(exponential, [](const S& moved, int, int) { return moved; });
     }
 
 private:
+    template <class F>
+    static constexpr void for_each_place(const F& f) {
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i) f(i, j);
+    }
     /// Sums to z^12 / 15! of phi_3, nested; the others follow from phi_k = 1/k! + Z phi_(k+1). Where no column sums to more than
     /// 1/2 what is left out is below 1e-17.
-    static constexpr PhiFunctions of_small(const Square<S, n>& z) {
+    constexpr void set_small(const Square<S, n>& z) {
         constexpr int last = 15, first_of_third = 4;
-        Square<S, n> sum = plus(S(1.0), Square<S, n>{});
+        for_each_place([&](int i, int j) { third[j][i] = S(i == j ? 1.0 : 0.0); });
         S k{double(last)};
-        for (int j = last; j >= first_of_third; --j) {
+        for (int nested = last; nested >= first_of_third; --nested) {
+            multiply(z, third, second);
             const S share = S(1.0) / k;
-            sum = plus(S(1.0), times(each([&](const S& x) { return share * x; }, z), sum));
+            for_each_place([&](int i, int j) { third[j][i] = share * second[j][i]; });
+            add_to_diagonal(third, S(1.0));
             k = k - S(1.0);
         }
-        PhiFunctions phi;
-        phi.third = each([](const S& x) { return S(1.0 / 6.0) * x; }, sum);
-        phi.second = plus(S(0.5), times(z, phi.third));
-        phi.first = plus(S(1.0), times(z, phi.second));
-        phi.exponential = plus(S(1.0), times(z, phi.first));
-        return phi;
+        for_each_place([&](int i, int j) { third[j][i] = S(1.0 / 6.0) * third[j][i]; });
+        multiply(z, third, second);
+        add_to_diagonal(second, S(0.5));
+        multiply(z, second, first);
+        add_to_diagonal(first, S(1.0));
+        multiply(z, first, exponential);
+        add_to_diagonal(exponential, S(1.0));
     }
-    /// x more on the diagonal.
-    static constexpr Square<S, n> plus(const S& x, Square<S, n> a) {
+    static constexpr void add_to_diagonal(Square<S, n>& a, const S& x) {
         for (int i = 0; i < n; ++i) a[i][i] = x + a[i][i];
-        return a;
-    }
-    template <class Mask>
-    constexpr void choose(const Mask& mask, const PhiFunctions& other) {
-        const auto chosen = [&](const S& own, const S& others) { return select(mask, others, own); };
-        exponential = each(chosen, exponential, other.exponential);
-        first = each(chosen, first, other.first);
-        second = each(chosen, second, other.second);
-        third = each(chosen, third, other.third);
-    }
-    constexpr void unbalance(const Array<S, n>& scale) {
-        for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i) {
-                const S by = scale[i] / scale[j];
-                exponential[j][i] = by * exponential[j][i];
-                first[j][i] = by * first[j][i];
-                second[j][i] = by * second[j][i];
-                third[j][i] = by * third[j][i];
-            }
     }
 };
 

@@ -29,7 +29,9 @@ template <class S, class System>
 constexpr typename System::State moreau_jean_parts(const System& system, const typename System::Evaluation& from,
                                                    const Interval<typename System::Input>& u, const S& dt) {
     constexpr double most = 1e4;
-    auto block = each([&](const S& x) { return dt * x; }, coupled_matrix<S>(system, system.coupled_mode(from.state)));
+    auto block = coupled_matrix<S>(system, system.coupled_mode(from.state));
+    for (auto& column : block.item)
+        for (S& x : column.item) x = dt * x;
     balance(block);
     const S parts = clip(rint(S(2.0) * detached(largest_column(block)) + S(0.5)), S(1.0), S(most)), share = S(1.0) / parts;
     auto at = from;
