@@ -321,8 +321,8 @@ struct Drive {
     }
     /// What vibrates in the gear where its spring has a stiffness [N.m/rad].
     constexpr structure::Bodies<S> bodies(const S& stiffness) const {
-        return {input_inertia(), gear.input_inertia, output_inertia(), gear.kinematics.inverse_ratio(), stiffness, gear.damping,
-                load_stiffness<S>(load)};
+        return {input_inertia(), gear.input_inertia, output_inertia(),       gear.kinematics.inverse_ratio(),
+                stiffness,       gear.damping,       load_stiffness<S>(load)};
     }
 
     /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.

@@ -43,8 +43,8 @@ struct StiffFollower {
     Evaluation evaluate(const State& x, const Input& u) const { return {x, derivatives(x, x.continuous, u)}; }
     Derivatives derivatives(const State&, const Continuous& y, const Input& u) const {
         const S wave = sin(y.angle), end = select(kinked > S(0.0), abs(wave), wave);
-        return {{u.drive * (S(1.0) + pull * y.place), y.speed,
-                 frequency * (frequency * (end - y.place) - S(2.0) * damping * y.speed)}};
+        return {
+            {u.drive * (S(1.0) + pull * y.place), y.speed, frequency * (frequency * (end - y.place) - S(2.0) * damping * y.speed)}};
     }
 
     static constexpr int coupled_count = 2;

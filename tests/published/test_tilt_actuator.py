@@ -21,7 +21,7 @@ SLIDING = 3.7 + 3.56 * RATE  # N.m, friction at the output: the excess of the br
 TORQUE_CONSTANT = 0.0919  # N.m/A
 BREAKAWAY = 4.66  # N.m
 LUMPED, STAGED = "tilt-actuator-lumped", "tilt-actuator"
-STEP = {LUMPED: 2e-4, STAGED: 1.5e-5}  # s
+STEP = {LUMPED: 2e-4, STAGED: 2e-4}  # s
 every_gear = pytest.mark.parametrize("name", STEP)
 
 

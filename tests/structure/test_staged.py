@@ -116,12 +116,13 @@ def test_misalignment_moves_the_stages_as_the_equations_have_it(fixed: str, comb
 
 @orientation
 def test_fixed_steps_approach_the_equations_in_fourth_order(fixed: str) -> None:
+    """Of two radians of the fastest vibration on, springs varying."""
     drive = DRIVE.replace(gear=everywhere(GEAR.replace(kinematics=FIXED[fixed])))
-    times = np.linspace(0.0, 0.01, 41)
+    times = np.linspace(0.0, 0.01, 51)
     known = by_scipy(drive, SHAKEN, lambda *at: -PUSHED(*at), times)["torque"]
     off = []
-    for dt in (2e-5, 1e-5, 5e-6):
-        run = sw.simulate(drive, SHAKEN.scenario(0.01), dt, load_torque=PUSHED.scenario(0.01), sample=2.5e-4)
+    for dt in (2e-4, 1e-4, 5e-5):
+        run = sw.simulate(drive, SHAKEN.scenario(0.01), dt, load_torque=PUSHED.scenario(0.01), sample=2e-4)
         off.append(np.abs(run["torque"] - known).max())
     assert np.log2(np.array(off[:-1]) / np.array(off[1:])) == pytest.approx([4.0, 4.0], abs=0.4)
 
@@ -472,9 +473,51 @@ def test_a_number_of_a_stage_comes_back_from_a_log(path: str, guess: float) -> N
     assert estimate.value == pytest.approx(at(DRIVE, path), rel=1e-5)
 
 
-def test_steps_too_coarse_for_the_bodies_within_are_refused_by_their_name() -> None:
+@pytest.mark.parametrize(
+    "changed",
+    [
+        everywhere(GEAR),
+        GEAR.replace(stiffness=sw.stiffness.Backlash(clearance=1e-3, law=sw.stiffness.Linear(k=2e3))),
+        GEAR.replace(stiffness=sw.stiffness.Piecewise(k1=1e3, k2=1e3, knee=1e-3)),
+        GEAR.replace(kinematic_error=sw.kinematic_error.Fourier(order=[40.0], amplitude=[2e-3], phase=[0.0])),
+    ],
+    ids=["varying", "backlash", "piecewise", "error"],
+)
+def test_what_springs_leave_to_explicit_steps_bounds_their_length(changed: sw.Gear) -> None:
+    """A step that is too coarse for it is refused by its name; any that is not is right, to a hundredth of the largest."""
+    drive = DRIVE.replace(gear=changed)
+    command, load = SHAKEN.scenario(0.05), PUSHED.scenario(0.05)
     with pytest.raises(FloatingPointError, match="a body within its gear is as fast as a vibration of"):
-        sw.simulate(DRIVE, sw.scenario.constant(0.0, 0.01), dt=4e-4)
+        sw.simulate(drive, command, 4e-4, load_torque=load)
+    longest = 0.5 / _core.max_rate(drive, 0.05)
+    run = sw.simulate(drive, command, longest, load_torque=load)
+    exact = sw.simulate_adaptively(drive, command, 1e-8, load_torque=load, sample=longest)
+    for name in "torque", "output_speed", "bearing_displacement":
+        known = np.interp(run.time, exact.time, exact[name])
+        assert np.abs(run[name] - known).max() < 1e-2 * np.abs(known).max(), name
+
+
+def test_even_springs_are_taken_in_steps_of_many_radians() -> None:
+    """Four of the fastest vibration, to a thousandth of the largest torque; set off by a step of the load."""
+    drive = DRIVE.replace(gear=GEAR.replace(kinematic_error=sw.kinematic_error.Fourier()))
+    assert max(sw.modes(drive)["free"]) * 4e-4 > 3.5
+    coarse, fine = (
+        sw.simulate(drive, SHAKEN.scenario(0.02), dt, load_torque=5.0, sample=4e-4, initial={"input_speed": 0.0})["torque"]
+        for dt in (4e-4, 1e-5)
+    )
+    assert np.abs(coarse - fine).max() < 1e-3 * np.abs(fine).max()
+
+
+@orientation
+@pytest.mark.parametrize("method", ["moreau_jean", "exponential"])
+def test_long_steps_by_impulses_follow_the_bodies_in_parts(fixed: str, method: Any) -> None:
+    """Though the scheme is explicit; its order is the second."""
+    drive = DRIVE.replace(gear=GEAR.replace(kinematics=FIXED[fixed], friction_output=FRICTIONS["sticking"]))
+    exact = shaken(drive, 0.02, 1e-9)
+    run = sw.simulate(
+        drive, SHAKEN.scenario(0.02), 2.5e-4, method=method, load_torque=PUSHED.scenario(0.02), sample=5e-4
+    )
+    assert np.abs(run["torque"] - exact["torque"]).max() < 1e-2 * np.abs(exact["torque"]).max()
 
 
 SCALED = sw.kinematic_error.Scaled(law=ERROR, load_sensitivity=0.1)

@@ -90,8 +90,8 @@ constexpr S natural_frequency(const Drive& drive, const S& twist, const S& tempe
 /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: vibrations, the decay of speeds and of a controlled
 /// current, sensors, what the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times
 /// its length, of a vibration 2.83 times, and 2.5 leaves room. Of bodies within the gear it is what their even reaction leaves
-/// out, for steps take that exactly; where much is left out, their vibrations, of which stability is enough: a step that is stable
-/// damps a mode that it does not resolve.
+/// out, for steps take that exactly; where much is left out, their vibrations, 1.25 times the length of a step at the most, where
+/// what is left out is stable whatever it is.
 template <class S, class Drive>
 constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const auto& gear = drive.gear;
@@ -103,7 +103,7 @@ constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const auto x = drive.rest();
     const S softer = S(1.0) + stiffness * gear.compliance(drive.gear_shafts(x, x.continuous), drive.geometry(x, x.continuous));
     const auto bodies = drive.bodies(stiffness);
-    const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies)) / S(2.5);
+    const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies)) / S(1.25);
     const S uneven = gear.structure.uneven_frequency(bodies, gear.unevenness(twist, detail::temperature<S>(drive, temperature)));
     return max(max(detail::of_two_masses<S>(drive, stiffness / softer), max(decay / S(2.5), min(uneven, of_bodies))), inner);
 }

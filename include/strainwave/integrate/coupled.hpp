@@ -173,7 +173,8 @@ private:
     }
     /// Up to shortly before a moment, past it, and on to the end.
     constexpr State in_parts(const System& system, const Evaluation& from, const Interval<Input>& u, const S& dt, const S& moment) {
-        const S middle = clip(moment, S(2.0 * brief), S(1.0 - 2.0 * brief)), ends[] = {middle - S(brief), middle + S(brief), S(1.0)};
+        const S middle = clip(moment, S(2.0 * brief), S(1.0 - 2.0 * brief));
+        const S ends[] = {middle - S(brief), middle + S(brief), S(1.0)};
         Evaluation at = from;
         S begin{0.0};
         for (int i = 0;; ++i) {

@@ -77,8 +77,9 @@ struct Staged {
         Valid for deformations that are small against r_g. Leaves out clearance of mesh and bearing (stiffness.Backlash has play
         in the flexspline's spring alone) and every mode of the flexspline beside torsion and the radial one. The wave generator
         needs an input_inertia. Where the kinematic error has a pitch radius and a pressure angle, too, they must be those of
-        the stages. No catalogue gives these stiffnesses: they are calculated, or assumed. Fixed steps must follow the fastest
-        mode, some 1e4 to 1e5 rad/s: a run with longer ones is refused, and told how long they may be.
+        the stages. No catalogue gives these stiffnesses: they are calculated, or assumed. The bodies vibrate at some 1e4 to 1e5
+        rad/s. Fixed steps need not follow that, but what springs vary and bend by: a run with longer ones is refused, and told
+        how long they may be.
 
         >>> import strainwave as sw
         >>> structure = sw.structure.Staged(pitch_radius=25e-3, bearing_stiffness=5e7, mesh_stiffness=1e8,
@@ -278,8 +279,9 @@ struct Staged {
             return sqrt(largest_eigenvalue(
                 bodies, {coupling.most(), bearing.most(), mesh.most(), ends.held, ends.driving, bodies.load_stiffness}));
         }
-        /// Of springs as stiff as they vary by, and of a bearing that a sloped error moves, too: what its force on the generator
-        /// and on the spring differs by, as the largest eigenvalue of b d' + d b' + d d', with b how the bearing deforms by each
+        /// Of springs as stiff as they vary by, twice: at resonances of step and vibration a step of one radian of these could
+        /// still set off what nothing damps. And of a bearing that a sloped error moves, too: what its force on the generator and
+        /// on the spring differs by, as the largest eigenvalue of b d' + d b' + d d', with b how the bearing deforms by each
         /// position, and d how the error does, both over the roots of the inertias.
         constexpr S uneven_frequency(const Bodies<S>& bodies, const Unevenness<S>& of) const {
             const Ends ends = at_ends(bodies.inverse_ratio, of.stiffness, spline.uneven());
@@ -288,7 +290,7 @@ struct Staged {
             const S straight = bodies.inverse_ratio * bodies.inverse_ratio / bodies.generator_inertia + S(1.0) / radial_inertia;
             const S bent = of.slope * of.slope / bodies.generator_inertia + of.per_twist * of.per_twist / flexspline_inertia;
             const S along_both = abs(bodies.inverse_ratio) * of.slope / bodies.generator_inertia;
-            return sqrt(springs + bearing.most() * (along_both + sqrt(straight * bent) + bent));
+            return sqrt(S(4.0) * springs + bearing.most() * (along_both + sqrt(straight * bent) + bent));
         }
         constexpr S decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);

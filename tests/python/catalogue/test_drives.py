@@ -13,7 +13,7 @@ from strainwave.files.described import all_paths
 
 DRIVES = sw.catalogue("drives")
 AT_REST_IN_THE_COLD = {"space-pointing-joint": 253.15}  # K
-STEP = {"position-drive-printed": 2e-5, "tilt-actuator": 1.5e-5}  # s; the others take the usual one
+STEP = {"position-drive-printed": 2e-5}  # s; the others take the usual one
 CASCADES = ["robot-joint", "space-pointing-joint"]
 USE = {  # speed [rad/s] and acceleration [rad/s2] that the note of a set names
     "robot-joint": (2.0, 10.0),
