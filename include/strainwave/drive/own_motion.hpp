@@ -90,8 +90,8 @@ constexpr S natural_frequency(const Drive& drive, const S& twist, const S& tempe
 /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: vibrations, the decay of speeds and of a controlled
 /// current, sensors, what the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times
 /// its length, of a vibration 2.83 times, and 2.5 leaves room. Of bodies within the gear it is what their even reaction leaves
-/// out, for steps take that exactly; where much is left out, their vibrations, 1.25 times the length of a step at the most, where
-/// what is left out is stable whatever it is.
+/// out, for steps take that exactly; where much is left out, their vibrations: 1.25 radians of these a step are stable, whatever is
+/// left out.
 template <class S, class Drive>
 constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const auto& gear = drive.gear;
