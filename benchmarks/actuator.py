@@ -199,7 +199,9 @@ def strainwave_crowd(members: int, threads: int, step: float) -> Callable[[], Ar
 
 
 PEERS = (
-    *strainwave_drive.peers(task, {"exponential": (5e-4, 2e-4, 1e-4, 3.3e-5), "rosenbrock": (1e-3, 5e-4, 2e-4, 1e-4)}, TOLERANCES),
+    *strainwave_drive.peers(
+        task, {"exponential": (5e-4, 2e-4, 1e-4, 3.3e-5), "rosenbrock": (1e-3, 5e-4, 2e-4, 1e-4)}, TOLERANCES
+    ),
     Peer(
         "lumped gear, strainwave",
         ("strainwave",),

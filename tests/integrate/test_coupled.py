@@ -93,7 +93,9 @@ def test_of_zero_they_are_one_over_the_factorial_and_a_row_of_zeros_stays(built:
 # Steps
 
 
-def stepped(built: Path, *steps: int, kinked: bool = False, told: bool = True, drive: float = DRIVE, duration: float = DURATION) -> Array:
+def stepped(
+    built: Path, *steps: int, kinked: bool = False, told: bool = True, drive: float = DRIVE, duration: float = DURATION
+) -> Array:
     """Angle, place, speed, and the derivative of the angle by the frequency, at the end; a row for each number of steps."""
     words = [str(float(kinked)), str(float(told)), repr(drive), repr(duration), *map(str, steps)]
     run = subprocess.run([built, *words], capture_output=True, text=True, check=True)
