@@ -98,17 +98,16 @@ struct PhiFunctions {
     /// Those of Z become those of 2 Z, in these lanes.
     template <class Mask>
     constexpr void double_where(const Mask& lanes) {
+        Square<S, n> moved;
         const auto replace = [&](Square<S, n>& function, const auto& doubled) {
-            Square<S, n> moved;
             multiply(exponential, function, moved);
             for_each_place([&](int i, int j) { function[j][i] = select(lanes, doubled(moved[j][i], i, j), function[j][i]); });
         };
-        replace(third, [&](const S& moved, int i, int j) {
-            return S(0.125) * (moved + (S(0.5) * first[j][i] + (second[j][i] + third[j][i])));
-        });
-        replace(second, [&](const S& moved, int i, int j) { return S(0.25) * (moved + (first[j][i] + second[j][i])); });
-        replace(first, [&](const S& moved, int i, int j) { return S(0.5) * (moved + first[j][i]); });
-        replace(exponential, [](const S& moved, int, int) { return moved; });
+        replace(third,
+                [&](const S& by, int i, int j) { return S(0.125) * (by + (S(0.5) * first[j][i] + (second[j][i] + third[j][i]))); });
+        replace(second, [&](const S& by, int i, int j) { return S(0.25) * (by + (first[j][i] + second[j][i])); });
+        replace(first, [&](const S& by, int i, int j) { return S(0.5) * (by + first[j][i]); });
+        replace(exponential, [](const S& by, int, int) { return by; });
     }
 
 private:
