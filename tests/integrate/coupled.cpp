@@ -30,18 +30,18 @@ void phi_functions() {
     Square z;
     while (read(z)) {
         Phi phi;
-        Square given = z;
-        phi.set(given);
+        Square given = z, room;
+        phi.set(given, room);
         write(phi.exponential);
         write(phi.first);
         write(phi.second);
         write(phi.third);
-        integrate::Square<Lanes, size> several;
+        integrate::Square<Lanes, size> several, room_of_several;
         for (int j = 0; j < size; ++j)
             for (int i = 0; i < size; ++i)
                 for (int lane = 0; lane < 4; ++lane) several[j][i].set(lane, z[j][i] * (lane == 1 ? 1.0 : 0.01 * lane));
         integrate::PhiFunctions<Lanes, size> packed;
-        packed.set(several);
+        packed.set(several, room_of_several);
         int different = 0;
         for (int j = 0; j < size; ++j)
             for (int i = 0; i < size; ++i) different += packed.third[j][i][1] != phi.third[j][i];

@@ -11,9 +11,10 @@ import pytest
 from tests.cplusplus import HEADERS, INCLUDE, compilation, compiler, drives, zig
 
 STEP = """
-extern "C" void step_{number}(const {drive}* drive, {drive}::State* state,
+using Drive = {drive};
+extern "C" void step_{number}(const Drive* drive, Drive::State* state, strainwave::integrate::Steps<float, Drive>* steps,
                               const strainwave::Interval<strainwave::Input<float>>* input, float dt) {{
-    *state = strainwave::step(*drive, *state, *input, dt);
+    *state = strainwave::step(*drive, *state, *input, dt, *steps);
 }}
 """
 SOURCES = {f"step_{i}.cpp": HEADERS + STEP.format(number=i, drive=drive) for i, drive in enumerate(drives("float"))}

@@ -20,13 +20,13 @@ public:
         linear = a;
         h = dt;
         const S half = S(0.5) * dt;
-        Square<S, n> z = a;
-        for (auto& column : z.item)
-            for (S& x : column.item) x = half * x;
-        whole.set(z);
+        auto &z = half_second, &room = half_first;
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i) z[j][i] = half * a[j][i];
+        whole.set(z, room);
         half_first = whole.first;
         half_second = whole.second;
-        whole.double_where(dt == dt);  // everywhere
+        whole.double_integrals(dt == dt);  // everywhere
     }
 
     using Numbers = Array<S, n>;

@@ -66,9 +66,9 @@ template <class S, int n>
 struct PhiFunctions {
     Square<S, n> exponential, first, second, third;
 
-    /// Those of `z`, which is lost: by their series where Z is small, and by doubling from there (Skaflestad and Wright 2009). How
-    /// often is told for each lane by itself, so that each has the bits that it has alone.
-    constexpr void set(Square<S, n>& z) {
+    /// Those of `z`: by their series where Z is small, and by doubling from there (Skaflestad and Wright 2009). How often is told
+    /// for each lane by itself, so that each has the bits that it has alone. What `z` and `room` hold is lost.
+    constexpr void set(Square<S, n>& z, Square<S, n>& room) {
         constexpr double small = 0.5;
         constexpr int most = 64;
         const Array<S, n> scale = balance(z);
@@ -85,7 +85,9 @@ struct PhiFunctions {
         for (S done{0.0};; done = done + S(1.0)) {
             const auto less = done < doublings;
             if (!any(less)) break;
-            double_where(less);
+            double_integrals(less);
+            multiply(exponential, exponential, room);
+            for_each_place([&](int i, int j) { exponential[j][i] = select(less, room[j][i], exponential[j][i]); });
         }
         for_each_place([&](int i, int j) {
             const S by = scale[i] / scale[j];
@@ -95,19 +97,21 @@ struct PhiFunctions {
             third[j][i] = by * third[j][i];
         });
     }
-    /// Those of Z become those of 2 Z, in these lanes.
+    /// phi_1, phi_2 and phi_3 of Z become those of 2 Z, in these lanes; exp Z stays.
     template <class Mask>
-    constexpr void double_where(const Mask& lanes) {
-        Square<S, n> moved;
-        const auto replace = [&](Square<S, n>& function, const auto& doubled) {
-            multiply(exponential, function, moved);
-            for_each_place([&](int i, int j) { function[j][i] = select(lanes, doubled(moved[j][i], i, j), function[j][i]); });
-        };
-        replace(third,
-                [&](const S& by, int i, int j) { return S(0.125) * (by + (S(0.5) * first[j][i] + (second[j][i] + third[j][i]))); });
-        replace(second, [&](const S& by, int i, int j) { return S(0.25) * (by + (first[j][i] + second[j][i])); });
-        replace(first, [&](const S& by, int i, int j) { return S(0.5) * (by + first[j][i]); });
-        replace(exponential, [](const S& by, int, int) { return by; });
+    constexpr void double_integrals(const Mask& lanes) {
+        for (int j = 0; j < n; ++j) {
+            Array<S, n> moved = times(exponential, third[j]);
+            for (int i = 0; i < n; ++i) {
+                const S doubled = S(0.125) * (moved[i] + (S(0.5) * first[j][i] + (second[j][i] + third[j][i])));
+                third[j][i] = select(lanes, doubled, third[j][i]);
+            }
+            moved = times(exponential, second[j]);
+            for (int i = 0; i < n; ++i)
+                second[j][i] = select(lanes, S(0.25) * (moved[i] + (first[j][i] + second[j][i])), second[j][i]);
+            moved = times(exponential, first[j]);
+            for (int i = 0; i < n; ++i) first[j][i] = select(lanes, S(0.5) * (moved[i] + first[j][i]), first[j][i]);
+        }
     }
 
 private:
