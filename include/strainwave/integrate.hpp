@@ -17,7 +17,8 @@ constexpr typename System::Evaluation step(const System& system, const typename 
 }
 
 /// The state after such a step, from a state alone. Its memory may yet have to be brought up to date, as the next step does.
-/// `steps` keeps what the next step of the same length would work out again.
+/// `steps` keeps what the next step of the same length would work out again, of one system: begin with others where its numbers
+/// change.
 template <class S, class System>
 constexpr typename System::State step(const System& system, const typename System::State& before,
                                       const Interval<typename System::Input>& u, const S& dt, integrate::Steps<S, System>& steps) {

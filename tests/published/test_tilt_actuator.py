@@ -271,7 +271,7 @@ def test_the_stages_carry_what_the_balance_of_torques_says() -> None:
 def test_stages_and_lump_are_one_drive_below_the_modes_of_the_stages() -> None:
     """The lump lacks the inertia of the circular spline, 0.05 %, and vibrations above 3 kHz."""
     staged, ramp = ramp_of(STAGED), sw.scenario.ramp(RATE, 5.0)
-    lumped = sw.simulate(without_noise(sw.load(LUMPED)), ramp, STEP[STAGED], sample=1e-3)
+    lumped = sw.simulate(without_noise(sw.load(LUMPED)), ramp, 1.5e-5, sample=1e-3)  # whose steps pass over jumps of the slope
     for name, unlike in (("output_angle", 5e-6), ("torque", 0.02), ("current", 1e-3)):
         assert np.abs(staged[name] - lumped[name]).max() < unlike, name
 

@@ -123,9 +123,9 @@ constexpr Square<S, system::coupled_count<System>> coupled_matrix(const System& 
     return a;
 }
 
-/// Steps without events, one after the other. Of a system with a coupled block it keeps what a step worked out of the block, for
-/// others of the same length. Where the rates jump on the way the step is taken in parts, one of which, short, holds the jump: to
-/// step over it would be an error of first order.
+/// Steps without events of one system, one after the other. If that has a coupled block, it keeps what a step worked out of the
+/// block, for others of the same length. Where the rates jump on the way the step is taken in parts, one of which, short, holds the
+/// jump: to step over it would be an error of first order.
 template <class S, class System, int n = system::coupled_count<System>>
 class Steps {
     using Input = typename System::Input;

@@ -176,7 +176,7 @@ class ActuatorRamp:
 
 
 def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
-    """The same with the stages of a staged gear in series as one spring, whose steps may be longer; else the ramp itself.
+    """The same with the stages of a staged gear in series as one spring, which takes less time; else the ramp itself.
 
     Right for what is slow against the stages, as orders of the wave generator are. Inertias between the stages are left out.
     Referred to the output, with the ratio i, compliances add up (E-A6), with those of both couplings:

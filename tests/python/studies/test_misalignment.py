@@ -194,7 +194,6 @@ def test_stages_in_series_are_the_lumped_set() -> None:
     series = in_series(staged).drive.gear
     assert series.stiffness.k == pytest.approx(lumped.stiffness.k, rel=1e-4)
     assert series.damping == pytest.approx(lumped.damping, rel=5e-3)
-    assert in_series(staged).dt > 5.0 * staged.dt
     plain = ActuatorRamp.of(sw.load("tilt-actuator-lumped"), *SHORT)
     assert in_series(plain) is plain
 
