@@ -44,6 +44,7 @@ GEAR = sw.Gear(
     structure=STRUCTURE,
 )
 DRIVE = free(GEAR, 5e-5, sw.loads.Inertia(inertia=0.02))
+DAMPINGS = ["coupling_damping", "bearing_damping", "mesh_damping", "circular_spline_damping"]
 SHAKEN = Waves([(0.4, 31.0, 0.3), (0.3, 170.0, 1.0), (0.2, 600.0, 2.0)])
 PUSHED = Waves([(6.0, 45.0, 0.0), (4.0, 333.0, 0.0)])  # nothing at the start: the gear is not loaded there
 orientation = pytest.mark.parametrize("fixed", list(FIXED))
@@ -480,8 +481,9 @@ def test_a_number_of_a_stage_comes_back_from_a_log(path: str, guess: float) -> N
         GEAR.replace(stiffness=sw.stiffness.Backlash(clearance=1e-3, law=sw.stiffness.Linear(k=2e3))),
         GEAR.replace(stiffness=sw.stiffness.Piecewise(k1=1e3, k2=1e3, knee=1e-3)),
         GEAR.replace(kinematic_error=sw.kinematic_error.Fourier(order=[40.0], amplitude=[2e-3], phase=[0.0])),
+        GEAR.replace(damping=0.0, structure=STRUCTURE.replace(**dict.fromkeys(DAMPINGS, 0.0))),
     ],
-    ids=["varying", "backlash", "piecewise", "error"],
+    ids=["varying", "backlash", "piecewise", "error", "undamped"],
 )
 def test_what_springs_leave_to_explicit_steps_bounds_their_length(changed: sw.Gear) -> None:
     """A step that is too coarse for it is refused by its name; any that is not is right, to a hundredth of the largest."""

@@ -78,8 +78,8 @@ struct Staged {
         in the flexspline's spring alone) and every mode of the flexspline beside torsion and the radial one. The wave generator
         needs an input_inertia. Where the kinematic error has a pitch radius and a pressure angle, too, they must be those of
         the stages. No catalogue gives these stiffnesses: they are calculated, or assumed. The bodies vibrate at some 1e4 to 1e5
-        rad/s. Fixed steps need not follow that, but what springs vary and bend by: a run with longer ones is refused, and told
-        how long they may be.
+        rad/s. Where dampers hold every body, fixed steps need not follow that, but what springs vary and bend by: a run with
+        longer ones is refused, and told how long they may be.
 
         >>> import strainwave as sw
         >>> structure = sw.structure.Staged(pitch_radius=25e-3, bearing_stiffness=5e7, mesh_stiffness=1e8,
@@ -280,9 +280,10 @@ struct Staged {
                 bodies, {coupling.most(), bearing.most(), mesh.most(), ends.held, ends.driving, bodies.load_stiffness}));
         }
         /// Of springs as stiff as they vary by, twice: at resonances of step and vibration a step of one radian of these could
-        /// still set off what nothing damps. And of a bearing that a sloped error moves, too: what its force on the generator and
-        /// on the spring differs by, as the largest eigenvalue of b d' + d b' + d d', with b how the bearing deforms by each
-        /// position, and d how the error does, both over the roots of the inertias.
+        /// still set off what nothing damps. In shorter ones it still grows a little, which dampers must outdo. And of a bearing
+        /// that a sloped error moves, too: what its force on the generator and on the spring differs by, as the largest eigenvalue
+        /// of b d' + d b' + d d', with b how the bearing deforms by each position, and d how the error does, both over the roots of
+        /// the inertias.
         constexpr S uneven_frequency(const Bodies<S>& bodies, const Unevenness<S>& of) const {
             const Ends ends = at_ends(bodies.inverse_ratio, of.stiffness, spline.uneven());
             const S springs =
@@ -290,7 +291,8 @@ struct Staged {
             const S straight = bodies.inverse_ratio * bodies.inverse_ratio / bodies.generator_inertia + S(1.0) / radial_inertia;
             const S bent = of.slope * of.slope / bodies.generator_inertia + of.per_twist * of.per_twist / flexspline_inertia;
             const S along_both = abs(bodies.inverse_ratio) * of.slope / bodies.generator_inertia;
-            return sqrt(S(4.0) * springs + bearing.most() * (along_both + sqrt(straight * bent) + bent));
+            const S square = S(4.0) * springs + bearing.most() * (along_both + sqrt(straight * bent) + bent);
+            return max(sqrt(square), S(growth) * square / max(slowest_decay(bodies), S(smallest)));
         }
         constexpr S decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
@@ -362,6 +364,20 @@ struct Staged {
                     strained(bearing, factor(bearing), stance.apart.deformation, stance.apart.deformation_rate),
                     strained(mesh, factor(mesh), in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
                     strained(spline, factor(spline), on_spline, on_spline_rate)};
+        }
+
+        /// What a vibration grows by in a step, as a share of the square of the radians of `uneven_frequency`: five times what was
+        /// found.
+        static constexpr double growth = 0.01;
+
+        /// How fast a body within decays [1/s] where the others stand still: the one that dampers hold least.
+        constexpr S slowest_decay(const Bodies<S>& bodies) const {
+            const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
+            const Ends ring = at_ends(bodies.inverse_ratio, flexspline_inertia, spline_inertia);
+            const S turned = bodies.inverse_ratio * bodies.inverse_ratio * bearing.damping;
+            return S(0.5) * min(min((coupling.damping + turned) / bodies.generator_inertia,
+                                    (bearing.damping + mesh.damping) / radial_inertia),
+                                min((mesh.damping + ends.held) / ring.held, (mesh.damping + ends.driving) / ring.driving));
         }
 
         /// Largest eigenvalue of the inverse of the inertias times the joints, by power iteration. Rayleigh's quotient comes from
