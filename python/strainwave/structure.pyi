@@ -108,8 +108,8 @@ class Staged:
     in the flexspline's spring alone) and every mode of the flexspline beside torsion and the radial one. The wave generator
     needs an input_inertia. Where the kinematic error has a pitch radius and a pressure angle, too, they must be those of
     the stages. No catalogue gives these stiffnesses: they are calculated, or assumed. The bodies vibrate at some 1e4 to 1e5
-    rad/s. Fixed steps need not follow that, but what springs vary and bend by: a run with longer ones is refused, and told
-    how long they may be.
+    rad/s. Where dampers hold every body, fixed steps need not follow that, but what springs vary and bend by: a run with
+    longer ones is refused, and told how long they may be.
 
     >>> import strainwave as sw
     >>> structure = sw.structure.Staged(pitch_radius=25e-3, bearing_stiffness=5e7, mesh_stiffness=1e8,
