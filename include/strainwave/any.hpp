@@ -266,6 +266,12 @@ struct Choice {
     constexpr const char* actuation() const {
         return visit([](const auto& law) { return motor::taken_by(law); });
     }
+    constexpr bool prescribes() const {
+        return visit([](const auto& law) { return motor::prescribes(law); });
+    }
+    constexpr S acceleration(const S& asked) const {
+        return visit([&](const auto& law) { return motor::acceleration<S>(law, asked); });
+    }
     constexpr Limits<S> limits(const State& x, const motor::Rotor<S>& rotor) const {
         return visit([&](const auto& law) { return motor::limits(law, own(law, x), rotor); });
     }
@@ -497,6 +503,8 @@ template <class S, class... Load>
 constexpr bool prescribes(const Choice<S, Load...>& choice) {
     return choice.visit([]<class Chosen>(const Chosen&) { return load::can_prescribe<Chosen>; });
 }
+template <class S, class... Motor>
+inline constexpr bool motor::can_prescribe<Choice<S, Motor...>> = (motor::can_prescribe<Motor> || ...);
 template <class S, class... Load>
 inline constexpr bool load::can_brake<Choice<S, Load...>> = (load::can_brake<Load> || ...);
 template <class S, class... Load>

@@ -37,7 +37,7 @@ struct Drive {
                   J_{out} \ddot\theta_{out} = T - T_{load} - F_{out}
 
         with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear,
-        F the friction of each place. A load can also prescribe the motion of the output shaft. The temperature of a run is that
+        F the friction of each place. A load can also prescribe the motion of the output shaft, a motor that of the input. The temperature of a run is that
         of gear and winding, unless the drive has a thermal model: then it is that around them.
         Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
         told apart: it is reported in proportion to what each can hold.
@@ -200,6 +200,8 @@ struct Drive {
                 x.output_slip_direction = sign(u.load_rate);
             }
         }
+        if constexpr (motor::can_prescribe<Motor>)
+            if (motor::prescribes(motor)) x.input_slip_direction = sign(x.continuous.input_speed);
         const auto geometry = this->geometry(x, x.continuous);
         commit(x, geometry);
         return {x, derivatives(x, x.continuous, u, loaded(geometry, x, x.continuous, u))};
@@ -221,7 +223,7 @@ struct Drive {
                                                : strainwave::load_torque<S>(load, output_angle(x, y), y.output_speed, u.load);
         const Braking<S> braking = this->braking(u);
         const S brake = x.output_slip_direction * braking.slip;
-        const S input_driving_torque = motor_torque - mesh.input_torque - meshing.always * mesh.per_input - input.always;
+        S input_driving_torque = motor_torque - mesh.input_torque - meshing.always * mesh.per_input - input.always;
         const S output_driving_torque = mesh.torque - load_torque - output.always;
         rate.motor = motor.rate(y.motor, actuation, rotor);
         rate.control = control.rate(y.control, asked, measured);
@@ -229,6 +231,12 @@ struct Drive {
         rate.input_angle = y.input_speed;
         rate.input_speed =
             moving(at.input, input_driving_torque - meshing.sliding * mesh.per_input - input.sliding) / input_inertia();
+        if constexpr (motor::can_prescribe<Motor>) {
+            if (motor::prescribes(motor)) {
+                rate.input_speed = motor::acceleration<S>(motor, actuation);
+                input_driving_torque = input_inertia() * rate.input_speed + meshing.sliding * mesh.per_input + input.sliding;
+            }
+        }
         rate.structure = mesh.rate;
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
         rate.output_speed = moving(at.output, output_driving_torque - output.sliding - brake) / output_inertia();
@@ -293,7 +301,8 @@ struct Drive {
     /// For each shaft 1 where it moves as it is driven, else 0: it sticks, or is placed.
     constexpr Array<S, 2> coupled_mode(const State& x) const {
         const auto moves = [](const S& slip_direction) { return select(slip_direction == S(0.0), S(0.0), S(1.0)); };
-        return {{moves(x.input_slip_direction), prescribes(load) ? S(0.0) : moves(x.output_slip_direction)}};
+        return {{motor::prescribes(motor) ? S(0.0) : moves(x.input_slip_direction),
+                 prescribes(load) ? S(0.0) : moves(x.output_slip_direction)}};
     }
     constexpr Coupled coupled_rate(const Array<S, 2>& moves, const Coupled& z) const {
         Continuous y{};
@@ -319,10 +328,17 @@ struct Drive {
     constexpr structure::Generator<S> generator(const State& x) const {
         return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous));
     }
+    /// The inertia [kg.m2] that a torque of the gear moves at the input: where the motor prescribes the motion, it moves nothing.
+    constexpr S movable(const S& inertia) const { return motor::prescribes(motor) ? S(load::immovable) : inertia; }
     /// What vibrates in the gear where its spring has a stiffness [N.m/rad].
     constexpr structure::Bodies<S> bodies(const S& stiffness) const {
-        return {input_inertia(), gear.input_inertia, output_inertia(),       gear.kinematics.inverse_ratio(),
-                stiffness,       gear.damping,       load_stiffness<S>(load)};
+        return {movable(input_inertia()),
+                gear.input_inertia,
+                output_inertia(),
+                gear.kinematics.inverse_ratio(),
+                stiffness,
+                gear.damping,
+                load_stiffness<S>(load)};
     }
 
     /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
@@ -468,6 +484,15 @@ struct Drive {
     constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u) const {
         return {{y.input_angle, x.turns}, y.input_speed, temperatures(y, u).winding};
     }
+    /// The same, and the torque that its motion needs, where the motor prescribes it: Newton's second law.
+    constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
+        Rotor at = rotor(x, y, u);
+        if constexpr (motor::can_prescribe<Motor>)
+            if (motor::prescribes(motor))
+                at.torque = input_inertia() * now.rate.input_speed + now.mesh.input_torque +
+                            now.friction_mesh * now.mesh.per_input + now.friction_input;
+        return at;
+    }
 
     /// What sensors can measure, under this torque of the gear.
     constexpr Measurement measurable(const State& x, const Continuous& y, const Input& u, const S& torque) const {
@@ -510,7 +535,7 @@ struct Drive {
                 friction_output,
                 now.load_torque + braked,
                 temperatures(y, u).gear,
-                motor.output(y.motor, now.actuation, rotor(x, y, u)),
+                motor.output(y.motor, now.actuation, rotor(x, y, u, now)),
                 thermal.output(y.thermal, u.temperature),
                 measured(x, y, u, now),
                 gear.output(y.structure, gear_shafts(x, y), now.mesh, friction_output)};
@@ -541,7 +566,7 @@ private:
         return {};
     }
     constexpr bool input_sticks() const {
-        return friction::set_valued(gear.friction_input) || friction::set_valued(gear.friction_mesh);
+        return !motor::prescribes(motor) && (friction::set_valued(gear.friction_input) || friction::set_valued(gear.friction_mesh));
     }
     constexpr bool output_sticks() const {
         return !prescribes(load) && (friction::set_valued(gear.friction_output) || brakes(load));
@@ -555,7 +580,8 @@ private:
 
     constexpr Shaft input_shaft(const State& x, const Derivatives& now) const {
         const S hold = input_sticks() ? input_hold(now) : S(0.0);
-        return {input_sticks(), input_inertia(), x.continuous.input_speed, x.input_slip_direction, now.input_driving_torque, hold};
+        const S driving = motor::prescribes(motor) ? input_inertia() * now.rate.input_speed : now.input_driving_torque;
+        return {input_sticks(), input_inertia(), x.continuous.input_speed, x.input_slip_direction, driving, hold};
     }
     constexpr Shaft output_shaft(const State& x, const Derivatives& now) const {
         const S hold = output_sticks() ? output_hold(now) : S(0.0);

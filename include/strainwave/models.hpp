@@ -42,6 +42,7 @@
 #include <strainwave/load/torsion_spring.hpp>
 #include <strainwave/meter/energy_meter.hpp>
 #include <strainwave/meter/no_meter.hpp>
+#include <strainwave/motor/acceleration_source.hpp>
 #include <strainwave/motor/brushless_dc.hpp>
 #include <strainwave/motor/current_source.hpp>
 #include <strainwave/motor/dc.hpp>
@@ -112,7 +113,7 @@ using Models = List<MaxwellSlip, FadingMemory, BoucWen, Preisach, Regimes, Frict
 using Densities = List<PowerDensity, GridDensity>;
 }  // namespace hysteresis
 namespace motor {
-using Models = List<DC, BrushlessDC, PMSM, TorqueSource, CurrentSource>;
+using Models = List<DC, BrushlessDC, PMSM, TorqueSource, CurrentSource, AccelerationSource>;
 }
 namespace control {
 using Continuous = List<OpenLoop, PID, PI, PositionSpeed, Cascade, LeadLag, StateFeedback>;

@@ -311,7 +311,7 @@ class Drive:
               J_{out} \\ddot\\theta_{out} = T - T_{load} - F_{out}
 
     with tau the torque of the motor, J_in = motor.inertia + gear.input_inertia, J_out = load.inertia, T and e' of the gear,
-    F the friction of each place. A load can also prescribe the motion of the output shaft. The temperature of a run is that
+    F the friction of each place. A load can also prescribe the motion of the output shaft, a motor that of the input. The temperature of a run is that
     of gear and winding, unless the drive has a thermal model: then it is that around them.
     Where set-valued friction of the input and of the mesh hold the input together, the torque that each holds cannot be
     told apart: it is reported in proportion to what each can hold.
@@ -342,9 +342,9 @@ class Drive:
     document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)
     """
 
-    def __init__(self, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> None: ...
+    def __init__(self, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource | strainwave.motor.AccelerationSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> None: ...
 
-    def replace(self, changes: dict[str, Any] = ..., /, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> Drive:
+    def replace(self, changes: dict[str, Any] = ..., /, *, gear: Gear = ..., motor: strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource | strainwave.motor.AccelerationSource = ..., control: strainwave.control.OpenLoop | strainwave.control.PID | strainwave.control.PI | strainwave.control.PositionSpeed | strainwave.control.Cascade | strainwave.control.LeadLag | strainwave.control.StateFeedback | strainwave.control.Sampled = ..., load: strainwave.loads.Inertia | strainwave.loads.Pendulum | strainwave.loads.TorsionSpring | strainwave.loads.Aerodynamic | strainwave.loads.TorqueTable | strainwave.loads.Brake | strainwave.loads.Prescribed = ..., sensors: Sensors = ..., thermal: strainwave.thermal.Isothermal | strainwave.thermal.Heating = ..., meter: strainwave.meter.NoMeter | strainwave.meter.EnergyMeter = ...) -> Drive:
         """
         The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
         """
@@ -354,7 +354,7 @@ class Drive:
         """The gear"""
 
     @property
-    def motor(self) -> strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource:
+    def motor(self) -> strainwave.motor.DC | strainwave.motor.BrushlessDC | strainwave.motor.PMSM | strainwave.motor.TorqueSource | strainwave.motor.CurrentSource | strainwave.motor.AccelerationSource:
         """The motor on the input shaft"""
 
     @property

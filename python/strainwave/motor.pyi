@@ -447,3 +447,61 @@ class CurrentSource:
     source: str = 'definition'
 
     fields: tuple[dict[str, Any], ...]
+
+class AccelerationSource:
+    """
+    A motor that prescribes the motion of the input shaft: it accelerates as it is asked to, whatever torque that needs.
+
+    .. math:: \\dot\\omega = u, \\qquad \\tau = J_{in} u + (T + F_{mesh})\\,(1/i - e') + F_{in}
+
+    with u what the controller asks for [rad/s2], and omega the input speed. Where the shaft begins, and how fast, is said where a
+    run begins; a motion that was measured becomes a command by simulation.Motion. Its torque tau is a result: what a motor
+    of that inertia must give. The motion of input and output do not depend on inertia and friction at the input, nor on
+    friction of the mesh. At the instants at which the shaft is at rest, set-valued friction of both is reported as 0.
+
+    >>> from strainwave.motor import AccelerationSource
+    >>> AccelerationSource(inertia=2e-5).inertia
+    2e-05
+
+    Parameters
+    ----------
+    inertia: Rotor inertia [kg.m2], in [0, inf); default 1e-05
+
+    Raises
+    ------
+    TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+    ValueError: a number that is not finite or out of its range
+
+    Source
+    ------
+    definition; its torque is Newton's second law of the input shaft
+    """
+
+    def __init__(self, *, inertia: float = ...) -> None: ...
+
+    def replace(self, changes: dict[str, Any] = ..., /, *, inertia: float = ...) -> AccelerationSource:
+        """
+        The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+        """
+
+    @property
+    def inertia(self) -> float:
+        """Rotor inertia [kg.m2]"""
+
+    def __repr__(self) -> str: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def __getstate__(self) -> dict[str, object]: ...
+
+    def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+    name: str = 'acceleration_source'
+
+    source: str = ...
+
+    fields: tuple[dict[str, Any], ...]

@@ -27,7 +27,7 @@ constexpr S steepest(const Drive& drive, const S& twist, const S& temperature) {
 template <class S, class Drive>
 constexpr S of_two_masses(const Drive& drive, const S& stiffness) {
     const S inverse = drive.gear.kinematics.inverse_ratio();
-    const S by_input = inverse * inverse / (inertia_of<S>(drive.motor) + drive.gear.input_inertia);
+    const S by_input = inverse * inverse / drive.movable(inertia_of<S>(drive.motor) + drive.gear.input_inertia);
     const S of_gear = stiffness * (S(1.0) / drive.output_inertia() + by_input);
     const S of_load = load_stiffness<S>(drive.load) / drive.output_inertia();
     const S mean = S(0.5) * (of_gear + of_load), share = stiffness * by_input / max(mean, S(smallest));
@@ -116,7 +116,7 @@ constexpr S bristle_frequency(const Drive& drive) {
     const S input = friction::presliding_stiffness<S>(gear.friction_input) +
                     friction::presliding_stiffness<S>(gear.friction_mesh) * inverse * inverse;
     const S output = friction::presliding_stiffness<S>(gear.friction_output);
-    return sqrt(max(input / drive.input_inertia(), output / drive.output_inertia()));
+    return sqrt(max(input / drive.movable(drive.input_inertia()), output / drive.output_inertia()));
 }
 
 }  // namespace strainwave::own_motion

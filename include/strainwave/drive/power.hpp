@@ -12,7 +12,7 @@ constexpr meter::Powers<S> powers(const Drive& drive, const typename Drive::Stat
     const auto& gear = drive.gear;
     const auto& mesh = now.mesh;
     const auto shafts = drive.gear_shafts(x, y);
-    const auto electric = drive.motor.power(y.motor, now.actuation, drive.rotor(x, y, u));
+    const auto electric = drive.motor.power(y.motor, now.actuation, drive.rotor(x, y, u, now));
     const auto inner = gear.energies(y.structure, shafts, mesh);
     const bool rigid = gear.structure.rigid();
     const S temperature = drive.temperatures(y, u).gear, damped = gear.damping * mesh.twist_rate;
@@ -40,7 +40,7 @@ constexpr meter::Stored<S> stored(const Drive& drive, const typename Drive::Stat
     // A shaft that is moved from outside has no inertia of its own.
     const S output = prescribes(drive.load) ? S(0.0) : S(0.5) * drive.output_inertia() * y.output_speed * y.output_speed;
     return {S(0.5) * drive.input_inertia() * y.input_speed * y.input_speed, output, spring + inner.elastic, inner.kinetic,
-            drive.motor.power(y.motor, now.actuation, drive.rotor(x, y, u)).stored};
+            drive.motor.power(y.motor, now.actuation, drive.rotor(x, y, u, now)).stored};
 }
 
 }  // namespace strainwave

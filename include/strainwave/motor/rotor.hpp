@@ -17,6 +17,10 @@
 /// and, where it cannot give all that it may be asked for,
 ///
 ///     limits(state, rotor)                 -> Limits
+///
+/// and, where it prescribes the motion of the input shaft, its torque being a result,
+///
+///     acceleration(actuation)              -> rad/s2
 namespace strainwave::motor {
 
 /// How the shaft of a motor stands, and how warm its winding is.
@@ -25,7 +29,29 @@ struct Rotor {
     Angle<S> angle{};
     S speed{0.0};        ///< rad/s
     S temperature{0.0};  ///< K
+    S torque{0.0};       ///< N.m, that a prescribed motion needs; 0 until that is known, and of every other motor
 };
+
+/// Whether a motor prescribes the motion of the input shaft; of a choice, whether one of its motors does.
+template <class Motor>
+inline constexpr bool can_prescribe = requires(const Motor& motor) { motor.acceleration(0.0); };
+
+template <class Motor>
+constexpr bool prescribes(const Motor& motor) {
+    if constexpr (requires { motor.prescribes(); })
+        return motor.prescribes();
+    else
+        return can_prescribe<Motor>;
+}
+
+/// The acceleration [rad/s2] that a motor prescribes; 0 of one that prescribes none.
+template <class S, class Motor>
+constexpr S acceleration(const Motor& motor, const S& actuation) {
+    if constexpr (can_prescribe<Motor>)
+        return motor.acceleration(actuation);
+    else
+        return S(0.0);
+}
 
 /// Where the power goes that a motor takes and does not give to its shaft.
 template <class S>
