@@ -107,6 +107,7 @@ SUITED: dict[str, list[dict[str, Any]]] = {
     "brushless_dc": [{"resistance": 0.5, "inductance": 5e-4, "torque_constant": 0.1, "inertia": 1e-4}],
     "pmsm": [{"flux_linkage": 0.0167, "inertia": 1e-4}],
     "torque_source": [{"inertia": 1e-4}],
+    "acceleration_source": [{"inertia": 1e-4}],
     "current_source": [{"torque_constant": 0.1, "inertia": 1e-4}],
     "lead_lag": [{"gain": 2.0, "lead_numerator": 0.02, "lead_denominator": 0.002}],
     "state_feedback": [{"input_angle": 2.0, "input_speed": 0.05}],

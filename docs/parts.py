@@ -51,7 +51,7 @@ def of(family: str, *but: str) -> Callable[[Callable[[Any], list[Draw]]], Callab
 # ---- Motors ----------------------------------------------------------------------------------------------------------
 
 
-@of("motor", "torque_source", "current_source")
+@of("motor", "torque_source", "current_source", "acceleration_source")
 def run_up(motor: Any) -> list[Draw]:
     """From rest without load, under all the voltage there is."""
     volts = getattr(motor, "supply_voltage", 24.0)

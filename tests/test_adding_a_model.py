@@ -64,6 +64,7 @@ ELSEWHERE = {
         "identification/experiments/motion_log.py": "by which a place without friction is known",
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
+    "AccelerationSource": {"identification/experiments/driven_log.py": "the input of a log moves as it was measured"},
     "CurrentSource": {"identification/each_file.py": "whatever its motor, a log tells the current along a motion"},
     "Coulomb": {
         "files/datasheet.py": SHEET,
@@ -91,6 +92,7 @@ ELSEWHERE = {
     "OpenLoop": {
         "specialised.hpp": USUAL,
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
+        "identification/experiments/driven_log.py": "the motion of a log is the command itself",
         "studies/position_control.py": "pulses without a controller",
     },
     "PID": {"specialised.hpp": USUAL, "control/sampled.hpp": "what it samples by default"},

@@ -147,6 +147,7 @@ MOTORS: list[tuple[Any, float]] = [
     ),
     (sw.motor.TorqueSource(inertia=INERTIA), 0.03),
     (sw.motor.CurrentSource(torque_constant=0.1, inertia=INERTIA, resistance=0.5), 0.3),
+    (sw.motor.AccelerationSource(inertia=INERTIA), 300.0),
 ]
 LOADS = [
     sw.loads.Inertia(inertia=0.05),

@@ -153,7 +153,7 @@ class MotionLog(ComparedByFields):
         others = self._others(nuisances)
         described = _core.parameters(model)
         now = Needed.of(model, self.motion, others, [described[number][0] for number in numbers])
-        scale = per_torque(model, self.effort, self.motion)
+        scale = per_torque(model, self.effort)
         effort = scale * now.torque + self._induced(model)
         slopes = [self._slope(model, number, described, now, effort) for number in numbers]
         slopes += [scale * now.by_transmitted * series for series in self.regressors.values()]
@@ -181,13 +181,13 @@ class MotionLog(ComparedByFields):
         """By a number of the drive: of few by a difference, which is good to eight digits where torque is smooth in them."""
         path, value, *_, high = described[number]
         if path in now.slopes:
-            return per_torque(model, self.effort, self.motion) * now.slopes[path]
+            return per_torque(model, self.effort) * now.slopes[path]
         step = STEP * max(abs(value), 1e-3)
         end = value + step if value + step <= high else value - step
         values = [each[1] for each in described]
         other = _core.with_numbers(model, [*values[:number], end, *values[number + 1 :]])
         there = Needed.of(other, self.motion, now.others)
-        moved = per_torque(other, self.effort, self.motion) * there.torque + self._induced(other)
+        moved = per_torque(other, self.effort) * there.torque + self._induced(other)
         return np.asarray((moved - effort) / (end - value))
 
 
@@ -284,7 +284,7 @@ def _by_load(drive: Drive, angle: Array, acceleration: Array) -> dict[str, Array
     return slopes
 
 
-def per_torque(drive: Drive, effort: str, motion: Motion) -> float:
+def per_torque(drive: Drive, effort: str) -> float:
     """Effort per torque at the input: of a motor whose torque constant is not known, a torque in A."""
     constant = float(getattr(drive.motor, "torque_constant", 1.0))
     per = {"current": 1.0 / constant, "input_torque": 1.0, "joint_torque": drive.gear.kinematics.ratio}

@@ -16,6 +16,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.drive_log import DriveLog
+from strainwave.identification.experiments.driven_log import DrivenLog, driven
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
@@ -181,9 +182,10 @@ def fit(
 
     Args:
         model: a drive, for a log over time; a gear or a drive, for a friction table or a torsion loop
-        recordings: time, command and outputs (a drive log); speed and torque (a friction table, input side); twist and
-            torque, or input_angle and input_torque (a torsion loop); or an experiment made of one. Or several of them: a list,
-            or a mapping from the names of the records
+        recordings: time, command and outputs (a drive log); time and input_angle without a command, and outputs, current,
+            input_torque, joint_torque or voltage (a log along the motion of its input, `DrivenLog`); speed and torque (a
+            friction table, input side); twist and torque, or input_angle and input_torque (a torsion loop); or an experiment
+            made of one. Or several of them: a list, or a mapping from the names of the records
         free: paths of parameters, as "gear.friction_input.coulomb" of a drive or "friction_input.coulomb" of a gear;
             "hysteresis.stiffness[2]" is one element, "hysteresis.stiffness" all of them
         channels: columns of drive logs to compare; all that a simulation has too if not given
@@ -240,6 +242,8 @@ def fit(
     for part in found.parts:
         if isinstance(part.experiment, DriveLog):
             warn_of_bristles(part.model, part.experiment.step(part.model))
+        elif isinstance(part.experiment, DrivenLog):
+            warn_of_bristles(driven(part.model), part.experiment.step(part.model))
     return found
 
 
@@ -378,6 +382,8 @@ def experiment_of(
         ValueError: the columns fit no experiment
     """
     names = set(recording.names)
+    if isinstance(model, Drive) and {"time", "input_angle"} <= names and "command" not in names:
+        return DrivenLog.of(recording, model, channels, dt, initial)
     if isinstance(model, Drive) and (names & {"time", "command"} or not any(columns <= names for columns in OF_GEAR_COLUMNS)):
         return DriveLog.of(recording, model, channels, dt, initial)
     gear: Gear = model.gear if isinstance(model, Drive) else model

@@ -1,0 +1,65 @@
+"""A motion of the input shaft that was measured, as what a drive is run along."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.simulation.scenario import Scenario, table
+
+FEWEST = 4  # instants that a cubic goes through
+
+
+@dataclass(frozen=True, eq=False)
+class Motion(ComparedByFields):
+    """How the input shaft of a drive moves whose motor is an `AccelerationSource`, as arguments of a run.
+
+    Args:
+        command: acceleration [rad/s2]
+        initial: input angle [rad] and input speed [rad/s] at the begin
+
+    >>> import numpy as np, strainwave as sw
+    >>> from strainwave.simulation.motion import Motion
+    >>> time = np.linspace(0.0, 1.0, 201)
+    >>> turned = Motion.through(time, 50.0 * time**3)
+    >>> drive = sw.Drive(motor=sw.motor.AccelerationSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.1))
+    >>> run = sw.simulate(drive, turned.command, initial=turned.initial)
+    >>> float(run["input_angle"][-1].round(9)), float(run["input_speed"][-1].round(6))
+    (50.0, 150.0)
+    """
+
+    command: Scenario
+    initial: Mapping[str, float]
+
+    @classmethod
+    def through(cls, time: ArrayLike, angle: ArrayLike) -> Motion:
+        """Through angles, by the cubic spline: its acceleration runs straight from one instant to the next.
+
+        The angle passes through all of them, so that their noise should be gone before: it is differentiated twice.
+
+        Args:
+            time: instants [s], shape (n,), n >= 4, increasing from 0
+            angle: of the input [rad], shape (n,)
+
+        Raises:
+            ValueError: lengths differ, a number is not finite, the times do not increase from 0, or they are too few
+        """
+        from scipy.interpolate import CubicSpline
+
+        instants, angles = arguments.numbers("motion.time", time), arguments.numbers("motion.angle", angle)
+        if len(instants) < FEWEST or instants.shape != angles.shape:
+            raise ValueError(
+                f"motion.time and motion.angle must hold the same number of values, at least {FEWEST}; they hold "
+                f"{instants.size} and {angles.size}"
+            )
+        table(instants, angles)  # refuses what is no series from 0 on
+        spline = CubicSpline(instants, angles)
+        return cls(
+            table(instants, spline(instants, 2)),
+            {"input_angle": float(angles[0]), "input_speed": float(spline(0.0, 1))},
+        )
