@@ -455,8 +455,8 @@ class AccelerationSource:
     .. math:: \\dot\\omega = u, \\qquad \\tau = J_{in} u + (T + F_{mesh})\\,(1/i - e') + F_{in}
 
     with u what the controller asks for [rad/s2], and omega the input speed. Where the shaft begins, and how fast, is said where a
-    run begins; a motion that was measured becomes a command by simulation.Motion. Its torque tau is a result: what a motor
-    of that inertia must give. The motion of input and output do not depend on inertia and friction at the input, nor on
+    run begins; Motion of strainwave.simulation.motion makes both of a measured angle. Its torque tau is a result: what a motor
+    of that inertia must give. How input and output move does not depend on inertia and friction at the input, nor on
     friction of the mesh. At the instants at which the shaft is at rest, set-valued friction of both is reported as 0.
 
     >>> from strainwave.motor import AccelerationSource

@@ -38,7 +38,17 @@ def test_an_input_that_swings_moves_an_inertia_on_a_spring_as_linear_theory_has_
         assert run[name][late] == pytest.approx((amplitude * wave).imag[late], abs=1e-5 * abs(amplitude))
 
 
-@pytest.mark.parametrize("friction", [sw.friction.Viscous(viscous=3e-4), sw.friction.LuGre(coulomb=0.03, breakaway=0.04, stribeck_speed=2.0, bristle_stiffness=20.0, bristle_damping=0.02), DRY], ids=lambda f: f.name)
+@pytest.mark.parametrize(
+    "friction",
+    [
+        sw.friction.Viscous(viscous=3e-4),
+        sw.friction.LuGre(
+            coulomb=0.03, breakaway=0.04, stribeck_speed=2.0, bristle_stiffness=20.0, bristle_damping=2e-4, viscous=1e-4
+        ),
+        DRY,
+    ],
+    ids=lambda f: f.name,
+)
 def test_the_motion_that_another_motor_made_needs_the_torque_that_it_gave(friction: object) -> None:
     parts = {
         "friction_input": friction,
@@ -49,14 +59,17 @@ def test_the_motion_that_another_motor_made_needs_the_torque_that_it_gave(fricti
     }
     pushed = geared(motor=sw.motor.TorqueSource(inertia=INERTIA), **parts)
     made = sw.simulate(pushed, sw.scenario.sine(0.8, 3.0, 0.6), 1e-4)
-    measured = Motion.through(made.time, made["input_angle"])
+    measured = Motion.through(made.time, made["input_angle"], from_rest=True)
     moved = sw.simulate(pushed.replace(motor=MOVED), measured.command, 1e-4, initial=measured.initial)
     assert moved["input_angle"] == pytest.approx(made["input_angle"], abs=1e-9)
     for name, near in (("output_angle", 1e-6), ("torque", 1e-4)):
         assert moved[name] == pytest.approx(made[name], abs=near * np.ptp(made[name]))
-    smooth = np.abs(np.gradient(np.gradient(made["input_speed"]))) < 1e-3  # where friction turns over a spline rings
-    assert smooth.mean() > 0.9
-    assert moved["motor_torque"][smooth] == pytest.approx(made["motor_torque"][smooth], abs=5e-3)
+    # Where friction turns over the motion has a kink, about which a spline rings.
+    turning = np.flatnonzero(np.abs(np.gradient(np.sign(made["input_speed"]))) > 0.0)
+    far = np.abs(np.arange(len(made))[:, None] - np.r_[0, turning, len(made)]).min(axis=1) > 20
+    far &= made["input_speed"] != 0.0  # there friction holds as much as it must
+    assert far.mean() > 0.9
+    assert moved["motor_torque"][far] == pytest.approx(made["motor_torque"][far], abs=1e-4)
 
 
 def test_at_constant_speed_the_motor_gives_what_friction_takes_both_ways() -> None:
@@ -85,14 +98,15 @@ def test_only_the_output_vibrates() -> None:
 def test_all_ways_to_run_it_agree() -> None:
     """With friction that sticks at the output, and some that does not hold the input."""
     drive = geared(
-        motor=MOVED, friction_input=DRY, friction_output=sw.friction.Coulomb(coulomb=2.0, breakaway=3.0, viscous=0.5), damping=20.0
+        motor=MOVED,
+        friction_input=DRY,
+        friction_output=sw.friction.Coulomb(coulomb=2.0, breakaway=3.0, viscous=0.5),
+        damping=20.0,
     )
     command = sw.scenario.sine(300.0, 2.0, 0.5)
     acting = {"initial": {"input_speed": -20.0}, "sample": 1e-3}
     alone = sw.simulate(drive, command, 1e-4, method="exponential", **acting)
-    many = sw.simulate_many(
-        drive, command, {"gear.damping": [20.0, 30.0]}, 1e-4, record=["torque", "motor_torque"], **acting
-    )
+    many = sw.simulate_many(drive, command, {"gear.damping": [20.0, 30.0]}, 1e-4, record=["torque", "motor_torque"], **acting)
     assert np.array_equal(many["torque"][0], alone["torque"])
     assert np.array_equal(many["motor_torque"][0], alone["motor_torque"])
     scale = np.ptp(alone["torque"])

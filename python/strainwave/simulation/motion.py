@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from strainwave import arguments
@@ -37,7 +36,7 @@ class Motion(ComparedByFields):
     initial: Mapping[str, float]
 
     @classmethod
-    def through(cls, time: ArrayLike, angle: ArrayLike) -> Motion:
+    def through(cls, time: ArrayLike, angle: ArrayLike, *, from_rest: bool = False) -> Motion:
         """Through angles, by the cubic spline: its acceleration runs straight from one instant to the next.
 
         The angle passes through all of them, so that their noise should be gone before: it is differentiated twice.
@@ -45,6 +44,7 @@ class Motion(ComparedByFields):
         Args:
             time: instants [s], shape (n,), n >= 4, increasing from 0
             angle: of the input [rad], shape (n,)
+            from_rest: whether it begins with a speed of 0: bristles then are not bent; else as fast as the angles tell
 
         Raises:
             ValueError: lengths differ, a number is not finite, the times do not increase from 0, or they are too few
@@ -58,8 +58,8 @@ class Motion(ComparedByFields):
                 f"{instants.size} and {angles.size}"
             )
         table(instants, angles)  # refuses what is no series from 0 on
-        spline = CubicSpline(instants, angles)
+        spline = CubicSpline(instants, angles, bc_type=("clamped" if from_rest else "not-a-knot", "not-a-knot"))
         return cls(
             table(instants, spline(instants, 2)),
-            {"input_angle": float(angles[0]), "input_speed": float(spline(0.0, 1))},
+            {"input_angle": float(angles[0]), "input_speed": 0.0 if from_rest else float(spline(0.0, 1))},
         )

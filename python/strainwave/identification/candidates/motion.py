@@ -191,7 +191,7 @@ def _rigid(
 
 def _with_delay(log: MotionLog, drive: Drive, free: Sequence[str], found: Regression) -> MotionLog:
     """The log, with a delay as an unknown if one is found, and where fits start with its unknowns."""
-    zero = found.offset * per_torque(drive, log.effort, log.motion)
+    zero = found.offset * per_torque(drive, log.effort)
     log = log.with_delay().starting((zero, 0.0, *found.shares))
     tried = fit(drive, log, [*free, *COULOMB]).estimates[-len(log.nuisances) :]
     zero_there, delay, *shares = tried

@@ -69,7 +69,7 @@ def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Arra
     itself = replace(own, angle=own.angle / ratio, speed=own.speed / ratio, acceleration=own.acceleration / ratio)
     moving = {joint: itself} | {name: motion_of(time, angle, own.cutoff) for name, angle in others.items()}
     arm = _Arm(joint, moving)
-    torque = ratio * log.measured[0] / per_torque(drive, log.effort, own) - own.filtered(log.extra[np.newaxis])[0]
+    torque = ratio * log.measured[0] / per_torque(drive, log.effort) - own.filtered(log.extra[np.newaxis])[0]
     block = np.minimum((BLOCKS * (log.time - log.time[0]) / np.ptp(log.time)).astype(int), BLOCKS - 1)
     terms = list(arm.terms())
     columns, base = _columns(own, arm, terms), own.filtered(_alone(itself)).T

@@ -22,14 +22,20 @@ from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
-OF_GEAR = {"output_angle": "rad", "output_speed": "rad/s", "transmission_error": "rad", "torque": "N.m"}  # as `simulate` names it
+OF_GEAR = {
+    "output_angle": "rad",
+    "output_speed": "rad/s",
+    "transmission_error": "rad",
+    "torque": "N.m",
+}  # as `simulate` names it
 CHANNELS = OF_GEAR | EFFORTS
-DT = 2e-4  # s, of the simulation
+DT = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
 SHORTEST = 1e-5  # s, of a step that a fit takes without being asked to
 STEPS = 100_000  # of a log, at most: of a longer one the beginning is taken
 COMPARED = 20_000  # samples, at most: of more every so many
 RESTING = 0.02  # of the largest speed: what starts slower starts at rest
 FADED = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
+HIGHEST_CUTOFF = 0.24  # of the sampling rate: bristles and the order of teeth are fast, and above a quarter noise is measured
 SPOILT = 2.0  # periods of the cut-off, over which the end of the record spoils the smoothed motion (assumed)
 
 
@@ -81,7 +87,7 @@ class DrivenLog(ComparedByFields):
             recording: what was measured
             drive: what is to be identified
             channels: columns to compare
-            dt: largest step of the simulation [s]; 0.2 ms, or as short as the drive needs, if not given
+            dt: largest step of the simulation [s]; 0.5 ms, or as short as the drive needs, if not given
             initial: what else is known of its beginning than the motion of the input, as for `simulate`
             cutoff: up to which the motion of the input is followed [Hz]; as `motion_of` if not given
 
@@ -92,7 +98,9 @@ class DrivenLog(ComparedByFields):
         arguments.drive(drive)
         for name in ("time", "input_angle"):
             if name not in recording:
-                raise ValueError(f"a log along the motion of its input needs a column {quoted(name)}; it has {listed(recording.names)}")
+                raise ValueError(
+                    f"a log along the motion of its input needs a column {quoted(name)}; it has {listed(recording.names)}"
+                )
         present = [name for name in recording.names if name in CHANNELS]
         chosen = tuple(present if channels is None else arguments.names("channels", channels))
         if unknown := [name for name in chosen if name not in present]:
@@ -102,13 +110,13 @@ class DrivenLog(ComparedByFields):
                 f"the log tells how the input moved, and nothing to compare: record one of {listed(CHANNELS)} besides; "
                 f"it has {listed(recording.names)}"
             )
-        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), cutoff)
+        smoothed = motion_of(recording.time, sensible(recording, "input_angle", "rad"), cutoff, highest=HIGHEST_CUTOFF)
         time = recording.time - recording.time[0]
         grid = smoothed.time - smoothed.time[0]
         step = fine_enough(driven(drive), DT, SHORTEST) if dt is None else arguments.seconds("dt", dt)
         steps = np.searchsorted(grid, min(STEPS * step, float(time[-1])), "right")
-        moved = Motion.through(grid[:steps], smoothed.angle[:steps])
-        moving = abs(moved.initial["input_speed"]) > RESTING * float(np.abs(smoothed.speed).max())
+        moving = abs(float(smoothed.speed[0])) > RESTING * float(np.abs(smoothed.speed).max())
+        moved = Motion.through(grid[:steps], smoothed.angle[:steps], from_rest=not moving)
         moved = replace(moved, initial={**moved.initial, **(initial or {})})
         begin, end = FADED if moving and initial is None else 0.0, moved.command.duration - SPOILT / smoothed.cutoff
         rows = np.flatnonzero((time >= begin) & (time <= end))
@@ -156,7 +164,7 @@ class DrivenLog(ComparedByFields):
         first = len(samples) - len(self.time)
         predicted = np.stack([self._shown(model, name, run[_told_by(name)][first:]) for name in self.channels])
         found = np.zeros((len(numbers) + len(nuisances), *predicted.shape))
-        of_known = {number: slope for number, slope in zip(known, slopes, strict=True)}
+        of_known = dict(zip(known, slopes, strict=True))
         torque = run["motor_torque"][first:]
         for row, name in enumerate(self.channels):
             for unknown, number in enumerate(numbers):
@@ -180,7 +188,7 @@ class DrivenLog(ComparedByFields):
         return shown
 
     def _by_motor(self, model: Drive, number: int, name: str, torque: Array) -> Array:
-        """By a number of the motor that was measured, with which no motion changes: smooth in it, so that a difference will do."""
+        """By a number of the motor that was measured: no motion changes with it, and torque is smooth in it."""
         described = _core.parameters(model)
         values = [each[1] for each in described]
         step = STEP * max(abs(values[number]), 1e-3)

@@ -126,14 +126,17 @@ class Motion(ComparedByFields):
         return after, by_delay
 
 
-def motion_of(time: Array, angle: Array, cutoff: float | None = None, slid: float = 0.0) -> Motion:
+def motion_of(
+    time: Array, angle: Array, cutoff: float | None = None, slid: float = 0.0, highest: float = HIGHEST_CUTOFF
+) -> Motion:
     """The motion of a shaft from its angle at instants that rise, with gaps and no other order in them.
 
     Args:
         time: [s], shape (n,), rising
         angle: [rad], shape (n,)
         cutoff: of the filter on the angle [Hz]; by default the highest at which the noise of the angle is a negligible share of
-            the acceleration, and at most a tenth of the rate
+            the acceleration, and at most `highest`
+        highest: cut-off over the sampling rate, by default
         slid: angle over which friction turns over at a reversal [rad]: as far before and behind one nothing is compared
 
     Raises:
@@ -149,7 +152,7 @@ def motion_of(time: Array, angle: Array, cutoff: float | None = None, slid: floa
     regular = np.asarray(Akima1DInterpolator(time, angle, extrapolate=True)(grid))
     frequency, power, of_noise, noise = spectra(regular, step)
     if cutoff is None:
-        cutoff = widest_cutoff(frequency, power, of_noise, 1.0 / step)
+        cutoff = widest_cutoff(frequency, power, of_noise, 1.0 / step, highest)
     every = _every(cutoff, step)
     smooth = signal.sosfiltfilt(signal.butter(4, cutoff, fs=1.0 / step, output="sos"), regular)
     quick = signal.sosfiltfilt(signal.butter(4, min(WIDER * cutoff, 0.4 / step), fs=1.0 / step, output="sos"), regular)
@@ -222,9 +225,9 @@ def spectra(position: Array, step: float) -> tuple[Array, Array, Array, float]:
     return frequency, gain * speed, gain**2 * density, float(np.sqrt(density / (2 * step)))
 
 
-def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float) -> float:
-    """The highest cut-off at which noise is a negligible share of the acceleration in the pass band [Hz]."""
-    highest = HIGHEST_CUTOFF * rate
+def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float, share: float = HIGHEST_CUTOFF) -> float:
+    """The highest cut-off at which noise is a negligible share of the acceleration [Hz], at most a share of the rate."""
+    highest = share * rate
     within = frequency <= PASS_BAND * highest
     clean = np.cumsum(noise[within]) <= NOISE_SHARE * np.cumsum(acceleration[within])
     if clean[-1]:
