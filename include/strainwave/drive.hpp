@@ -332,12 +332,8 @@ struct Drive {
     constexpr S movable(const S& inertia) const { return motor::prescribes(motor) ? S(load::immovable) : inertia; }
     /// What vibrates in the gear where its spring has a stiffness [N.m/rad].
     constexpr structure::Bodies<S> bodies(const S& stiffness) const {
-        return {movable(input_inertia()),
-                gear.input_inertia,
-                output_inertia(),
-                gear.kinematics.inverse_ratio(),
-                stiffness,
-                gear.damping,
+        return {movable(input_inertia()),        gear.input_inertia, output_inertia(),
+                gear.kinematics.inverse_ratio(), stiffness,          gear.damping,
                 load_stiffness<S>(load)};
     }
 
