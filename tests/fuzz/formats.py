@@ -72,7 +72,8 @@ def formats_case(random: Generator, folder: Path) -> Case:
 
 def _check(found: Recognised, path: Path, said: FileMapping | None) -> None:
     assert finite(found.recording), "a number that is not finite"
-    assert set(found.columns) | {"time"} >= set(found.recording.names), "a channel of no column"
+    known = {*found.columns, *found.neighbours.values(), "time"}
+    assert known >= set(found.recording.names), "a channel of no column"
     assert found.why, "no word of why"
     assert all(line.isprintable() for line in (*found.why, *found.remarks)), "words that a terminal would obey"
     if said is not None:

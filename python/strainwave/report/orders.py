@@ -137,8 +137,8 @@ def _line(line: RippleLine, ripple: Ripple) -> dict[str, str]:
 
 
 def _parts(line: RippleLine, of: str) -> Iterator[str]:
-    """What a line grows with, the largest first; what noise explains is left out."""
-    words = {"constant": "at rest and at speed alike", "direction": "with the direction", "load": "with the load"}
+    """The parts of a line, by what they change with, the largest first; what noise explains is left out."""
+    words = {"constant": "constant", "direction": "with the direction", "load": "with the load"}
     for part in sorted(line.parts, key=lambda each: -each.amplitude):
         if part.false_alarm < 0.01:
             yield f"{words.get(part.name, 'with the speed squared')} {quantity(part.amplitude, of)}"
@@ -204,7 +204,7 @@ def _ripple_lines(ripple: Ripple) -> Iterator[str]:
         if line.forward is not None and line.backward is not None and line.kind != "time":
             text += f"; forward {quantity(line.forward, ripple.unit)}, backward {quantity(line.backward, ripple.unit)}"
         if parts := list(_parts(line, ripple.unit)):
-            text += f"; grows {', '.join(parts)}"
+            text += f"; parts: {', '.join(parts)}"
         yield from textwrap.wrap(text, LINE, subsequent_indent="      ")
     if not ripple.lines:
         yield "    no line stands out of the noise"

@@ -11,7 +11,7 @@ from strainwave.identification.reading.mapping import FileMapping
 
 from tests import arms
 
-FAST = {"rtde.csv": 20.0, "hand.mat": 20.0, "headerless_all.csv": 30.0}  # `python -m tests.arms` tries all
+FAST = {"rtde.csv": 20.0, "hand.mat": 20.0, "headerless_all.csv": 40.0}  # `python -m tests.arms` tries all
 
 
 @pytest.mark.parametrize("sort", [sort for sort in arms.SORTS if sort.name in FAST], ids=lambda sort: sort.name)

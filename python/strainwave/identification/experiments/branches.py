@@ -68,7 +68,7 @@ def monotone(path: Array) -> Array:
 def slid(path: Array) -> NDArray[np.bool_]:
     """Samples that are no less than a share of the span behind the last reversal, or behind the beginning.
 
-    A reversal itself is none: it lies between samples, and that at the farthest may be before it or behind.
+    A reversal itself is none: it lies between samples, and that at the farthest may be before it or behind (`still_slides`).
 
     >>> slid(np.array([0.0, 0.5, 1.0, 0.99, 0.5, 0.0])).tolist()
     [False, True, False, False, True, True]
@@ -79,6 +79,23 @@ def slid(path: Array) -> NDArray[np.bool_]:
     begun = np.maximum.accumulate(begun)  # the reversal before each sample
     slides: NDArray[np.bool_] = np.abs(path - path[begun]) >= PRESLIDING * np.ptp(path)
     return slides
+
+
+def still_slides(path: Array, torque: Array, turn: int) -> bool:
+    """Whether the sample at a reversal belongs to the way there: its torque has risen at least half as steeply as before.
+
+    Behind the reversal, friction has turned over, and the torque has fallen.
+
+    >>> still_slides(np.array([0.0, 1.0, 2.0, 1.0]), np.array([5.0, 6.0, 7.0, 1.0]), 2)
+    True
+    >>> still_slides(np.array([0.0, 1.0, 2.0, 1.0]), np.array([5.0, 6.0, 4.0, 1.0]), 2)
+    False
+    """
+    if turn < 2:
+        return False
+    before, way = np.diff(path[turn - 2 : turn + 1])
+    risen, last = np.diff(torque[turn - 2 : turn + 1])
+    return bool(before * way > 0.0 and last / way >= 0.5 * risen / before)
 
 
 def thinned(*series: Array, samples: int = SAMPLES) -> tuple[Array, ...]:

@@ -14,7 +14,7 @@ from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.branches import PRESLIDING, monotone, slid, thinned, turning_points
+from strainwave.identification.experiments.branches import PRESLIDING, monotone, slid, still_slides, thinned, turning_points
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 from strainwave.identification.experiments.stages import series_compliance
 
@@ -96,7 +96,10 @@ class TorsionLoop(ComparedByFields):
         corners: list[tuple[int, float]] = []
         if ratio is not None:
             settled = slid(twist)
-            corners = [(int(np.sum(settled[:turn])), float(twist[turn])) for turn in (0, *turning_points(twist))]
+            turns = turning_points(twist)
+            settled[turns] = [still_slides(twist, torque, turn) for turn in turns]
+            left_out = [turn for turn in (0, *turns) if not settled[turn]]
+            corners = [(int(np.sum(settled[:turn])), float(twist[turn])) for turn in left_out]
             twist, torque, moments = twist[settled], torque[settled], moments[settled]
         loop = cls(twist, torque, moments=moments, input_ratio=ratio, samples=len(recording), corners=tuple(corners))
         return replace(loop, history="virgin", twist_zero=0.0) if loop.single_branch else loop

@@ -148,8 +148,8 @@ def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tu
 def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Array) -> tuple[str, float, Array, str] | None:
     """What of two parameters it leaves as it is when both move: words, value, derivatives by the parameters, unit."""
     alike = abs(abs(moves[0] / moves[1]) - 1.0) < WHOLE
-    larger_first = values[0] >= values[1] if alike else abs(moves[0]) <= abs(moves[1])  # the larger factor is 1
-    if units[0] == units[1] and not larger_first:
+    first = paths[0] <= paths[1] if alike else abs(moves[0]) <= abs(moves[1])  # the larger factor is 1, else by name
+    if units[0] == units[1] and not first:
         swapped = _formula(paths[::-1], units[::-1], values[::-1], moves[::-1])
         return None if swapped is None else (*swapped[:2], swapped[2][::-1], swapped[3])
     power = -(moves[0] / values[0]) / (moves[1] / values[1])  # of the second, where the first has 1
