@@ -213,7 +213,10 @@ def test_a_catalogue_set_becomes_a_drive_with_the_parts_it_lacks() -> None:
 
 def test_a_part_of_another_family_is_refused() -> None:
     with pytest.raises(
-        TypeError, match=exactly("drive.motor must be one of DC, BrushlessDC, PMSM, TorqueSource, CurrentSource, AccelerationSource, not 3")
+        TypeError,
+        match=exactly(
+            "drive.motor must be one of DC, BrushlessDC, PMSM, TorqueSource, CurrentSource, AccelerationSource, not 3"
+        ),
     ):
         GearSet.read("csg-20-80").with_parts(motor=3, source="x")
 
