@@ -18,6 +18,7 @@ from strainwave.identification.evidence import verdict
 from strainwave.identification.findings import AGREE, APART, Finding, Number, Told, difference, distance
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.channels import KINDS
+from strainwave.identification.reading.mapping import CONSTANTS
 from strainwave.report import figures
 from strainwave.report import identify_figures as plots
 from strainwave.report.page import render
@@ -146,7 +147,7 @@ def _columns(finding: Finding) -> Iterator[str]:
     if read.side is not None:
         yield f"side: {read.side}"
     for name, value in read.constants.items():
-        yield f"{name.replace('_', ' ')} given: {number(value)}"
+        yield f"{name.replace('_', ' ')} given: {quantity(value, CONSTANTS[name])}"
 
 
 def _plates(found: Identified, anchors: dict[int, str]) -> Iterator[dict[str, Any]]:
