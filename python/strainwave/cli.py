@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -356,20 +355,12 @@ def _names_columns(words: list[str]) -> bool:
 
 
 def _write(folder: Path, gear_set: GearSet | None, report: str) -> None:
-    """Both files or none, the gear only if there is one. An interrupt that comes while they are written changes nothing."""
+    """The report, and the gear if there is one."""
     from strainwave.files import gear_file
-    from strainwave.files.writing import making, write_all, written
+    from strainwave.files.writing import write_folder
 
-    contents = {folder / "report.html": report}
-    if gear_set is not None:
-        contents[folder / "gear.toml"] = gear_file.text(gear_set)
-    heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        with making(folder):
-            write_all(contents)
-        written.append(folder)
-    finally:
-        signal.signal(signal.SIGINT, heeded)
+    gear = {"gear.toml": gear_file.text(gear_set)} if gear_set is not None else {}
+    write_folder(folder, {"report.html": report} | gear)
 
 
 def _tell_doubts(found: Twin) -> None:

@@ -37,13 +37,11 @@ def identify(
     what it seems to be and why, and fitted by itself. Of files that agree about a number the mean is taken; where files
     contradict each other, both values are shown.
     """
-    import signal
-
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     from strainwave.files import gear_file
-    from strainwave.files.writing import making, write_all, written
+    from strainwave.files.writing import write_folder
     from strainwave.identification.identify import files_of
     from strainwave.identification.identify import identify as identified
     from strainwave.report.identify import identify_files, identify_report
@@ -65,13 +63,7 @@ def identify(
         bar.update(task, description="report", completed=len(paths))
         files = identify_files(found) | {"gear.toml": gear_file.text(found.gear_set)}
         files["report.html"] = identify_report(found, Provenance.of_this_command(paths))
-        heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
-        try:
-            with making(out):
-                write_all({out / name: content for name, content in files.items()})
-            written.append(out)
-        finally:
-            signal.signal(signal.SIGINT, heeded)
+        write_folder(out, files)
     print("\n".join(_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
 

@@ -36,12 +36,10 @@ def orders(
     angle tells the lines that repeat with the angle, and from them the ratio; lines that repeat with time, as mains and
     resonances, are told apart where the speed varies.
     """
-    import signal
-
     from rich.console import Console
 
     from strainwave.arguments import one_of
-    from strainwave.files.writing import making, write_all, written
+    from strainwave.files.writing import write_folder
     from strainwave.messages import one_line
     from strainwave.report.orders import orders_files, orders_report, orders_summary
     from strainwave.report.provenance import Provenance
@@ -59,13 +57,7 @@ def orders(
         status.update("report")
         files = orders_files(found)
         files["report.html"] = orders_report(found, Provenance.of_this_command(paths))
-        heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
-        try:
-            with making(out):
-                write_all({out / name: content for name, content in files.items()})
-            written.append(out)
-        finally:
-            signal.signal(signal.SIGINT, heeded)
+        write_folder(out, files)
     print(orders_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
 

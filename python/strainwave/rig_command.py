@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import inf, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -183,6 +183,7 @@ def analyse(
     from rich.console import Console
 
     from strainwave.files.gear_set import GearSet
+    from strainwave.files.writing import write_folder
     from strainwave.identification.reading.measurement import COLUMNS
     from strainwave.messages import pairs
     from strainwave.report.rig import rig_report, summary
@@ -207,7 +208,7 @@ def analyse(
         files: dict[str, str | bytes] = {**loop_files(found.loops), **angle_files(found.angles)}
         files["results.json"] = results_json(results(found, provenance.date))
         files["report.html"] = rig_report(found, provenance, list(files))
-        _write(target, files)
+        write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
     if left := [each for each in there if each not in files]:
@@ -321,21 +322,6 @@ def _provenance(read: Sequence[Path]) -> Provenance:
         (digest,) = Provenance.of([path], command="", date="").files.values()
         digests[path.name if names.count(path.name) == 1 else str(path)] = digest
     return replace(Provenance.of_this_command([]), files=digests)
-
-
-def _write(folder: Path, files: Mapping[str, str | bytes]) -> None:
-    """All files or none; an interrupt that comes while they are written changes nothing."""
-    import signal
-
-    from strainwave.files.writing import making, write_all, written
-
-    heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        with making(folder):
-            write_all({folder / name: content for name, content in files.items()})
-        written.append(folder)
-    finally:
-        signal.signal(signal.SIGINT, heeded)
 
 
 # ---- What options say ------------------------------------------------------------------------------------------------

@@ -157,7 +157,7 @@ def read_by_others(path: str | Path, kind: str) -> Iterator[None]:
     said, sys.unraisablehook = sys.unraisablehook, lambda unraisable: None
     try:
         yield
-    except (ImportError, NotImplementedError):
+    except ImportError:
         raise
     except Exception as error:
         cause: BaseException | None = error

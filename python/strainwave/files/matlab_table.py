@@ -11,6 +11,8 @@ from strainwave.files.labels import read_by_others
 from strainwave.files.variables import table_of
 from strainwave.messages import one_line
 
+HDF5 = 2  # version of MAT files that are HDF5 files: MATLAB 7.3
+
 
 def open_mat(path: str | Path) -> ArrayTable:
     """The series of a MAT file; of a structure its fields, as `data.q`."""
@@ -24,13 +26,13 @@ def open_hdf5(path: str | Path) -> ArrayTable:
 
 def _variables(path: Path) -> Iterator[tuple[str, Any]]:
     from scipy.io import loadmat
+    from scipy.io.matlab import matfile_version
 
-    try:
-        with read_by_others(path, "MAT"):
-            found = loadmat(path, simplify_cells=True, chars_as_strings=True)
-    except NotImplementedError:  # version 7.3
+    with read_by_others(path, "MAT"):
+        version, _ = matfile_version(path, appendmat=False)
+        found = loadmat(path, simplify_cells=True, chars_as_strings=True) if version < HDF5 else {}
+    if version >= HDF5:
         yield from _of_hdf5(path, "MAT")
-        return
     yield from ((name, value) for name, value in found.items() if not name.startswith("__"))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import signal
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
@@ -60,6 +61,25 @@ def write_all(contents: Mapping[Path, str | bytes]) -> None:
         for path, draft in drafts.items():
             with _named(path):
                 draft.put()
+
+
+def write_folder(folder: Path, contents: Mapping[str, str | bytes]) -> None:
+    """Writes the results of a command to files in a folder, all or none; an interrupt waits until they are there.
+
+    Args:
+        folder: made if it is not there
+        contents: by the name of the file
+
+    Raises:
+        OSError: folder or file cannot be written; says which, and why
+    """
+    heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with making(folder):
+            write_all({folder / name: content for name, content in contents.items()})
+        written.append(folder)
+    finally:
+        signal.signal(signal.SIGINT, heeded)
 
 
 @contextmanager
