@@ -121,9 +121,12 @@ def _tells_breakaway(known: Known) -> bool:
 
 
 def _mean(sides: list[Estimate]) -> Estimate:
-    """The mean of both directions; their half difference, where they differ by more than chance, is an uncertainty of it."""
-    value = float(np.mean([each.value for each in sides]))
-    sigma = float(np.sqrt(np.sum([each.sigma**2 for each in sides]))) / len(sides)
+    """The mean of both directions; where they differ by more than chance, half of the difference is an uncertainty of it."""
+    values, sigmas = np.array([each.value for each in sides]), np.array([each.sigma for each in sides])
+    value, sigma = float(values.mean()), float(np.linalg.norm(sigmas)) / len(sides)
+    half = 0.5 * float(np.ptp(values))
+    if 2.0 * half > CLEARLY * np.linalg.norm(sigmas):
+        sigma = float(np.hypot(sigma, half))
     return replace(sides[0], path="breakaway", value=value, sigma=sigma)
 
 

@@ -268,7 +268,7 @@ def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[Mo
     terms = list(found.log.regressors)
     which = f"joints {listed(found.joints)} move too: "
     if not terms:
-        return log, [f"{which}the torque shows nothing of them"]
+        return log, [f"{which}no torque of them was found that other parts of the record show; if they load it, record longer"]
     own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
     fitted_beside = f"{len(terms)} terms of them are fitted beside, {listed(terms)}; {errors}"
     return found.log, [f"{which}{fitted_beside}; numbers are as sure as these terms: {own}"]

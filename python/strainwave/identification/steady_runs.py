@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 
 STEADY = 0.05  # of the usual speed, by which most of a record of one speed differs from it at most
 MOSTLY = 0.95  # of the rows
-ROWS = 200  # over which the speed of an angle is told
+ROWS = 200  # parts of a record over which the speed of an angle is told
+FEWEST = 41  # rows that tell a speed by the angle
 WHOLE = 0.98  # of a turn, from which on it is one
 SPEEDS = 4  # different ones that tell a law
 SURE = 3.0  # standard deviations: a parabola that is smaller is none
@@ -116,7 +117,7 @@ def _speed(file: Recognised) -> tuple[Array, Side, tuple[str, ...]] | None:
         prefix = f"{name}_" if name else ""
         if f"{prefix}speed" in recording:
             speed = recording.values(f"{prefix}speed", "rad/s")
-        elif f"{prefix}angle" in recording and "time" in recording and rows > 2 * ROWS // 10:
+        elif f"{prefix}angle" in recording and "time" in recording and rows >= FEWEST:
             speed = _slope(recording.time, recording.values(f"{prefix}angle", "rad"))
         elif not name and "speed" in file.constants:
             speed = np.full(rows, file.constants["speed"])

@@ -48,12 +48,13 @@ def loop(path: Path, *, timed: bool, noise: float = 5e-4) -> Path:
     return write(path, columns, units | {"input_angle": "rad", "input_torque": "N.m"})
 
 
-def ramps(path: Path, level: float = 0.06) -> Path:
-    """Ramps of torque, both ways; the shaft runs on for a while behind each breakaway, and rests."""
+def ramps(path: Path, level: float = 0.06, asymmetry: float = 0.0) -> Path:
+    """Ramps of torque, both ways, of which forward needs more by a share; behind each the shaft runs on, and rests."""
     random, time, torque, angle = np.random.default_rng(2), [], [], []
     place, clock = 0.0, 0.0
     for ramp in range(8):
-        way, breaks = (-1.0) ** ramp, level * (1.0 + 0.01 * random.standard_normal())
+        way = (-1.0) ** ramp
+        breaks = level * (1.0 + asymmetry * way + 0.01 * random.standard_normal())
         rising = np.arange(0.0, 4.0, 0.01)
         size = 0.02 * rising
         free = np.maximum(rising - breaks / 0.02, 0.0)
@@ -145,6 +146,13 @@ def test_ramps_of_torque_tell_the_breakaway(tmp_path: Path) -> None:
     assert abs(value - 0.06) < max(3.0 * sigma, 0.002)
     law: Any = found.gear_set.gear.friction_input
     assert law.breakaway == value
+
+
+def test_directions_that_break_away_apart_make_the_mean_less_sure(tmp_path: Path) -> None:
+    found = identify(START, [ramps(tmp_path / "ramps.csv", asymmetry=0.2), table(tmp_path / "table.csv")])
+    value, sigma = told(found, "breakaway")
+    assert abs(value - 0.06) < 0.002
+    assert 0.01 < sigma < 0.014  # 0.072 one way and 0.048 the other: half of the difference is 0.012
 
 
 def test_records_of_one_speed_each_are_one_table(tmp_path: Path) -> None:
