@@ -1,4 +1,6 @@
-"""Brings docs/benchmarks.md up to date with the last runs: draws its pictures, and replaces each table whose columns it knows.
+"""Brings docs/benchmarks.md up to date with the last runs: its pictures, and each table whose columns it knows.
+
+A part that has not been run keeps what the page has.
 
 python benchmarks/page.py
 """
@@ -8,7 +10,6 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Any
 
 import scaling
 import single
@@ -19,18 +20,15 @@ DOCS = Path(__file__).resolve().parent.parent / "docs"
 PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "pictures"
 
 
-def content(part: str) -> dict[str, Any]:
-    found = saved(part)
-    if found is None:
-        sys.exit(f"page: run benchmarks/run.py --only {part} first")
-    return found
-
-
-def draw() -> None:
-    precision, growth = content("single"), content("scaling")
-    save_figure("work_precision", single.drawn(targets.results(precision)), precision, PICTURES)
-    lines = [scaling.Line(**line) for line in growth["results"]]
-    save_figure("growth", scaling.drawn(lines), growth, PICTURES)
+def draw() -> list[str]:
+    """Draws the pictures of the parts that have been run; returns the names of the others."""
+    precision, growth = saved("single"), saved("scaling")
+    if precision is not None:
+        save_figure("work_precision", single.drawn(targets.results(precision)), precision, PICTURES)
+    if growth is not None:
+        lines = [scaling.Line(**line) for line in growth["results"]]
+        save_figure("growth", scaling.drawn(lines), growth, PICTURES)
+    return [part for part, found in (("single", precision), ("scaling", growth)) if found is None]
 
 
 def replaced(page: str, table: str) -> str:
@@ -45,7 +43,8 @@ def replaced(page: str, table: str) -> str:
 
 
 if __name__ == "__main__":
-    draw()
+    if missing := draw():
+        print(f"page: pictures kept, as benchmarks/run.py --only {','.join(missing)} has not been run")
     page = PAGE.read_text()
     for kept in sorted(TABLES.glob("*.md")):
         page = replaced(page, kept.read_text())
