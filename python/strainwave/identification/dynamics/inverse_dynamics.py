@@ -30,9 +30,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.motion import near_rest, spectra, widest_cutoff
-from strainwave.messages import shortened
 
 PARAMETERS = ("inertia", "viscous", "coulomb", "offset")
 
@@ -166,34 +164,6 @@ def rigid_drive(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cuto
         cutoff=rows.cutoff,
         samples=len(residual),
     )
-
-
-def rigid_drive_of(
-    recording: Recording,
-    *,
-    position: str,
-    torque: str,
-    units: tuple[str, str] = ("rad", "N.m"),
-    cutoff: float | None = None,
-) -> RigidDrive:
-    """`rigid_drive` from two columns of a recording.
-
-    Args:
-        recording: holds the two columns and their time
-        position: name of the column of positions
-        torque: name of the column of actuator torques
-        units: units of the two in which the result is expressed; ("m", "N") for a linear drive
-        cutoff: of the filter on the position [Hz], see `rigid_drive`
-
-    Raises:
-        ValueError: as `rigid_drive`; no such column; a unit that does not convert
-    """
-    check_recording("recording", recording)
-    if len(given := arguments.names("units", units)) != 2:
-        raise ValueError(f"units must be two, of position and torque, not {shortened(units)}")
-    of_position, of_torque = given
-    q, tau = recording.values(position, of_position), recording.values(torque, of_torque)
-    return rigid_drive(q, tau, recording.time, cutoff=cutoff)
 
 
 def regression(position: ArrayLike, torque: ArrayLike, time: ArrayLike, *, cutoff: float | None = None) -> Regression:

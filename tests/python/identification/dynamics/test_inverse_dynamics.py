@@ -12,8 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy import signal
-from strainwave.files.recording import Recording
-from strainwave.identification.dynamics.inverse_dynamics import Regression, RigidDrive, regression, rigid_drive, rigid_drive_of
+from strainwave.identification.dynamics.inverse_dynamics import Regression, RigidDrive, regression, rigid_drive
 
 Array = NDArray[np.float64]
 TRUTH = np.array([0.02, 0.05, 0.3, -0.1])  # kg.m2, N.m.s/rad, N.m, N.m
@@ -283,20 +282,6 @@ def test_correlation_and_deviation_are_those_of_the_covariance() -> None:
     assert drive.correlation[1, 2] * drive.standard_deviation[1] * drive.standard_deviation[2] == pytest.approx(
         drive.covariance[1, 2]
     )
-
-
-def test_recording_is_converted_to_si() -> None:
-    position, torque, time = record(3000)
-    log = Recording(
-        columns={"time": time, "motor": np.degrees(position), "current_torque": 1e3 * torque},
-        units={"time": "s", "motor": "deg", "current_torque": "mN.m"},
-    )
-    drive = rigid_drive_of(log, position="motor", torque="current_torque")
-    assert drive.parameters == pytest.approx(rigid_drive(position, torque, time).parameters, rel=1e-9)
-    with pytest.raises(ValueError, match=r'cannot convert "mN\.m" to "N"'):
-        rigid_drive_of(log, position="motor", torque="current_torque", units=("rad", "N"))
-    with pytest.raises(ValueError, match=r"^units must be two, of position and torque, not \['rad'\]$"):
-        rigid_drive_of(log, position="motor", torque="current_torque", units=["rad"])  # type: ignore[arg-type]
 
 
 # --- refusals
