@@ -13,7 +13,7 @@ from strainwave.identification.candidates.presliding import PreslidingCandidate,
 from strainwave.identification.experiments.presliding import PreslidingLoop, breakaways
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.known import Known, with_torque
+from strainwave.identification.known import Known, plain, with_torque
 from strainwave.identification.reading.recognise import Recognised
 
 CLEARLY = 3.0  # standard deviations
@@ -113,11 +113,7 @@ def breakaway(file: Recognised, known: Known) -> tuple[Finding, Known]:
 
 def _tells_breakaway(known: Known) -> bool:
     """Whether an earlier file has told the torque of breakaway."""
-    return any(
-        path.startswith("gear.friction_input.") and path.endswith(".breakaway") and entry.source.startswith("identified from")
-        and entry.uncertainty is not None
-        for path, entry in known.gear_set.sources.items()
-    )  # fmt: skip
+    return any(plain(path) == "gear.friction_input.breakaway" for path in known.told_by)
 
 
 def _mean(sides: list[Estimate]) -> Estimate:

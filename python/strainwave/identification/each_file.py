@@ -52,8 +52,8 @@ def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
         "breakaway": breakaway,
     }
     if file.kind not in of_kind:
-        unused = [remark for remark in file.remarks if remark.startswith("columns not used")]
-        hint = f" ({unused[0]}: does it hold texts?)" if unused else ""
+        do = "does it" if len(file.unused) == 1 else "do they"
+        hint = f" (columns not used: {listed(file.unused)}: {do} hold texts?)" if file.unused else ""
         raise ValueError(f"torque without motion tells orders alone: strainwave orders finds them{hint}")
     return of_kind[file.kind](file, known)
 
@@ -94,7 +94,7 @@ def friction_of(file: Recognised, table: Recording, uncertain: float, known: Kno
     if finding.refused or known.knows_better("friction_input", finding.told):
         return finding, known
     gear = known.gear_set.gear.replace(friction_input=found.gear_set.gear.friction_input)
-    after = _with_gear(known, gear, found, {"friction_input"}, friction=table)
+    after = replace(_with_gear(known, gear, found, {"friction_input"}, finding), friction=table)
     return finding, after.judged("friction_input", finding.told)
 
 
@@ -124,7 +124,7 @@ def _torsion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     # a loop at the input has friction inside, and what a table says wrong of it becomes hysteresis
     parts = {"stiffness"} if at_input and "hysteresis" in known.told else {"stiffness", "hysteresis"}
     gear = known.gear_set.gear.replace(**{part: getattr(found.gear_set.gear, part) for part in parts})
-    return finding, _with_gear(known, gear, found, parts).judged("stiffness", finding.told)
+    return finding, _with_gear(known, gear, found, parts, finding).judged("stiffness", finding.told)
 
 
 def _of_twin(file: Recognised, found: Twin, accept: bool) -> Finding:
@@ -147,14 +147,15 @@ def _of_twin(file: Recognised, found: Twin, accept: bool) -> Finding:
     return Finding(file.path.name, file, evidence.candidates[0][0], told, share, remarks, doubts, curves=curves)
 
 
-def _with_gear(known: Known, gear: Any, found: Twin, parts: set[str], friction: Recording | None = None) -> Known:
+def _with_gear(known: Known, gear: Any, found: Twin, parts: set[str], finding: Finding) -> Known:
     """The set with a gear of which some parts are those of a twin, with their sources."""
-    names = tuple(f"gear.{part}" for part in parts)
+    names = tuple(f"gear.{part}." for part in parts)
     sources = {path: entry for path, entry in known.gear_set.sources.items() if not path.startswith(names)}
     sources |= {path: entry for path, entry in found.gear_set.sources.items() if path.startswith(names)}
+    told_by = {path: file for path, file in known.told_by.items() if not path.startswith(names)}
+    told_by |= {each.path: finding.name for each in finding.told if each.path.startswith(names) and not each.why}
     gear_set = replace(known.gear_set, gear=gear, sources=sources)
-    table = friction if friction is not None else known.friction
-    return replace(known, gear_set=gear_set, friction=table, told=known.told | parts)
+    return replace(known, gear_set=gear_set, told=known.told | parts, told_by=told_by)
 
 
 def _law(path: str, gear: Any) -> str:
@@ -331,6 +332,8 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
     inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
+    if not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
+        return Drive(gear=gear, motor=_motor_by_voltage(file, given), load=loads.Inertia(inertia=1.0)), remarks, False
     in_current = constant is None and not {"input_torque", "joint_torque"} & set(file.recording.names)
     if in_current:
         remarks.append("the torque constant is not known: torques are told in A; give --constant torque_constant=… for N.m")
@@ -343,6 +346,24 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         resistance=constants.get("resistance", getattr(given, "resistance", 0.0)),
     )
     return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current
+
+
+def _motor_by_voltage(file: Recognised, given: Any) -> motor.DC:
+    """The motor of a log that has its voltage alone; what the motor induces as it turns belongs to the voltage.
+
+    Raises:
+        ValueError: resistance or torque constant is neither said nor known of the set
+    """
+    known = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
+    if missing := [name for name, value in known.items() if value == 0.0]:
+        options = " and ".join(f"--constant {name}=…" for name in missing)
+        raise ValueError(
+            f"a voltage tells the torque of a motor that is known: give {options}; what a controller asks of an amplifier of "
+            f"currents is a current, whatever its unit: {as_option('column', 'current', file.columns['voltage'])}"
+        )
+    induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
+    rotor = file.constants.get("motor_inertia", getattr(given, "inertia", NO_ROTOR))
+    return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor)
 
 
 def _unlike_said(taken: Taken) -> str | None:

@@ -109,7 +109,7 @@ def identify(
     numbers = numbers_of(findings)
     if not numbers:
         raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, findings))}")
-    return Identified(start, findings, numbers, _with_means(found.known.gear_set, numbers))
+    return Identified(start, findings, numbers, with_means(found.known, numbers))
 
 
 def _check_arguments(files: object, mapping: object) -> None:
@@ -278,18 +278,16 @@ def _kinematics(ratio: float, backwards: bool) -> Any:
 # ---- Means -------------------------------------------------------------------------------------------------------------
 
 
-def _with_means(gear_set: GearSet, numbers: Sequence[Number]) -> GearSet:
+def with_means(known: Known, numbers: Sequence[Number]) -> GearSet:
     """The set with the means of files that agree, where it has the law that the number belongs to."""
+    gear_set = known.gear_set
     for number in numbers:
         if len(number.mean_of) < 2 or not number.told.path.startswith("gear."):
             continue
         names = [Path(name).name for name in number.mean_of]
-        told_by_one = [
-            path
-            for path, entry in gear_set.sources.items()
-            if plain(path) == number.told.path and "[" not in path and any(entry.source.endswith(name) for name in names)
-        ]
-        for path in told_by_one:
+        for path, name in known.told_by.items():
+            if plain(path) != number.told.path or "[" in path or name not in names:
+                continue
             try:
                 gear = gear_set.gear.replace({path.removeprefix("gear."): number.told.value})
             except ValueError:  # a mean that the law does not allow beside its other numbers

@@ -30,6 +30,7 @@ class Known:
         side: what a person says of the side of the file that is fitted next; None where nothing
         accept: whether files are used in spite of doubts about their sizes
         sigmas: standard deviation of the first number of friction and spring, as the file has it that tells the part
+        told_by: the file that told each number, by its path in the gear set
     """
 
     gear_set: GearSet
@@ -38,6 +39,7 @@ class Known:
     side: Side | None = None
     accept: bool = False
     sigmas: Mapping[str, float] = field(default_factory=dict)
+    told_by: Mapping[str, str] = field(default_factory=dict)
 
     def knows_better(self, part: str, told: Sequence[Told]) -> bool:
         """Whether an earlier file tells a part of the gear better than this one."""
@@ -51,10 +53,13 @@ class Known:
         """The same, with parts of the gear that a file of this name tells."""
         gear, names = self.gear_set.gear.replace(**parts), tuple(f"gear.{part}." for part in parts)
         sources = {path: entry for path, entry in self.gear_set.sources.items() if not path.startswith(names)}
+        told_by = {path: file for path, file in self.told_by.items() if not path.startswith(names)}
         for path in (path for path in numbers(gear) if path.startswith(names)):
             told = path in sigmas and np.isfinite(sigmas[path])
             sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
-        return replace(self, gear_set=replace(self.gear_set, gear=gear, sources=sources), told=self.told | set(parts))
+            told_by |= {path: name} if told else {}
+        gear_set = replace(self.gear_set, gear=gear, sources=sources)
+        return replace(self, gear_set=gear_set, told=self.told | set(parts), told_by=told_by)
 
     def sliding(self) -> Any:
         """The friction of the input as it slides, without what modulates it over angle and temperature."""
@@ -91,15 +96,16 @@ class Known:
             name: of the file
         """
         before, values = self.gear_set.sources, {path: value for path, (value, _) in numbers(self.gear_set.gear).items()}
+        known = {plain(each): each for each in before}
         after = self.with_parts({"friction_input": law}, sigmas, name)
-        sources = dict(after.gear_set.sources)
+        sources, told_by = dict(after.gear_set.sources), dict(after.told_by)
         for path, (value, _) in numbers(after.gear_set.gear).items():
             if path.startswith("gear.friction_input.") and path not in sigmas:
-                known = {plain(each): each for each in before}
                 old = known.get(plain(path), "")
                 kept = old and values.get(old) == value
                 sources[path] = before[old] if kept else Entry(source=f"assumed beside what {name} tells")
-        return replace(after, gear_set=replace(after.gear_set, sources=sources))
+                told_by |= {path: self.told_by[old]} if kept and old in self.told_by else {}
+        return replace(after, gear_set=replace(after.gear_set, sources=sources), told_by=told_by)
 
 
 def plain(path: str) -> str:

@@ -10,8 +10,9 @@ import pytest
 import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
-from strainwave.identification.findings import Finding, Told, distance, mean_of, numbers_of
-from strainwave.identification.identify import Identified, identify
+from strainwave.identification.findings import Finding, Number, Told, distance, mean_of, numbers_of
+from strainwave.identification.identify import Identified, identify, with_means
+from strainwave.identification.known import Known
 
 from tests.python.identification.candidates.test_motion import TRUTH, record
 
@@ -68,6 +69,14 @@ def test_the_file_that_tells_a_number_best_gives_it_and_the_law(found: Identifie
     assert found.gear_set.gear.friction_input.coulomb == number.told.value
     assert "fine.csv" in found.gear_set.sources["gear.friction_input.coulomb"].source
     assert not number.contradicts
+
+
+@pytest.mark.parametrize(("file", "coulomb"), [("fine.csv", 0.05), ("old_fine.csv", 0.06)])
+def test_a_mean_replaces_only_what_one_of_its_files_has_told(file: str, coulomb: float) -> None:
+    law, path = sw.friction.Coulomb(coulomb=0.06), "gear.friction_input.coulomb"
+    known = Known(sw.GearSet.read("hfuc-20-80")).with_parts({"friction_input": law}, {path: 1e-4}, file)
+    mean = Number(Told(path, "N.m", 0.05, 1e-4, ""), "fine.csv", mean_of=("fine.csv", "coarse.csv"))
+    assert with_means(known, [mean]).gear.friction_input.coulomb == coulomb
 
 
 def test_one_run_in_two_files_counts_once_and_other_loads_are_no_contradiction(found: Identified) -> None:

@@ -86,7 +86,8 @@ def regression(log: MotionLog, drive: Drive) -> Regression:
     series = [motion.acceleration, motion.speed, np.sign(motion.speed), np.ones_like(angle)]
     series += [np.sin(angle) / ratio, np.cos(angle) / ratio, *(each / ratio for each in log.regressors.values())]
     columns = motion.filtered(np.stack(series)).T
-    torque = log.measured[0] / per_torque(drive, log.effort) - motion.filtered(log.extra[np.newaxis] / ratio)[0]
+    torque = (log.measured[0] - motion.filtered(log.induced(drive)[np.newaxis])[0]) / per_torque(drive, log.effort)
+    torque = torque - motion.filtered(log.extra[np.newaxis] / ratio)[0]
     size = np.linalg.norm(columns, axis=0)
     weights = np.linalg.lstsq(columns / size, torque, rcond=1e-6)[0] / size
     left = torque - columns @ weights

@@ -154,7 +154,7 @@ class MotionLog(ComparedByFields):
         described = _core.parameters(model)
         now = Needed.of(model, self.motion, others, [described[number][0] for number in numbers])
         scale = per_torque(model, self.effort)
-        effort = scale * now.torque + self._induced(model)
+        effort = scale * now.torque + self.induced(model)
         slopes = [self._slope(model, number, described, now, effort) for number in numbers]
         slopes += [scale * now.by_transmitted * series for series in self.regressors.values()]
         series = np.stack([effort, *slopes])
@@ -173,9 +173,10 @@ class MotionLog(ComparedByFields):
         found: Array = sum((share * each for share, each in zip(shares, self.regressors.values(), strict=True)), self.extra)
         return found
 
-    def _induced(self, model: Drive) -> Array | float:
-        """Voltage that a motor induces as it turns."""
-        return float(getattr(model.motor, "back_emf", 0.0)) * self.motion.speed if self.effort == "voltage" else 0.0
+    def induced(self, model: Drive) -> Array:
+        """The part of the effort that makes no torque: the voltage that a motor induces as it turns [V]; 0 of all others."""
+        constant = float(getattr(model.motor, "back_emf", 0.0)) if self.effort == "voltage" else 0.0
+        return constant * self.motion.speed
 
     def _slope(self, model: Drive, number: int, described: Sequence[Any], now: Needed, effort: Array) -> Array:
         """By a number of the drive: of few by a difference, which is good to eight digits where torque is smooth in them."""
@@ -187,7 +188,7 @@ class MotionLog(ComparedByFields):
         values = [each[1] for each in described]
         other = _core.with_numbers(model, [*values[:number], end, *values[number + 1 :]])
         there = Needed.of(other, self.motion, now.others)
-        moved = per_torque(other, self.effort) * there.torque + self._induced(other)
+        moved = per_torque(other, self.effort) * there.torque + self.induced(other)
         return np.asarray((moved - effort) / (end - value))
 
 

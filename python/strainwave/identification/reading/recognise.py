@@ -46,6 +46,7 @@ class Recognised:
         recording: the channels in SI units, with the names of `CHANNELS`
         neighbours: the columns of the recording with the angles of other joints that move, by what the file calls the joints
         joint: what it calls the joint whose recording it is; empty where it says nothing of it
+        unused: what it calls the columns that are not used
     """
 
     path: Path
@@ -59,6 +60,7 @@ class Recognised:
     recording: Recording
     neighbours: Mapping[str, str] = field(default_factory=dict)
     joint: str = ""
+    unused: tuple[str, ...] = ()
 
 
 def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognised:
@@ -93,8 +95,8 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     try:
         found = kind_of([column for column in columns if not column.neighbour], said)
     except UndecidedError as undecided:
-        unused = "".join(f"; {remark}" for remark in _unused(table, columns))
-        raise ValueError(one_line(f"{table.file}: {undecided}{unused}")) from None
+        left = "".join(f"; {remark}" for remark in _of_unused(_unused(table, columns)))
+        raise ValueError(one_line(f"{table.file}: {undecided}{left}")) from None
     remarks += found.remarks
     series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
     neighbours = _neighbours(columns) if found.kind == "log" else {}
@@ -109,7 +111,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         if when is not None:
             remarks += when.remarks
             series = {"time": when.time} | {name: values[when.rows] for name, values in series.items() if name != "time"}
-    remarks += _unused(table, used.values())
+    unused = _unused(table, used.values())
     return Recognised(
         Path(path),
         found.kind,
@@ -117,11 +119,12 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         {name: column.unit or "1" for name, column in found.columns.items()},
         found.side,
         found.why,
-        tuple(remarks),
+        (*remarks, *_of_unused(unused)),
         dict(said.constants),
         Recording(series, {name: _unit(name, used) for name in series}, table.title),
         {column.which: name for name, column in neighbours.items()},
         found.columns["output_angle"].which if "output_angle" in found.columns else "",
+        unused,
     )
 
 
@@ -191,7 +194,11 @@ def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock 
     return None
 
 
-def _unused(table: OpenTable, columns: Iterable[Column]) -> Sequence[str]:
+def _unused(table: OpenTable, columns: Iterable[Column]) -> tuple[str, ...]:
+    """What a file calls the columns that are not among these."""
     used = {column.position for column in columns}
-    names = [label.text for place, label in enumerate(table.labels) if place not in used and label.name]
+    return tuple(label.text for place, label in enumerate(table.labels) if place not in used and label.name)
+
+
+def _of_unused(names: Sequence[str]) -> list[str]:
     return [f"columns not used: {listed(names)}"] if names else []
