@@ -26,7 +26,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.suspicion import clipped_loop, of_levels, too_fast, unlike_set
 from strainwave.identification.twin import Twin, twin
 from strainwave.identification.warmed import warmed
-from strainwave.messages import listed
+from strainwave.messages import as_option, listed
 
 EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and friction explain less tells neither
 FRICTION = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law that has them
@@ -104,7 +104,8 @@ def _as_uncertain(told: Told, relative: float, beside: float = 0.0) -> Told:
     Args:
         told: with the standard deviation by the measurement alone
         relative: standard deviation of the torque constant over its value [1]
-        beside: what is taken off a number that grows with the constant, as the inertia of the motor
+        beside: what is taken off a number that grows with the constant, as the inertia of the motor, or what a motor whose
+            voltage was measured induces
     """
     if not told.unit.startswith(("N.m", "kg.m2")):
         return told
@@ -333,7 +334,13 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
     inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
     if not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
-        return Drive(gear=gear, motor=_motor_by_voltage(file, given), load=loads.Inertia(inertia=1.0)), remarks, False
+        by_voltage = _motor_by_voltage(file, given)
+        share = 0.01 * by_voltage.torque_constant * by_voltage.back_emf / by_voltage.resistance
+        remarks.append(
+            "the voltage tells the torque, less what the motor induces: if its torque constant is 1 % larger, the viscous "
+            f"friction is {share:.2g} N·m·s/rad smaller"
+        )
+        return Drive(gear=gear, motor=by_voltage, load=loads.Inertia(inertia=1.0)), remarks, False
     in_current = constant is None and not {"input_torque", "joint_torque"} & set(file.recording.names)
     if in_current:
         remarks.append("the torque constant is not known: torques are told in A; give --constant torque_constant=… for N.m")
@@ -391,8 +398,11 @@ def _loaded(file: Recognised) -> Recording:
 def _of_motion(best: MotionCandidate, taken: Taken, constant: TorqueConstant | None) -> Iterator[Told]:
     """The numbers of a log; each as uncertain as the torque constant, besides."""
     drive, in_current = taken.drive, taken.in_current
+    rotating: Any = drive.motor
     relative = 0.0 if constant is None or in_current else constant.relative
-    rotor = (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2
+    beside = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
+    if taken.log.effort == "voltage":
+        beside["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     for estimate in best.fit.estimates:
@@ -401,7 +411,7 @@ def _of_motion(best: MotionCandidate, taken: Taken, constant: TorqueConstant | N
         of_torque = estimate.unit.startswith(("N.m", "kg.m2"))
         law = "in A" if in_current and of_torque else encoder if estimate.path == "load.gravity_phase" else ""
         told = Told(estimate.path, estimate.unit, estimate.value, estimate.sigma, law)
-        told = _as_uncertain(told, relative, rotor if estimate.path == "load.inertia" else 0.0)
+        told = _as_uncertain(told, relative, beside.get(estimate.path, 0.0))
         unit = told.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad") if in_current else told.unit
         yield replace(told, unit=unit, why=_untold(estimate, told.sigma, best))
 

@@ -14,7 +14,8 @@ from strainwave.identification.findings import Finding, Number, Told, distance, 
 from strainwave.identification.identify import Identified, identify, with_means
 from strainwave.identification.known import Known
 
-from tests.python.identification.candidates.test_motion import TRUTH, record
+from tests.python.identification.candidates.test_motion import RATIO, TRUTH, record
+from tests.python.identification.candidates.test_motion import SPEED as SWING
 
 SPEED = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
 CONSTANT = 0.08  # N.m/A, of the motor of the logs
@@ -34,19 +35,24 @@ def log(path: Path, seed: int, **changed: float) -> Path:
     return path
 
 
+def measured_motor() -> sw.GearSet:
+    """A set of which the motor is known well."""
+    start = sw.GearSet.read("hfuc-20-80")
+    motor = sw.motor.DC(resistance=0.4, torque_constant=CONSTANT, back_emf=CONSTANT, inertia=1e-4 - start.gear.input_inertia)
+    sources = {f"motor.{each['name']}": sw.Entry("measured", uncertainty=0.0) for each in motor.fields}
+    return start.replace(motor=motor, sources={**start.sources, **sources})
+
+
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
     folder = tmp_path_factory.mktemp("files")
     (folder / "text.csv").write_text("a,b\nx,y\n")
-    start = sw.GearSet.read("hfuc-20-80")
-    motor = sw.motor.DC(resistance=0.4, torque_constant=CONSTANT, back_emf=CONSTANT, inertia=1e-4 - start.gear.input_inertia)
-    sources = {f"motor.{each['name']}": sw.Entry("measured", uncertainty=0.0) for each in motor.fields}
     files = [
         table(folder / "rough.csv", 0.05, 2e-3, 1), table(folder / "fine.csv", 0.05, 2e-4, 2), folder / "text.csv",
         log(folder / "light" / "run.csv", 3, inertia=0.4), log(folder / "heavy" / "run.csv", 4, inertia=1.6),
         log(folder / "again.csv", 3, inertia=0.4),
     ]  # fmt: skip
-    return identify(start.replace(motor=motor, sources={**start.sources, **sources}), files)
+    return identify(measured_motor(), files)
 
 
 def test_each_file_is_told_what_it_is_and_none_stops_the_others(found: Identified) -> None:
@@ -162,3 +168,27 @@ def test_phases_a_turn_apart_are_equal() -> None:
 def test_what_are_no_files_is_refused(files: Any, mapping: Any, said: str) -> None:
     with pytest.raises(TypeError, match=said):
         identify("hfuc-20-80", files, mapping=mapping)
+
+
+def voltage_log(path: Path, sign: float = 1.0) -> Path:
+    """A log of which only the voltage is known: R i + K omega of a motor of 0.4 Ohm."""
+    there = record(TRUTH, 0.02, 5)
+    voltage = sign * (0.4 * there["current"] + CONSTANT * RATIO * SWING)
+    columns = {"time": there.time, "input_angle": there["input_angle"], "voltage": voltage}
+    sw.Recording(columns, {"time": "s", "input_angle": "rad", "voltage": "V"}).to_csv(path)
+    return path
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_voltage_tells_friction_without_what_the_motor_induces(tmp_path: Path, sign: float) -> None:
+    found = identify(measured_motor(), [voltage_log(tmp_path / "log.csv", sign)])
+    told = {each.told.path: each.told for each in found.numbers}
+    for path, truth in (("gear.friction_input.coulomb", 0.05), ("gear.friction_input.viscous", 3e-4), ("load.inertia", 0.8)):
+        assert abs(told[path].value - truth) < 4.0 * told[path].sigma
+        assert told[path].sigma < 0.1 * truth
+    assert CONSTANT**2 / 0.4 > 50.0 * 3e-4  # of the voltage what the motor induces is by far the most
+
+
+def test_a_voltage_of_an_unknown_motor_is_refused_with_what_to_say(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"--constant resistance=… and --constant torque_constant=….*--column current=voltage"):
+        identify("hfuc-20-80", [voltage_log(tmp_path / "log.csv")])
