@@ -417,8 +417,10 @@ def main() -> None:
 
 def _misuse(error: Any) -> str:
     """What is wrong with the command line, in one sentence, and where help is."""
-    command = "strainwave" if error.ctx is None else error.ctx.command_path
-    return f"{error.format_message().rstrip('.')}; {command} --help tells more"
+    command, wrong = "strainwave" if error.ctx is None else error.ctx.command_path, error.format_message().rstrip(".")
+    if wrong.startswith("Missing") and error.ctx is not None:
+        wrong += f" of {' '.join([command, *error.ctx.command.collect_usage_pieces(error.ctx)])}"
+    return f"{wrong}; {command} --help tells more"
 
 
 def _warn(message: Warning | str, *_: object, **__: object) -> None:

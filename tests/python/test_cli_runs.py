@@ -141,7 +141,8 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["simulate"], ("Missing argument 'drive'", "strainwave simulate --help tells more")),
+        (["simulate"], ("Missing argument 'drive' of strainwave simulate [OPTIONS] {drive}", "simulate --help tells more")),
+        (["identify", "a.csv", "a.csv"], ("a.csv holds measurements, where a gear is asked for", "as hfuc-25-100")),
         (["simulate", "joint.toml"], ("Missing option '--scenario'",)),
         (["simulate", "joint.toml", "--scenario"], ("'--scenario' requires an argument",)),
         (["simulate", "joint.toml", "--scenario", "none.toml"], ("none.toml cannot be read: No such file",)),
@@ -188,7 +189,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["show"], ("Missing argument 'gear'",)),
         (["show", "nothing"], ('no set "nothing"',)),
         (["show", "joint.toml", "--run", "none.csv"], ("none.csv cannot be read",)),
-        (["show", "a.csv"], ('"a.csv"',)),
+        (["show", "a.csv"], ("a.csv holds measurements",)),
         (["drives", "nonsense"], ('has "nonsense" in its name', "`strainwave drives` lists all")),
         (["simulat"], ("No such command 'simulat'", "simulate", "strainwave --help tells more")),
         (["--bogus"], ("No such option: --bogus",)),

@@ -22,6 +22,7 @@ from strainwave._core import Gear
 from strainwave.files import gear_file
 from strainwave.files.described import all_paths, default_of, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
+from strainwave.files.tables import FORMATS
 from strainwave.messages import quoted, shortened, unquoted
 
 Kind = TypeVar("Kind", bound=Entry)
@@ -433,6 +434,11 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
 
 def _file(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
+    if path.suffix.lower() in FORMATS and path.exists():
+        raise ValueError(
+            f"{unquoted(str(path))} holds measurements, where a gear is asked for: give the name of a set, as hfuc-25-100, or a "
+            "gear file, which ends in .toml"
+        )
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path
     files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
