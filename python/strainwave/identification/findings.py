@@ -121,9 +121,9 @@ def numbers_of(findings: Sequence[Finding]) -> tuple[Number, ...]:
     """Every number told: the mean of the files that agree about it; files that show one measurement count once.
 
     Files that lie further from the best one than two standard deviations take no part in the mean: one of them, or the model,
-    is wrong.
+    is wrong. Numbers of the gear come first, then those of what the drive carried, run by run.
     """
-    by_path: dict[tuple[str, ...], dict[str, Told]] = {}
+    by_path: dict[tuple[str, str, str], dict[str, Told]] = {}
     for finding in findings:
         for told in finding.told:
             if not told.why and np.isfinite(told.sigma):
@@ -131,7 +131,9 @@ def numbers_of(findings: Sequence[Finding]) -> tuple[Number, ...]:
                 run = (finding.same_as or finding.name) if told.path.startswith("load.") else ""
                 by_path.setdefault((told.path, told.law, run), {})[finding.name] = told
     copies = {finding.name for finding in findings if finding.same_as}
-    return tuple(_number(each, copies) for each in by_path.values())
+    runs = list(dict.fromkeys(run for _, _, run in by_path))
+    in_order = sorted(by_path, key=lambda key: runs.index(key[2]) if key[2] else -1)
+    return tuple(_number(by_path[key], copies) for key in in_order)
 
 
 def _number(told: Mapping[str, Told], copies: set[str]) -> Number:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib import metadata
 from io import StringIO
 from operator import attrgetter
@@ -24,12 +24,13 @@ from strainwave.report import identify_figures as plots
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
-from strainwave.report.typeset import fixed, number, quantity, uncertain, unit
+from strainwave.report.typeset import fixed, number, plain_symbols, quantity, uncertain, unit
 
 if TYPE_CHECKING:
     from markupsafe import Markup
 
 WIDER = 1.05  # times: a mean that is wider by less needs no word
+SPREAD = 4  # digits of a number beside the scatter of individual gears
 COLUMNS = (
     "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
     "not_told_because",
@@ -47,6 +48,7 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
         HTML; the same for the same arguments
     """
     anchors = {id(finding): f"file-{place}" for place, finding in enumerate(found.findings)}
+    given = _given_with_all(found)
     return render(
         "identify.html.jinja",
         {
@@ -57,8 +59,9 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
             "agree": number(AGREE),
             "doubts": [(each.name, doubt) for each in found.findings for doubt in each.doubts],
             "refused": [(each.name, each.refused) for each in found.findings if each.refused],
-            "files": [_file(each, anchors[id(each)]) for each in found.findings if not each.part_of],
-            "points": [_file(each, "") for each in found.findings if each.part_of],
+            "given": [_constant(name, value) for name, value in given.items()],
+            "files": [_file(each, anchors[id(each)], given) for each in found.findings if not each.part_of],
+            "points": [_file(each, "", given) for each in found.findings if each.part_of],
             "said_of_points": list(dict.fromkeys(told for each in found.findings if each.part_of for told in each.remarks)),
             "numbers": [_number(each, found) for each in found.numbers],
             "comparisons": list(_comparisons(found)),
@@ -75,7 +78,7 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
 
 
 def _counts(found: Identified) -> str:
-    """How many files came to what: "5 files: 3 tell 17 numbers, 1 shows what another one shows, 1 is refused"."""
+    """How many files came to what: "5 files: 3 tell 17 numbers, 1 shows what another file shows too, 1 is refused"."""
     refused = sum(bool(each.refused) for each in found.findings)
     copies = sum(bool(each.same_as) and not each.refused for each in found.findings)
     points = sum(bool(each.part_of) for each in found.findings)
@@ -84,7 +87,7 @@ def _counts(found: Identified) -> str:
     files, numbers = len(given), len(found.numbers)
     parts = [f"{telling} {'tells' if telling == 1 else 'tell'} {numbers} {'number' if numbers == 1 else 'numbers'}"]
     for count, one, several in (
-        (copies, "shows what another one shows", "show what another one shows"),
+        (copies, "shows what another file shows too", "show what others show too"),
         (points, "is a point of a table of several files", "are points of a table of several files"),
         (files - telling - copies - refused - points, "tells none", "tell none"),
         (refused, "is refused", "are refused"),
@@ -119,14 +122,24 @@ def _sigmas(distance: float) -> str:
 # ---- Files -----------------------------------------------------------------------------------------------------------
 
 
-def _file(finding: Finding, anchor: str) -> dict[str, Any]:
+def _given_with_all(found: Identified) -> Mapping[str, float]:
+    """The constants that a person gave with every file."""
+    given = [set(each.recognised.constants.items()) for each in found.findings if each.recognised and each.recognised.columns]
+    return dict(sorted(set.intersection(*given))) if given else {}
+
+
+def _constant(name: str, value: float) -> str:
+    return f"{name.replace('_', ' ')} {quantity(value, CONSTANTS[name])}"
+
+
+def _file(finding: Finding, anchor: str, given: Mapping[str, float]) -> dict[str, Any]:
     read = finding.recognised
     return {
         "name": finding.name,
         "anchor": anchor if finding.curves is not None else "",
         "kind": finding.what or (KINDS[read.kind] if read is not None else "not read"),
         "why": read.why if read is not None else (),
-        "columns": list(_columns(finding)),
+        "columns": list(_columns(finding, given)),
         "model": finding.model,
         "error": f"{number(100.0 * finding.error, 2)} %" if np.isfinite(finding.error) else "",
         "told": sum(not each.why for each in finding.told),
@@ -136,8 +149,8 @@ def _file(finding: Finding, anchor: str) -> dict[str, Any]:
     }
 
 
-def _columns(finding: Finding) -> Iterator[str]:
-    """Each channel with its column and unit in the file: "speed: Drehzahl [1/min]"."""
+def _columns(finding: Finding, given: Mapping[str, float]) -> Iterator[str]:
+    """Each channel with its column and unit in the file, "speed: Drehzahl [1/min]", and constants given with it alone."""
     read = finding.recognised
     if read is None:
         return
@@ -147,7 +160,8 @@ def _columns(finding: Finding) -> Iterator[str]:
     if read.side is not None:
         yield f"side: {read.side}"
     for name, value in read.constants.items():
-        yield f"{name.replace('_', ' ')} given: {quantity(value, CONSTANTS[name])}"
+        if name not in given:
+            yield f"given: {_constant(name, value)}"
 
 
 def _plates(found: Identified, anchors: dict[int, str]) -> Iterator[dict[str, Any]]:
@@ -226,7 +240,7 @@ def _number(each: Number, found: Identified) -> dict[str, Any]:
                 "file": name,
                 "value": uncertain(each.of_file(name).value, each.of_file(name).sigma),
                 "distance": "" if name == each.source else _sigmas(distance(each.of_file(each.source), each.of_file(name))),
-                "in_mean": len(each.mean_of) > 1 and name in each.mean_of,
+                "counted": name in each.mean_of or name == each.source,
                 "contradicts": name in each.contradicts,
             }
             for name in files
@@ -252,7 +266,7 @@ def _start(start: GearSet, told: Told) -> str:
     if entry is None:
         return number(value)
     if entry.spread is not None:
-        return f"{number(value)} ± {number(100.0 * entry.spread, 2)} %"
+        return f"{number(value, SPREAD)} ± {number(100.0 * entry.spread, 2)} %"
     return number(value) if entry.uncertainty is None else uncertain(value, entry.uncertainty)
 
 
@@ -301,7 +315,7 @@ def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
         if each.others and (each.told.value != 0.0 or each.told.is_phase):
             parts.setdefault(each.told.path.partition(" of ")[0].rpartition(".")[0], []).append(each)
     for place, (part, numbers) in enumerate(parts.items()):
-        rows = [(name_of(each.told), list(_rows(each, copies))) for each in numbers]
+        rows = [(plain_symbols(name_of(each.told)), list(_rows(each, copies))) for each in numbers]
         yield part.removeprefix("gear.").replace("_", " ").capitalize(), Markup(plots.comparison(rows, f"comparison-{place}"))
 
 
@@ -313,8 +327,8 @@ def _rows(each: Number, copies: set[str]) -> Iterator[plots.Row]:
     for name in [each.source, *each.others] if mean else each.others:
         other = each.of_file(name)
         look = "contradicts" if name in each.contradicts else "copy of another" if name in copies else "agrees"
-        if look == "agrees" and mean and name not in each.mean_of:
-            look = "not in the mean"
+        if look == "agrees" and name not in each.mean_of:
+            look = "not counted"
         yield plots.Row(name, 100.0 * difference(other, taken) / scale, 100.0 * other.sigma / scale, look)
 
 

@@ -30,7 +30,7 @@ SEEN = 0.8  # of the intervals that are drawn whole; longer ones reach the edge
 LOOKS = {  # of a file in a comparison: mark, colour, whether filled
     "value taken": ("o", "measured", True),
     "agrees": ("o", "ink", True),
-    "not in the mean": ("s", "muted", True),
+    "not counted": ("s", "muted", True),
     "copy of another": ("o", "muted", False),
     "contradicts": ("D", "model", True),
 }
@@ -67,10 +67,10 @@ def comparison(numbers: Sequence[tuple[str, Sequence[Row]]], name: str) -> str:
         ticks: list[tuple[int, str]] = []
         every = [row for _, rows in numbers for row in rows]
         reach = _reach(every)
-        axes.axvline(0.0, color=LIGHT["muted"], linewidth=0.8)
         for title, rows in numbers:
             axes.text(-0.98 * reach, place, title, va="center", fontsize="small", fontweight="bold", color=LIGHT["ink"])
             ticks.append((place, ""))
+            axes.plot([0.0, 0.0], [place + 0.5, place + len(rows) + 0.5], color=LIGHT["muted"], linewidth=0.8)
             for row in rows:
                 place += 1
                 ticks.append((place, _short(row.file)))

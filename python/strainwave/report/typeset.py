@@ -9,8 +9,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from markupsafe import Markup
 
+_INDEXED = re.compile(r"\b([^\W\d_])_(\w+)\b")  # a letter with an index, as F_c
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_GREEK = {"alpha": "α", "phi": "φ"}
+_GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "theta": "θ", "sigma": "σ", "tau": "τ",
+    "phi": "φ", "omega": "ω",
+}  # fmt: skip
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _PLAIN = range(-4, 6)  # decades of numbers written without a power of ten
 _FINEST = 8  # digits; a standard deviation below the last of them is written by itself
@@ -78,13 +82,25 @@ def quantity(value: float, of: str, digits: int = 3) -> str:
 def symbols(text: str) -> Markup:
     """A text as HTML, escaped, with the symbols in it set as such.
 
-    >>> print(symbols("Kinetic friction torque F_c < F_s, phase phi_h"))
-    Kinetic friction torque <var>F<sub>c</sub></var> &lt; <var>F<sub>s</sub></var>, phase <var>φ<sub>h</sub></var>
+    >>> print(symbols("Kinetic friction torque F_c < F_s, where theta_out = 0"))
+    Kinetic friction torque <var>F<sub>c</sub></var> &lt; <var>F<sub>s</sub></var>, where <var>θ<sub>out</sub></var> = 0
     """
     from markupsafe import Markup, escape
 
-    greek = re.sub(rf"\b(?:{'|'.join(_GREEK)})(?![a-z])", lambda word: _GREEK[word[0]], str(escape(text)))
-    return Markup(re.sub(r"\b([^\W\d_])_(\w)\b", r"<var>\1<sub>\2</sub></var>", greek))
+    return Markup(_INDEXED.sub(r"<var>\1<sub>\2</sub></var>", _in_greek(str(escape(text)))))
+
+
+def plain_symbols(text: str) -> str:
+    """A text with the symbols in it as a drawing has them, which knows no indices.
+
+    >>> plain_symbols("Kinetic friction torque F_c, where theta_out = 0")
+    'Kinetic friction torque Fc, where θout = 0'
+    """
+    return _INDEXED.sub(r"\1\2", _in_greek(text))
+
+
+def _in_greek(text: str) -> str:
+    return re.sub(rf"\b(?:{'|'.join(_GREEK)})(?![a-z])", lambda word: _GREEK[word[0]], text)
 
 
 def breakable(path: str) -> Markup:

@@ -81,7 +81,7 @@ def test_contradictions_and_refused_files_come_first_with_what_to_do(page: str) 
 
 
 def test_it_counts_what_files_come_to(page: str) -> None:
-    assert "5 files: 3 tell 2 numbers, 1 shows what another one shows, 1 is refused" in text_of(page)
+    assert "5 files: 3 tell 2 numbers, 1 shows what another file shows too, 1 is refused" in text_of(page)
 
 
 def test_what_is_fine_needs_no_alarm(found: Identified) -> None:
@@ -107,7 +107,7 @@ def test_each_number_stands_with_its_file_the_initial_set_and_the_others(page: s
     assert "warm.csv" in row.text
     assert f"{numbers(START.gear)[COULOMB][0]:.4g}" in row.text
     assert "cold.csv: 0.0800 ± 0.0020 (13 σ apart: contradiction)" in row.text
-    assert "The same measurements again, not counted: copy.csv 0.0500 ± 0.0010" in row.text
+    assert "1 more of the same measurement" in row.text
 
 
 def test_what_is_not_told_stands_with_its_reason(page: str) -> None:
@@ -196,7 +196,7 @@ def test_a_phase_is_compared_around_the_turn() -> None:
     path = "gear.kinematic_error.phase[0]"
     findings = tuple(Finding(name, told=(told(path, phase, 0.05, "rad"),)) for name, phase in (("a.csv", 3.1), ("b.csv", -3.1)))
     html = identify_report(Identified(START, findings, numbers_of(findings), START))
-    assert "1.2 σ apart" in text_of(html)  # 2 pi - 6.2 over the root of 2 x 0.05²
+    assert "1.2 σ)" in text_of(html)  # 2 pi - 6.2 over the root of 2 x 0.05²
 
 
 def test_numbers_of_nothing_and_without_size_do_not_stop_the_page(found: Identified) -> None:
@@ -208,3 +208,24 @@ def test_numbers_of_nothing_and_without_size_do_not_stop_the_page(found: Identif
     html = identify_report(Identified(START, findings, numbers_of(findings), START))
     assert Page(html)
     assert Path(findings[2].name).suffix == ".csv"
+
+
+def test_a_file_beyond_two_sigma_is_shown_as_not_counted() -> None:
+    findings = tuple(
+        Finding(name, told=(told(COULOMB, value, 1e-3, "N.m"),)) for name, value in (("a.csv", 0.05), ("b.csv", 0.0535))
+    )
+    page = identify_report(Identified(START, findings, numbers_of(findings), START))
+    assert "b.csv: 0.0535 ± 0.0010 (2.5 σ, not counted)" in text_of(page)
+    drawn = next(each for each in Page(page).root.find("svg")).text
+    assert "not counted" in drawn
+    assert "agrees" not in drawn
+
+
+def test_numbers_of_the_gear_come_before_the_loads_of_runs() -> None:
+    first, second = "load.inertia", "load.gravity_torque"
+    findings = tuple(
+        Finding(name, told=tuple(told(path, 1.0, 0.1, "kg.m2") for path in (first, second, COULOMB)))
+        for name in ("a.csv", "b.csv")
+    )
+    order = [(each.told.path, each.source) for each in numbers_of(findings)]
+    assert order == [(COULOMB, "a.csv"), (first, "a.csv"), (second, "a.csv"), (first, "b.csv"), (second, "b.csv")]
