@@ -19,6 +19,7 @@ from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.known import Known, TorqueConstant, with_torque
 from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.identification.reading.channels import Kind
@@ -234,16 +235,16 @@ def log_of(file: Recognised, known: Known) -> Taken:
     if not in_current and "current" in recording and "torque_constant" not in file.constants and known.gear_set.motor is None:
         remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
         recording = recording.select([name for name in recording.names if name != "current"])
-    log = MotionLog.of(recording, drive)
+    log = MotionLog.of(recording, drive, regressors=file.regressors)
     if np.ptp(recording[log.effort]) == 0.0:
         raise ValueError(f"{log.effort} never changes: a set value, a limit, or a channel that was not recorded")
     before = regression(log, drive)
     if before.reversed:
         remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
-        log = MotionLog.of(recording, drive)
+        log = MotionLog.of(recording, drive, regressors=file.regressors)
         before = regression(log, drive)
-    if file.neighbours:
+    if file.neighbours and not file.regressors:
         log, told = _with_neighbours(file, log, drive)
         before = regression(log, drive)
         remarks += told
@@ -307,11 +308,19 @@ def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
         told += _orders(errors)
         remarks += errors.remarks
         known = _with_error(known, errors, file.path.name)
+    remarks += _shares(best.fit, file.regressors)
     every, curves = (*file.remarks, *remarks), curves_of(best.fit)
     law = best.fit.parts[0].model.gear.friction_input
     unlike = None if in_current else unlike_set(law, before.friction_input, log.motion.speed, log.effort)
     doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed), _unlike_said(taken))))
     return Finding(file.path.name, file, best.name, tuple(told), best.error, every, doubts, curves=curves), known
+
+
+def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
+    """What of each regressor that a person gave acts."""
+    shares = {each.path.removeprefix("share of "): each for each in found.estimates}
+    said = [f"{name.partition(' ')[2]} {shares[name].value:.4g} ± {shares[name].sigma:.2g}" for name in regressors]
+    return [f"shares of the regressors in the torque at the output: {listed(said)}"] if said else []
 
 
 def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], name: str) -> Known:

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from strainwave.identification.findings import Finding, Number, Told, distance, mean_of, numbers_of
 from strainwave.identification.identify import Identified, identify, with_means
 from strainwave.identification.known import Known
+from strainwave.identification.reading.mapping import FileMapping
 
 from tests.python.identification.candidates.test_motion import RATIO, TRUTH, record
 from tests.python.identification.candidates.test_motion import SPEED as SWING
@@ -192,3 +193,23 @@ def test_a_voltage_tells_friction_without_what_the_motor_induces(tmp_path: Path,
 def test_a_voltage_of_an_unknown_motor_is_refused_with_what_to_say(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"--constant resistance=… and --constant torque_constant=….*--column current=voltage"):
         identify("hfuc-20-80", [voltage_log(tmp_path / "log.csv")])
+
+
+def test_shares_of_regressors_are_found_beside_friction(tmp_path: Path) -> None:
+    alone, shares = record(TRUTH, 0.02, 6), {"Y1": 0.6, "Y2": -1.4}
+    time = alone.time
+    beside = {"Y1": 5.0 * np.sin(1.7 * time + 1.0), "Y2": 4.0 * np.cos(0.9 * time) ** 3 + np.sin(4.0 * time)}
+    current = alone["current"] + sum(shares[name] * each for name, each in beside.items()) / RATIO / CONSTANT
+    header = "time [s],input_angle [rad],current [A],Y1 [kg],Y2"
+    columns = np.column_stack([time, alone["input_angle"], current, *beside.values()])
+    np.savetxt(tmp_path / "log.csv", columns, delimiter=",", header=header, comments="")
+    said = FileMapping(columns={"regressors": "Y1, Y2"})
+    found = identify(measured_motor(), [tmp_path / "log.csv"], mapping=lambda path: said).findings[0]
+    told = {each.path: each for each in found.told}
+    for path, truth in (("gear.friction_input.coulomb", 0.05), ("gear.friction_input.viscous", 3e-4), ("load.inertia", 0.8)):
+        assert abs(told[path].value - truth) < 4.0 * told[path].sigma
+    remark = next(each for each in found.remarks if each.startswith("shares of the regressors"))
+    parts = remark.rpartition(": ")[2].replace(" and ", ", ").split(", ")
+    values = {name: (float(value), float(sigma)) for name, value, _, sigma in (part.split() for part in parts)}
+    assert all(abs(values[name][0] - share) < 4.0 * values[name][1] < 0.1 for name, share in shares.items())
+    assert not any("columns not used" in each for each in found.remarks)

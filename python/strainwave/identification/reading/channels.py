@@ -50,6 +50,7 @@ CHANNELS: dict[str, Channel] = {
     "output_angle": Channel("angle", "output"),
     "output_speed": Channel("speed", "output"),
     "other_angles": Channel("angle", "output"),  # of joints that move too, as numbers or names of columns with commas
+    "regressors": Channel("torque", "output", modelled=True),  # of a model of the arm, each per one of its parameters, as above
     "twist": Channel("twist"),
     "temperature": Channel("temperature"),
     "torque": Channel("torque"),

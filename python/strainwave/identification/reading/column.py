@@ -25,6 +25,7 @@ class Column:
         robot: whether its name is that of a robot's joint channel
         said: whether a person said what it is
         neighbour: whether it is the angle of another joint than the one that is asked for
+        regressor: whether it is a torque of which a share that is not known acts
         unit: its unit in the file; None where none is stated
         values: in SI units, once they are read
     """
@@ -36,8 +37,14 @@ class Column:
     robot: bool = False
     said: bool = False
     neighbour: bool = False
+    regressor: bool = False
     unit: str | None = None
     values: Array | None = None
+
+    @property
+    def own(self) -> bool:
+        """Whether it is a channel of the joint that is asked for."""
+        return not (self.neighbour or self.regressor)
 
     @property
     def si(self) -> Array:

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 SAY = "say what they are with --column"
 FEW = 4  # names that are listed where none says anything
 STILL = 0.01  # of how far a joint moves, by which others move less that rest
-NEIGHBOURS = "other_angles"  # as what a person names the angles of other joints
+SEVERAL = ("other_angles", "regressors")  # as what a person names several columns
 FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
 
 
@@ -47,10 +47,29 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
             continue
         sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
         channel = Channel(found.quantity, found.side if sided else None, found.commanded)
-        if not any(column.channel == channel and not column.neighbour for column in said):
+        if not any(column.channel == channel and column.own for column in said):
             unit = "s" if content == "dates" else found.unit or label.unit or None
             told.append(Column(position, label, channel, found.which, found.robot, unit=unit))
-    return said + _of_one_joint(table, told, mapping)
+    return said + _of_one_joint(table, _of_one_time(_numbered_apart(told)), mapping)
+
+
+def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
+    """The columns, without those numbers in their names that all of one channel have: of the robot, and of no joint."""
+    parts = {column.position: column.which.split(".") for column in columns}
+    found = []
+    for column in columns:
+        group = [parts[each.position] for each in columns if each.channel == column.channel]
+        several = len(group) > 1 and all(len(each) == len(group[0]) and "".join(each).isdigit() for each in group)
+        own = [part for place, part in enumerate(parts[column.position]) if len({each[place] for each in group}) > 1] if several else []
+        found.append(replace(column, which=".".join(own)) if own else column)
+    return found
+
+
+def _of_one_time(columns: Sequence[Column]) -> list[Column]:
+    """The columns with one time: the first whose name says nothing else, or the first."""
+    times = [column for column in columns if column.channel.quantity == "time"]
+    taken = next((column for column in times if not column.which), times[0] if times else None)
+    return [replace(column, which="") if column is taken else column for column in columns if column not in times or column is taken]
 
 
 def alone_in_motion(table: OpenTable, mapping: FileMapping) -> str | None:
@@ -79,8 +98,9 @@ def alone_in_motion(table: OpenTable, mapping: FileMapping) -> str | None:
 def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
     """The columns that a person named."""
     found = []
-    each = [(name, wanted) for name, wanted in mapping.columns.items() if name != NEIGHBOURS]
-    each += [(NEIGHBOURS, wanted.strip()) for wanted in mapping.columns.get(NEIGHBOURS, "").split(",") if wanted.strip()]
+    each = [(name, wanted) for name, wanted in mapping.columns.items() if name not in SEVERAL]
+    for name in SEVERAL:
+        each += [(name, wanted.strip()) for wanted in mapping.columns.get(name, "").split(",") if wanted.strip()]
     for name, wanted in each:
         channel = CHANNELS[ALIASES.get(name, name)]
         places = places_of(table.labels, wanted)
@@ -93,10 +113,9 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
         unit = label.unit or (told.unit if told and told.quantity == channel.quantity else None) or None
         unit = "s" if table.contents[places[0]] == "dates" else unit
         which = (told.which if told else "") or str(places[0] + 1)
-        is_neighbour = name == NEIGHBOURS
-        found.append(
-            Column(places[0], label, channel, which if is_neighbour else "", said=True, unit=unit, neighbour=is_neighbour)
-        )
+        beside = {"neighbour": name == "other_angles", "regressor": name == "regressors"}
+        unit = channel.unit if name == "regressors" else unit  # of a regressor any unit is that of torque over its share's
+        found.append(Column(places[0], label, channel, which if name == "other_angles" else "", said=True, unit=unit, **beside))
     return found
 
 
@@ -171,7 +190,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     raw = {column.position: numbers[str(column.position)] for column in columns}
     known, told = _with_units(table, columns, mapping)
     try:
-        assumed = missing_units([column for column in known if not column.neighbour], raw)
+        assumed = missing_units([column for column in known if column.own], raw)
     except ValueError as error:
         raise ValueError(one_line(f"{table.file} {error}")) from None
     known = _as_the_joint(known, assumed)
@@ -192,7 +211,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
 
 def _as_the_joint(columns: Sequence[Column], assumed: Mapping[int, Assumed]) -> list[Column]:
     """The columns, with angles of other joints in the unit of the one that is asked for."""
-    own = next((c for c in columns if not c.neighbour and c.channel.quantity == "angle" and not c.channel.commanded), None)
+    own = next((c for c in columns if c.own and c.channel.quantity == "angle" and not c.channel.commanded), None)
     unit = UNITS["angle"] if own is None else own.unit or assumed[own.position].unit
     return [replace(c, unit=c.unit or unit) if c.neighbour else c for c in columns]
 

@@ -20,6 +20,7 @@ from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side, meaning
 from strainwave.identification.reading.sides import UndecidedError
+from strainwave.identification.reading.two_part_time import with_whole_time
 from strainwave.identification.reading.wraps import unwrapped
 from strainwave.messages import listed, one_line, quoted
 
@@ -45,6 +46,7 @@ class Recognised:
         constants: numbers that a person gave with it
         recording: the channels in SI units, with the names of `CHANNELS`
         neighbours: the columns of the recording with the angles of other joints that move, by what the file calls the joints
+        regressors: the columns of the recording with torques of which shares that are not known act
         joint: what it calls the joint whose recording it is; empty where it says nothing of it
         unused: what it calls the columns that are not used
     """
@@ -59,6 +61,7 @@ class Recognised:
     constants: Mapping[str, float]
     recording: Recording
     neighbours: Mapping[str, str] = field(default_factory=dict)
+    regressors: tuple[str, ...] = ()
     joint: str = ""
     unused: tuple[str, ...] = ()
 
@@ -87,21 +90,23 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     said = mapping or FileMapping()
     table = open_table(path)
     said, remarks = _with_single_numbers(table, said)
+    table = with_whole_time(table)
     if (joint := alone_in_motion(table, said)) is not None:
         said = replace(said, joint=joint)
         remarks.append(f"joint {joint} alone moves, and is taken; --joint says another one")
     columns, more = read(table, chosen(table, said), said)
     remarks += more
     try:
-        found = kind_of([column for column in columns if not column.neighbour], said)
+        found = kind_of([column for column in columns if column.own], said)
     except UndecidedError as undecided:
         left = "".join(f"; {remark}" for remark in _of_unused(_unused(table, columns)))
         raise ValueError(one_line(f"{table.file}: {undecided}{left}")) from None
     remarks += found.remarks
     series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
     neighbours = _neighbours(columns) if found.kind == "log" else {}
-    series |= {name: column.si for name, column in neighbours.items()}
-    used = {**found.columns, **neighbours}
+    regressors = {f"regressor {column.name}": column for column in columns if column.regressor}
+    series |= {name: column.si for name, column in (neighbours | regressors).items()}
+    used = {**found.columns, **neighbours, **regressors}
     remarks += _unwrap(table, series, used)
     if found.kind in ("log", "encoders", "effort", "breakaway"):
         try:
@@ -123,6 +128,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         dict(said.constants),
         Recording(series, {name: _unit(name, used) for name in series}, table.title),
         {column.which: name for name, column in neighbours.items()},
+        tuple(regressors),
         found.columns["output_angle"].which if "output_angle" in found.columns else "",
         unused,
     )
