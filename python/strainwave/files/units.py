@@ -72,6 +72,7 @@ _WORDS = {
     "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "RPM": "rpm", "ohm": "Ohm", "sec": "s", "msec": "ms",
     "cNm": "cN*m", "kgfm": "kgf*m", "kgfcm": "kgf*cm", "Grad": "deg", "tr": "rev", "Umdr": "rev", "Upm": "rpm", "UPM": "rpm",
 }  # fmt: skip
+_PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s"}  # as the data sheets of sensors write them
 
 # What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.
 _COUNTED = re.compile(r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII)
@@ -273,7 +274,7 @@ def _expression(unit: str) -> str:
         raise ValueError("not one line of text")
     text = re.sub(r" *([./()]) *", r"\1", text.strip())
     text = "1" if text == "-" else re.sub(r" +|\.|(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)
-    text = _REVOLUTIONS.sub("rev", re.sub(r"\^(?=-?\d)", "", text))
+    text = _REVOLUTIONS.sub("rev", re.sub(r"\^(?=-?\d)", "", _PER_SECOND.get(text, text)))
     _check_grammar(text)
     return re.sub(r"([A-Za-z]+)(-?[1-9])?", _power, text)
 

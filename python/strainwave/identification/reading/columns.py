@@ -35,6 +35,11 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
     Where a person says the rate of the rows, a column of time is taken only if the person names it.
     """
     said = _said(table, mapping)
+    return said + _of_one_joint(table, _of_one_time(_told(table, mapping, said)), mapping)
+
+
+def _told(table: OpenTable, mapping: FileMapping, said: Sequence[Column] = ()) -> list[Column]:
+    """The columns whose names tell, but for channels that a person named."""
     taken = {column.position for column in said}
     told = []
     for position, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
@@ -50,7 +55,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
         if not any(column.channel == channel and column.own for column in said):
             unit = "s" if content == "dates" else found.unit or label.unit or None
             told.append(Column(position, label, channel, found.which, found.robot, unit=unit))
-    return said + _of_one_joint(table, _of_one_time(_numbered_apart(told)), mapping)
+    return _numbered_apart(told)
 
 
 def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
@@ -60,7 +65,11 @@ def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
     for column in columns:
         group = [parts[each.position] for each in columns if each.channel == column.channel]
         several = len(group) > 1 and all(len(each) == len(group[0]) and "".join(each).isdigit() for each in group)
-        own = [part for place, part in enumerate(parts[column.position]) if len({each[place] for each in group}) > 1] if several else []
+        own = (
+            [part for place, part in enumerate(parts[column.position]) if len({each[place] for each in group}) > 1]
+            if several
+            else []
+        )
         found.append(replace(column, which=".".join(own)) if own else column)
     return found
 
@@ -69,7 +78,9 @@ def _of_one_time(columns: Sequence[Column]) -> list[Column]:
     """The columns with one time: the first whose name says nothing else, or the first."""
     times = [column for column in columns if column.channel.quantity == "time"]
     taken = next((column for column in times if not column.which), times[0] if times else None)
-    return [replace(column, which="") if column is taken else column for column in columns if column not in times or column is taken]
+    return [
+        replace(column, which="") if column is taken else column for column in columns if column not in times or column is taken
+    ]
 
 
 def alone_in_motion(table: OpenTable, mapping: FileMapping) -> str | None:
@@ -77,13 +88,11 @@ def alone_in_motion(table: OpenTable, mapping: FileMapping) -> str | None:
     if mapping.joint is not None or mapping.columns:
         return None
     angles: dict[str, int] = {}
-    for place, (label, content) in enumerate(zip(table.labels, table.contents, strict=True)):
-        found = meaning(label)
-        if content != "numbers" or found is None or found.quantity != "angle" or found.commanded or not found.which:
-            continue
-        if found.which in angles:
-            return None
-        angles[found.which] = place
+    for column in _told(table, mapping):
+        if column.channel.quantity == "angle" and column.channel.measured and column.which:
+            if column.which in angles:
+                return None
+            angles[column.which] = column.position
     if len(angles) < 2:
         return None
     numbers, _ = table.measured([Source(place, which, which, "1") for which, place in angles.items()])

@@ -25,6 +25,7 @@ EQUAL = 1e-3  # relative: a step and a part of a revolution
 JOINT = 4.0 * np.pi  # rad: a joint that is written in radians does not get further, two turns to each side
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # what time since 1970 exceeds, in each unit
 FINER = ("ms", "us", "ns")  # than a second
+WRAP = 0.5  # of the range of an angle: by more it does not move within a thousandth of a log, but where it begins anew
 SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
 
 
@@ -146,10 +147,15 @@ def _pairs(columns: Sequence[Column]) -> list[tuple[Column, Column]]:
 
 @np.errstate(all="ignore")
 def _slope(angle: Array, speed: Array, time: Array) -> float:
-    """How much of the speed there is for each unit of the angle's slope, by least squares; 0 where nothing moves."""
+    """How much of the speed there is for each unit of the angle's slope, by least squares; 0 where nothing moves.
+
+    Where an angle begins anew with each revolution it has no slope.
+    """
     apart = max(2, len(time) // 5000)
-    forward = np.flatnonzero(np.isfinite(angle[apart:] + angle[:-apart] + speed[apart:]) & (time[apart:] > time[:-apart]))
-    rate = (angle[apart:] - angle[:-apart])[forward] / (time[apart:] - time[:-apart])[forward]
+    moved = angle[apart:] - angle[:-apart]
+    smooth = np.abs(moved) < WRAP * (np.nanmax(angle) - np.nanmin(angle))
+    forward = np.flatnonzero(np.isfinite(moved + speed[apart:]) & (time[apart:] > time[:-apart]) & smooth)
+    rate = moved[forward] / (time[apart:] - time[:-apart])[forward]
     middle = speed[forward + apart // 2]
     square = float(rate @ rate)
     related = square > 0.0 and middle @ middle > 0.0 and (rate @ middle) ** 2 > 0.5 * square * (middle @ middle)

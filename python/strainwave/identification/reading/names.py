@@ -30,11 +30,11 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "speed": (
         "speed", "velocity", "velocities", "vel", "omega", "w", "dq", "qd", "qdot", "qp", "dtheta", "thetadot", "dpos", "dphi",
         "drehzahl", "geschwindigkeit", "winkelgeschwindigkeit", "vitesse", "velocidad", "velocita", "rpm", "n",
-        "drehgeschwindigkeit",
+        "drehgeschwindigkeit", "velo",
     ),
     "torque": (
         "torque", "torques", "tau", "trq", "tor", "moment", "drehmoment", "reibmoment", "reibung", "friction", "couple",
-        "effort", "efforts", "frottement", "par", "coppia", "momento", "m",
+        "effort", "efforts", "eff", "frottement", "par", "coppia", "momento", "m",
     ),
     "current": (
         "current", "currents", "cur", "curr", "strom", "i", "iq", "isq", "courant", "corriente", "corrente", "amp", "amps",
@@ -58,14 +58,14 @@ COMMANDED = (
     "sollwert", "vorgabe", "consigne", "consigna", "riferimento", "referencia", "goal", "computed", "cmptd", "planned",
 )  # fmt: skip
 NEUTRAL = (
-    "actual", "act", "measured", "meas", "mes", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data", "sensor",
+    "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data", "sensor",
     "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the", "rig", "fb",
     "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady",
 )  # fmt: skip
 # What is no measurement of the quantity beside it.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
-    "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "estimate", "tool", "gripper", "power", "id",
+    "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "estimate", "est", "estimated", "tool", "gripper", "power", "id",
     "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model", "simulated", "predicted", "rne",
 )  # fmt: skip
 # Symbols that say two things at once.
@@ -74,10 +74,12 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "dqdes": ("dq", "desired"), "taudes": ("tau", "desired"), "dqm": ("dq", "motor"), "dql": ("dq", "link"),
     "taum": ("tau", "motor"), "tauj": ("tau", "joint"), "thetam": ("theta", "motor"), "thetal": ("theta", "link"),
     "im": ("i", "motor"), "um": ("u", "motor"), "jpos": ("joint", "pos"), "jvel": ("joint", "vel"), "jtor": ("joint", "torque"),
-    "jtau": ("joint", "tau"), "jcur": ("joint", "current"), "mpos": ("motor", "pos"), "mvel": ("motor", "vel"),
+    "qmsr": ("q", "measured"), "qcmd": ("q", "command"), "aipos": ("axis", "actual", "pos"), "aspos": ("axis", "soll", "pos"),
+    "macur": ("motor", "axis", "current"), "jtau": ("joint", "tau"), "jcur": ("joint", "current"), "mpos": ("motor", "pos"), "mvel": ("motor", "vel"),
 }  # fmt: skip
 BEHIND = {"m": "motor", "l": "link", "d": "desired", "r": "reference", "a": "actual"}  # an index behind a symbol, as in q_m
-ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts")  # what robots call their joints' channels
+FAR = 2  # words behind a symbol at which its index stands, as in tau_J_d
+ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts", "eff")  # what robots call their joints' channels
 
 QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTITIES.items() for word in words}
 _SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for word in words}
@@ -127,7 +129,7 @@ def meaning(label: Label) -> Meaning | None:
         quantity = "angle"
     if quantity is None or (unit is not None and not measures(unit, UNITS[quantity]) and not counts(unit)):
         return None
-    words = [BEHIND.get(word, word) if place > at else word for place, word in enumerate(words)]
+    words = [BEHIND.get(word, word) if 0 < place - at <= FAR else word for place, word in enumerate(words)]
     sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
     return Meaning(
         quantity,
@@ -160,10 +162,15 @@ def words_of(name: str) -> list[str]:
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain)
     found: list[str] = []
     for word in re.findall(r"[a-z]+|\d+", apart.casefold()):
-        found += SYMBOLS.get(word) or _parts(word) or [word]
+        found += SYMBOLS.get(word) or _parts(word) or _singular(word)
     return (
         [f"{found[0]}q", *found[2:]] if found[1:2] == ["q"] and found[0] in ("i", "u") else found
     )  # of a field-oriented drive
+
+
+def _singular(word: str) -> list[str]:
+    """A word that is not known, or the one of which it is the plural."""
+    return _parts(word[:-1]) or [word] if word.endswith("s") else [word]
 
 
 @lru_cache(maxsize=4096)
@@ -186,9 +193,9 @@ def _without_unit(name: str) -> tuple[str, str | None]:
         if len(words) <= count:
             continue
         unit = "/".join(words[-count:])
-        if any(re.fullmatch(r"J?\d*", word) for word in words[-count:]):  # the number of a joint, or the word joint
+        if any(re.fullmatch(r"J?|[A-Za-z]?\d+", word) for word in words[-count:]):  # of a joint: its number, as A1, or the word
             continue
-        rest = "_".join(words[:-count])
+        rest = "_".join(words[:-count]).removesuffix("_in")  # position in rad
         quantity, _ = _quantity(words_of(rest), None)
         if quantity is not None and measures(unit, UNITS[quantity]):
             return rest, unit

@@ -41,6 +41,17 @@ NAMES = {
     "joint_temperatures_1": Meaning("temperature", "output", which="1"),
     "jtor2": Meaning("torque", "output", which="2"),
     "field.effort1": Meaning("torque", which="1", robot=True),
+    "j1_vel_degps": Meaning("speed", "output", which="1", unit="degps"),
+    "axisQMsr_LBR_A2": Meaning("angle", which="2", robot=True),
+    "AIPos_A1": Meaning("angle", which="1"),
+    "ASPos_A1": Meaning("angle", commanded=True, which="1"),
+    "MACur_A1": Meaning("current", "input", which="1"),
+    "joint_eff_2": Meaning("torque", "output", which="2", robot=True),
+    "msrJntPos1": Meaning("angle", "output", which="1"),
+    "Axis1.NcToPlc.ActVelo": Meaning("speed", which="1"),
+    "joint_angles_1": Meaning("angle", "output", which="1"),
+    "Position in rad": Meaning("angle", unit="rad"),
+    "Strom_A": Meaning("current", unit="A"),
     "Sensor X [N.m]": Meaning("torque", which="x", unit="N.m"),
 }
 NO_NAMES = (
@@ -57,6 +68,7 @@ NO_NAMES = (
     "x [m]",
     "friction coefficient [1]",
     "torque_rne_1",
+    "estExtJntTrq0",
 )
 
 
