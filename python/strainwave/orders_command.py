@@ -46,6 +46,7 @@ def orders(
 
     if side is not None:
         one_of("side", side, ("input", "output"))
+    _check_files(paths)
     with Console(stderr=True).status("reading") as status:
         found = []
         for path in paths:
@@ -60,6 +61,17 @@ def orders(
         write_folder(out, files)
     print(orders_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+
+
+def _check_files(paths: Sequence[Path]) -> None:
+    """Refuses the name of a gear set, which other commands take before the files."""
+    from strainwave.files.gear_set import catalogue
+
+    sets = [str(path) for path in paths if not path.exists() and str(path) in catalogue()]
+    if sets:
+        raise ValueError(
+            f"{sets[0]} is a gear set; orders are found in files alone: leave it out, and give --ratio if it is known"
+        )
 
 
 def _of_file(

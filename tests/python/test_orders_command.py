@@ -69,5 +69,6 @@ def test_what_cannot_be_is_refused_in_one_line(folder: Path) -> None:
     refused(folder, ["orders", "joint.csv", "--column", "torque=Nothing"], "Nothing")
     refused(folder, ["orders", "both.csv", "--ratio", 100], "both.csv", "is not that of the angles")
     refused(folder, ["orders", "none.csv"], "none.csv")
+    refused(folder, ["orders", "hfuc-20-80", "joint.csv"], "hfuc-20-80 is a gear set", "leave it out")
     refused(folder, ["orders", "steady.csv"], "steady.csv")
     refused(folder, ["orders", "both.csv", "--side", "left"], "--side left must be one of input, output")

@@ -52,7 +52,7 @@ def orders_found(
         name: of the recording, for what is told of it
         ratio: of the gear, if it is known
         side: on which the angle or speed was measured, where its name does not say so
-        highest: order up to which ripple is looked for
+        highest: order up to which ripple is looked for, of the shaft whose angle it is told over: the input of two
         rate: samples per second of a recording without time [Hz]
 
     Raises:
@@ -74,7 +74,7 @@ def orders_found(
             return OrdersFound(name, transmission, None)
         size = abs(transmission.ratio.used)
         try:
-            found = ripple(recording, effort, angle="input_angle", side="input", ratio=size, rate=rate)
+            found = ripple(recording, effort, angle="input_angle", side="input", ratio=size, highest=highest, rate=rate)
             return OrdersFound(name, transmission, found)
         except ValueError as error:
             return OrdersFound(name, transmission, None, (f"ripple in {effort} is not told: {error}",))

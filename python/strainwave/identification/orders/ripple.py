@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import tau
 from typing import Literal
 
@@ -101,7 +101,8 @@ class Ripple(ComparedByFields):
         turned: all of its motion, to and fro, in revolutions
         resolution: two orders that differ by less are one line [1]
         lowest, highest: order that was looked for
-        spectrum: columns order, amplitude, floor (its mean by noise alone) and threshold (what a line needs to be found)
+        spectrum: columns order, amplitude, floor (its mean by noise alone, in one direction) and threshold (what a line needs
+            to be found)
         curves: angle, series, smooth part, residual, and time where it is known
         remarks: what to know of these numbers, in words
     """
@@ -167,19 +168,11 @@ def ripple(
     arguments.one_of("side", side, ("input", "output"))
     false_alarm = arguments.number("false_alarm", false_alarm, low=0.0, high=1.0)
     size = None if ratio is None else abs(arguments.number("ratio", ratio))
-    record = beginning(evenly(recording, [column, angle], rate), LONGEST)
-    turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))
-    if float(np.ptp(turned)) == 0.0:
-        raise ValueError(f"{angle} does not change; orders need a shaft that turns")
-    values = record.columns[column]
-    if float(np.ptp(values)) == 0.0:
-        raise ValueError(f"{column} does not change; there is no ripple in it")
-    told = moving(turned, values)
-    told = _masked(told, record)
+    record, told = _moved(recording, column, angle, rate)
     lowest, top = _range(told, side, size, highest)
     _check_sampled(told, record, side, size, top, angle)
     found = find_lines(told, lowest, top, false_alarm)
-    revolutions = float(np.ptp(turned)) / tau
+    revolutions = float(np.ptp(told.angle)) / tau
     lines = tuple(_line(each, told, found, record, side, size, len(found.lines)) for each in found.lines)
     guessed = candidates(found.lines, 1.0 / revolutions) if side == "output" and size is None else ()
     return Ripple(
@@ -190,20 +183,26 @@ def ripple(
         candidates=guessed,
         ratio=size,
         revolutions=revolutions,
-        turned=float(np.abs(np.diff(turned)).sum()) / tau,
+        turned=float(np.abs(np.diff(told.angle)).sum()) / tau,
         resolution=1.0 / revolutions,
         lowest=lowest,
         highest=top,
         spectrum=_spectrum(found, recording.unit(column), false_alarm),
         curves=_curves(told, found, record, recording.unit(column)),
-        remarks=(*record.remarks, *_remarks(told, found, record, guessed, side, size)),
+        remarks=(*record.remarks, *_remarks(told, found, record, guessed, revolutions)),
     )
 
 
-def _masked(told: Moving, record: Evenly) -> Moving:
-    from dataclasses import replace
-
-    return replace(told, weight=np.where(record.measured, told.weight, 0.0))
+def _moved(recording: Recording, column: str, angle: str, rate: float | None) -> tuple[Evenly, Moving]:
+    """A shaft and what drives it, evenly in time, of a long record the beginning; rows that were filled in do not count."""
+    record = beginning(evenly(recording, [column, angle], rate), LONGEST)
+    turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))
+    if float(np.ptp(turned)) == 0.0:
+        raise ValueError(f"{angle} does not change; orders need a shaft that turns")
+    if float(np.ptp(record.columns[column])) == 0.0:
+        raise ValueError(f"{column} does not change; there is no ripple in it")
+    told = moving(turned, record.columns[column])
+    return record, replace(told, weight=np.where(record.measured, told.weight, 0.0))
 
 
 def _range(told: Moving, side: Side, size: float | None, highest: float | None) -> tuple[float, float]:
@@ -294,7 +293,7 @@ def _parts(line: Line, told: Moving, floor: Floor, residual: Array, count: int) 
 def _spectrum(found: Found, unit: str, allowed: float) -> Recording:
     """Amplitude over order, its floor, and the amplitude at which a line would be found."""
     spectrum = found.orders
-    needed = _evidence_needed(found, allowed)
+    needed = spectrum.evidence_of(allowed, found.tested)
     columns = {
         "order": spectrum.place,
         "amplitude": spectrum.amplitude,
@@ -302,18 +301,6 @@ def _spectrum(found: Found, unit: str, allowed: float) -> Recording:
         "threshold": spectrum.noise * np.sqrt(2.0 * needed),
     }
     return Recording(columns, {"order": "1", "amplitude": unit, "floor": unit, "threshold": unit}, "spectrum over the angle")
-
-
-def _evidence_needed(found: Found, allowed: float) -> float:
-    """Evidence of a line that noise makes with the allowed probability, by bisection."""
-    low, high = 0.0, 1e4
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if float(found.orders.false_alarm(middle, found.tested)) > allowed:
-            low = middle
-        else:
-            high = middle
-    return high
 
 
 def _curves(told: Moving, found: Found, record: Evenly, unit: str) -> Recording:
@@ -327,9 +314,7 @@ def _curves(told: Moving, found: Found, record: Evenly, unit: str) -> Recording:
     return Recording(columns, units, "ripple")
 
 
-def _remarks(
-    told: Moving, found: Found, record: Evenly, guessed: Sequence[Candidate], side: Side, size: float | None
-) -> list[str]:
+def _remarks(told: Moving, found: Found, record: Evenly, guessed: Sequence[Candidate], revolutions: float) -> list[str]:
     remarks = []
     if told.outliers:
         remarks.append(f"{told.outliers} samples lie far outside of the others and do not count")
@@ -351,6 +336,6 @@ def _remarks(
         others = ", ".join(str(each.ratio) for each in guessed[1:4])
         remarks.append(
             f"the ratio is not settled: beside {guessed[0].ratio} there is {others}; give --ratio, or turn further: orders "
-            f"are told to {1.0 / (float(np.ptp(told.angle)) / tau):.2g} per revolution"
+            f"are told to {1.0 / revolutions:.2g} per revolution"
         )
     return remarks

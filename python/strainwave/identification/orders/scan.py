@@ -59,10 +59,15 @@ class Spectrum:
         """
         from scipy.stats import f
 
-        freedom = 2.0 * self.floors
-        single = f.sf(np.asarray(evidence) / self.parts, 2 * self.parts, freedom)
+        single = f.sf(np.asarray(evidence) / self.parts, 2 * self.parts, 2.0 * self.floors)
         bounded: Array = np.minimum(1.0, tested * single)
         return bounded
+
+    def evidence_of(self, false_alarm: float, tested: float) -> float:
+        """Evidence that noise alone gives anywhere in so many lines with this probability."""
+        from scipy.stats import f
+
+        return self.parts * float(f.isf(false_alarm / tested, 2 * self.parts, 2.0 * self.floors))
 
 
 def order_spectrum_of(

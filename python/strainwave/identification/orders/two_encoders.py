@@ -8,7 +8,7 @@ stage where the record shows its resonance (`stage`). No simulation is run.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot, inf, pi, tau
 from typing import Literal
@@ -154,55 +154,39 @@ def transmission_error(
         raise ValueError("orders must be one series of positive numbers")
     false_alarm = arguments.number("false_alarm", false_alarm, low=0.0, high=1.0)
     load = next((name for name in ("torque", "current") if name in recording), None)
-    names = ["input_angle", "output_angle", *([load] if load else [])]
-    record = evenly(recording, names, rate)
-    record = beginning(record, LONGEST * _averaged(record, recording))
-    theta = unwrapped("input_angle", convert(record.columns["input_angle"], recording.unit("input_angle"), "rad"))
-    output = unwrapped("output_angle", convert(record.columns["output_angle"], recording.unit("output_angle"), "rad"))
-    pair = Pair(record, theta, output)
+    pair = _pair(recording, load, rate)
     told = ratio_of(pair, ratio)
     chosen, left_out = _chosen(pair, wanted, told.used)
-    shapes = [_shape(pair, order) for order, _ in chosen]
-    loads = loads_of(pair, told.used)
-    found, every = _regressed(pair, told.used, [wave for shape in shapes for wave in shape], loads, dynamic=record.timed)
-    remarks = [*record.remarks, *ratio_remarks(told, pair, ratio), *left_out, *_stage_remarks(found, pair, every, chosen)]
-    values, covariance = found.values, found.covariance
-    tested = len(chosen)
-    listed_orders = tuple(
-        _order(
-            order,
-            shaft,
-            values[2 * k : 2 * k + 2],
-            covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2],
-            found.freedom,
-            tested,
-            false_alarm,
-        )
-        for k, (order, shaft) in enumerate(chosen)
-    )
-    first = 2 * tested
-    lost = None
-    if pair.reverses:
-        lost = Measured(2.0 * float(values[first]), 2.0 * float(np.sqrt(covariance[first, first])), "rad")
-    else:
+    shapes = [wave for order, _ in chosen for wave in _shape(pair, order)]
+    found, every = _regressed(pair, told.used, shapes, loads_of(pair, told.used), dynamic=pair.record.timed)
+    error = np.stack(shapes, axis=1) @ found.values[: len(shapes)]
+    whole = pair.input / told.used - pair.output
+    frequency, damping = _stage_numbers(found, pair.record, every)
+    remarks = [*ratio_remarks(told, pair, ratio), *left_out, *_stage_remarks(found, pair, every, chosen)]
+    if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not told")
-    error = sum(
-        (a * s + b * c for (s, c), a, b in zip(shapes, values[0:first:2], values[1:first:2], strict=True)), np.zeros(len(theta))
-    )
-    whole = theta / told.used - output
-    frequency, damping = _stage_numbers(found, record, every)
     return TransmissionError(
         ratio=told,
-        orders=listed_orders,
-        lost_motion=lost,
+        orders=tuple(_orders(chosen, found, false_alarm)),
+        lost_motion=_lost_motion(found, len(shapes)) if pair.reverses else None,
         windup=_windup(pair, whole - error, load, recording),
         natural_frequency=frequency,
         damping_ratio=damping,
         noise=float(np.sqrt(np.mean(found.residual**2))),
-        revolutions=float(np.ptp(theta)) / tau,
+        revolutions=float(np.ptp(pair.input)) / tau,
         curves=_curves(pair, whole - whole.mean(), error, found.residual, every),
-        remarks=tuple(remarks),
+        remarks=(*pair.record.remarks, *remarks),
     )
+
+
+def _pair(recording: Recording, load: str | None, rate: float | None) -> Pair:
+    """Both shafts evenly in time, of a long record the beginning."""
+    record = evenly(recording, ["input_angle", "output_angle", *([load] if load else [])], rate)
+    record = beginning(record, LONGEST * _averaged(record, recording))
+    angles = (
+        unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in ("input_angle", "output_angle")
+    )
+    return Pair(record, *angles)
 
 
 def _chosen(pair: Pair, wanted: Array, ratio: float) -> tuple[list[tuple[float, Shaft]], list[str]]:
@@ -242,20 +226,20 @@ def _regressed(
     pair: Pair, ratio: float, shapes: Sequence[Array], loads: Sequence[Array], *, dynamic: bool
 ) -> tuple[Regressed, int]:
     """The regression, and how many samples each that is compared is the mean of."""
-    count = len(pair.input)
-    every = min(-(-count // LONGEST), _mean_of(pair.fastest))
-
-    def mean(series: Array) -> Array:
-        means: Array = series[: count // every * every].reshape(-1, every).mean(axis=1)
-        return means
-
+    every = min(-(-len(pair.input) // LONGEST), _mean_of(pair.fastest))
     problem = Problem(
-        angle=mean(pair.input / ratio),
-        error=mean(pair.input / ratio - pair.output),
-        orders=np.stack([mean(each) for each in shapes], axis=1),
-        loads=np.stack([mean(each) for each in loads], axis=1),
+        angle=_means(pair.input / ratio, every),
+        error=_means(pair.input / ratio - pair.output, every),
+        orders=np.stack([_means(each, every) for each in shapes], axis=1),
+        loads=np.stack([_means(each, every) for each in loads], axis=1),
     )
     return problem.regress(dynamic=dynamic), every
+
+
+def _means(series: Array, every: int) -> Array:
+    """Of so many neighbours each; those at the end that are fewer are left out."""
+    means: Array = series[: len(series) // every * every].reshape(-1, every).mean(axis=1)
+    return means
 
 
 def _mean_of(fastest: float) -> int:
@@ -269,16 +253,26 @@ def _averaged(record: Evenly, recording: Recording) -> int:
     return _mean_of(float(np.quantile(np.minimum(steps, np.abs(tau - steps)), 0.99)))
 
 
-def _order(order: float, shaft: Shaft, pair: Array, covariance: Array, freedom: int, tested: int, allowed: float) -> ErrorOrder:
-    sine, cosine = pair.tolist()
-    amplitude, phase = hypot(sine, cosine), float(np.arctan2(cosine, sine))
-    along = np.array([np.cos(phase), np.sin(phase)])
-    across = np.array([-along[1], along[0]])
-    sigmas = [float(np.sqrt(max(each @ covariance @ each, 0.0))) for each in (along, across)]
-    inverse = np.asarray(np.linalg.pinv(covariance))
-    alarm = min(1.0, tested * (1.0 + float(pair @ inverse @ pair) / freedom) ** (-0.5 * freedom))  # tail of F(2, freedom)
-    turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
-    return ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
+def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: float) -> Iterator[ErrorOrder]:
+    """Each order with its standard deviations, and whether noise makes as much with less than the allowed probability."""
+    for place, (order, shaft) in enumerate(chosen):
+        own = slice(2 * place, 2 * place + 2)
+        pair, covariance = found.values[own], found.covariance[own, own]
+        sine, cosine = pair.tolist()
+        amplitude, phase = hypot(sine, cosine), float(np.arctan2(cosine, sine))
+        along = np.array([np.cos(phase), np.sin(phase)])
+        across = np.array([-along[1], along[0]])
+        sigmas = [float(np.sqrt(max(each @ covariance @ each, 0.0))) for each in (along, across)]
+        square = float(pair @ np.asarray(np.linalg.pinv(covariance)) @ pair)
+        single = (1.0 + square / found.freedom) ** (-0.5 * found.freedom)  # tail of F(2, freedom)
+        alarm = min(1.0, len(chosen) * single)
+        turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
+        yield ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
+
+
+def _lost_motion(found: Regressed, place: int) -> Measured:
+    """Twice what the direction makes of the error, whose coefficient stands at this place."""
+    return Measured(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
 
 
 def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) -> Measured | None:
@@ -322,15 +316,10 @@ def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tu
 
 
 def _curves(pair: Pair, error: Array, orders: Array, residual: Array, every: int) -> Recording:
-    count = len(residual)
-
-    def mean(series: Array) -> Array:
-        means: Array = series[: count * every].reshape(-1, every).mean(axis=1)
-        return means
-
-    columns = {"time": pair.record.start + pair.record.step * every * (np.arange(count) + 0.5 * (every - 1) / every)}
-    columns |= {"input_angle": mean(pair.input), "output_angle": mean(pair.output)}
-    columns |= {"transmission_error": mean(error), "kinematic_error": mean(orders), "residual": residual}
+    series = {"input_angle": pair.input, "output_angle": pair.output, "transmission_error": error, "kinematic_error": orders}
+    middle = np.arange(len(residual)) + 0.5 * (every - 1) / every
+    columns = {"time": pair.record.start + pair.record.step * every * middle}
+    columns |= {name: _means(values, every) for name, values in series.items()} | {"residual": residual}
     units = {name: "s" if name == "time" else "rad" for name in columns}
     if not pair.record.timed:
         del columns["time"], units["time"]

@@ -37,12 +37,17 @@ def test_the_error_of_a_simulated_drive_is_that_of_its_gear(driven: sw.Recording
         assert told[order].amplitude_sigma < 0.1 * amplitude
 
 
+def test_orders_of_two_encoders_are_looked_for_as_far_as_is_said(driven: sw.Recording) -> None:
+    found = orders_found(driven, "driven", highest=3.0)
+    assert found.ripple is not None
+    assert found.ripple.highest == 3.0
+
+
 def test_the_same_drive_is_seen_in_its_current(driven: sw.Recording) -> None:
     joint = driven.select(["time", "output_angle", "current"])
     blind = orders_found(joint, "blind")
     assert blind.transmission is None
     assert blind.ripple is not None
-    print([(line.kind, line.order, line.amplitude) for line in blind.ripple.lines], blind.ripple.candidates)
     assert any(line.kind == "order" and abs(line.order - 200.0) < 2.0 for line in blind.ripple.lines)
 
 

@@ -10,6 +10,7 @@ import strainwave as sw
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from strainwave.identification.orders.two_encoders import ErrorOrder
 
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "input_angle": "rad", "output_angle": "rad"}
@@ -29,7 +30,7 @@ def told(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: fl
     return sw.transmission_error(sw.Recording(columns, units), **options)
 
 
-def order(found: sw.TransmissionError, which: float):  # type: ignore[no-untyped-def]
+def order(found: sw.TransmissionError, which: float) -> ErrorOrder:
     return next(each for each in found.orders if each.order == which and each.shaft == "input")
 
 
