@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from strainwave.identification.fitting.bootstrap import Bootstrap, bootstrap
     from strainwave.identification.fitting.combinations import Combination, combinations
     from strainwave.identification.fitting.fit import Fit, fit
+    from strainwave.identification.fitting.minima import Minima, minima
     from strainwave.identification.fitting.profile import Profile, profile
     from strainwave.identification.identify import Identified, identify
     from strainwave.identification.orders.ripple import Ripple, ripple
@@ -80,6 +81,7 @@ _LAZY = {
     "GearSet": "files.gear_set",
     "Identified": "identification.identify",
     "Linearisation": "analysis.linear",
+    "Minima": "identification.fitting.minima",
     "Orders": "analysis.orders",
     "Profile": "identification.fitting.profile",
     "RatingCheck": "files.ratings",
@@ -105,6 +107,7 @@ _LAZY = {
     "identify": "identification.identify",
     "linearise": "analysis.linear",
     "load": "files.gear_set",
+    "minima": "identification.fitting.minima",
     "modes": "analysis.linear",
     "order_spectrum": "analysis.orders",
     "orders": "analysis.orders",
@@ -142,6 +145,7 @@ __all__ = [
     "GearSet",
     "Identified",
     "Linearisation",
+    "Minima",
     "Orders",
     "PassivityWarning",
     "Profile",
@@ -177,6 +181,7 @@ __all__ = [
     "load",
     "loads",
     "meter",
+    "minima",
     "modes",
     "motor",
     "order_spectrum",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -22,6 +22,7 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.loss import LOSSES, Squared
+from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.fitting.problem import Problem, Record, Weights
 from strainwave.identification.fitting.unknowns import AT, Plan, plan
 from strainwave.messages import listed, quoted, shortened
@@ -33,6 +34,7 @@ ROUGH = 1e-3  # the same of the passes that find how the channels weigh
 ROUGH_PASSES = 4  # at most, of one step each, behind the first
 PASSES = 5  # at most, of those that are exact
 SETTLED = 0.2  # relative change of weights that calls for no further pass
+LOOSE = 0.2  # of the distance to the limit of a parameter: with a larger standard deviation no interval is symmetric
 OF_GEAR = (FrictionTable, TorsionLoop)  # what is measured on a gear, also where the model is of a drive
 OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "input_torque"})
 
@@ -135,8 +137,41 @@ class Fit(ComparedByFields):
             raise ValueError(f"the fit is to {len(self.parts)} records; each has its own in parts, in their order")
         return self.parts[0]
 
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What speaks against the estimates or their standard deviations, in words, as far as it shows without a further fit.
+
+        A fit that ended at the wrong one of several minima need not show it: `minima` looks for others.
+        """
+        return *self._loosely_told(), *self._left()
+
+    def _loosely_told(self) -> Iterator[str]:
+        """Parameters whose intervals come near what they may not be, where no cost is a parabola."""
+        for unknown, estimate in zip(self.plan.unknowns, self.estimates, strict=False):
+            limit = next((each for each in (unknown.low, unknown.high) if np.isfinite(each)), None)
+            if limit is None or estimate.at_limit or not np.isfinite(estimate.sigma):
+                continue
+            share = estimate.sigma / abs(estimate.value - limit)
+            if share > LOOSE:
+                yield (
+                    f"{estimate.path} is known to {100.0 * share:.0f} % only: its interval is not symmetric; "
+                    f'sw.profile(fit, "{estimate.path}") tells it'
+                )
+
+    def _left(self) -> Iterator[str]:
+        """Channels whose residuals are no white noise."""
+        for part in self.parts:
+            of = f"{AT}{part.name}" if len(self.parts) > 1 else ""
+            for name, left in zip(part.experiment.channels, part.residuals, strict=True):
+                together = correlation_length(left[part.training])
+                if together > 1.0:
+                    yield (
+                        f"what is left of {name}{of} hangs together over {together:.2g} samples: the sensor drifts, the model "
+                        "lacks something, or the fit ended at the wrong minimum; look at the residuals, and try sw.minima(fit)"
+                    )
+
     def summary(self) -> str:
-        """A table of the estimates and the residuals, to print."""
+        """A table of the estimates and the residuals with what is doubted, to print."""
         lines = [f"{'parameter':44} {'start':>12} {'value':>14} {'sigma':>10}  unit"]
         for e in self.estimates:
             note = "  at its limit" if e.at_limit else "" if np.isfinite(e.sigma) else "  not determined by the data"
@@ -148,6 +183,7 @@ class Fit(ComparedByFields):
             ):
                 held_out = "" if np.isnan(held) else f", on data held out {held:.4g} {unit}"
                 lines.append(f"residual of {name}{of}: {trained:.4g} {unit} rms{held_out}")
+        lines += [f"doubt: {doubt}" for doubt in self.doubts]
         return "\n".join(lines)
 
 
@@ -277,11 +313,15 @@ def problem_of(
 
 
 def _solved(problem: Problem, named: Literal["linear", "soft_l1"]) -> Fit:
-    """The fit, in passes: the residuals of each say how much its channels weigh in the next."""
-    loss = LOSSES[named]
-    x, records, weights = problem.start(), problem.records, problem.first_weights()
-    for record, (predicted, _) in zip(records, problem.predict(x), strict=True):
+    """The fit from where the model stands, which must move as what was measured did."""
+    for record, (predicted, _) in zip(problem.records, problem.predict(problem.start()), strict=True):
         _check_motion(record.experiment, predicted)
+    return solved_from(problem, problem.start(), named)
+
+
+def solved_from(problem: Problem, x: Array, named: Literal["linear", "soft_l1"]) -> Fit:
+    """The fit, in passes: the residuals of each say how much its channels weigh in the next."""
+    loss, records, weights = LOSSES[named], problem.records, problem.first_weights()
     channels = sum(len(record.experiment.channels) for record in records)
     alone = channels == 1 and not problem.plan.priors and isinstance(loss, Squared)  # where weights change nothing
     if not alone:

@@ -1,0 +1,144 @@
+"""Whether a fit ended at the lowest of several minima: fits that start elsewhere, and where they end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.identification.fitting.fit import ROUGH, Fit, solved_from, solved_problem
+from strainwave.identification.fitting.loss import LOSSES
+from strainwave.messages import listed
+
+Array = NDArray[np.float64]
+ELSEWHERE = 2.0  # largest factor between where a fit ended and where another starts
+STARTS = 8
+TRIALS = 15  # steps of a fit that starts elsewhere
+AS_GOOD = 9.0  # rise of the cost: what lies three standard deviations off, were the model linear
+APART = 5.0  # standard deviations: with a rise that small, no linear model has it
+ALIKE = 1e-3  # of a parameter: as near as fits end, where there is no noise
+
+
+@dataclass(frozen=True, eq=False)
+class End(ComparedByFields):
+    """Where fits ended that started at different places.
+
+    Attributes:
+        values: of the free parameters, by path
+        cost: rise above the least cost; where the model is linear the square of the distance in standard deviations
+        starts: how many ended there
+    """
+
+    values: Mapping[str, float]
+    cost: float
+    starts: int
+
+
+@dataclass(frozen=True, eq=False)
+class Minima(ComparedByFields):
+    """Where a fit ends, depending on where it starts.
+
+    Attributes:
+        best: the fit of the least cost; the one that was given, where none ended lower
+        ends: of the least cost first; the fit that was given is among them
+        units: of the free parameters, by path
+        lower: whether another start led to a lower cost
+    """
+
+    best: Fit
+    ends: tuple[End, ...]
+    units: Mapping[str, str]
+    lower: bool
+
+    @property
+    def rivals(self) -> tuple[End, ...]:
+        """Ends beside the best that explain the measurement about as well."""
+        return tuple(end for end in self.ends[1:] if end.cost < AS_GOOD)
+
+    def __str__(self) -> str:
+        count = sum(end.starts for end in self.ends)
+        first, *_ = self.ends
+        lines = [f"{first.starts} of {count} starts ended at {self._words(first)}"]
+        if self.lower:
+            lines.append("this is lower than where the fit ended: it had ended at a minimum that explains less; use `best`")
+        lines += [
+            f"{end.starts} ended at {self._words(end)}, which explains the measurement about as well: the data do not tell the "
+            "two apart, and no standard deviation counts it. Bound the parameters, or measure what tells them apart"
+            for end in self.rivals
+        ]
+        if first.starts == 1 and count > 1:
+            lines.append("no other start ended there: a lower minimum may be left; give more starts, or start nearer")
+        return "\n".join(lines)
+
+    def _words(self, end: End) -> str:
+        return listed([f"{path} = {value:.5g} {self.units[path]}" for path, value in end.values.items()])
+
+
+def minima(found: Fit, starts: int = STARTS, *, seed: int = 0) -> Minima:
+    """Starts a fit elsewhere, to see whether it ended at the lowest minimum, and whether another explains as much.
+
+    Each free parameter starts at up to twice or half of where the fit ended, at random. A drive that vibrates has a minimum at
+    each natural frequency that gains or loses a period over the record; one that sticks has many. Their residuals need not look
+    wrong, and standard deviations do not count other minima.
+
+    Args:
+        found: what `fit` found
+        starts: how many; each takes about as long as the fit did
+        seed: of the random numbers
+
+    Raises:
+        TypeError: `found` is no fit
+        ValueError: no start
+
+    >>> import strainwave as sw
+    >>> law = sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4)
+    >>> speed = np.linspace(1.0, 50.0, 60)
+    >>> torque = law.steady(speed) + 1e-4 * np.random.default_rng(0).normal(size=60)
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> found = sw.fit(sw.Gear(friction_input=law), table, ["friction_input.coulomb", "friction_input.viscous"])
+    >>> print(minima(found, 3))
+    4 of 4 starts ended at friction_input.coulomb = 0.019979 N.m, friction_input.viscous = 0.00030112 N.m.s/rad
+    """
+    starts, random = arguments.whole("starts", starts, 1), np.random.default_rng(arguments.whole("seed", seed, 0))
+    problem, given = solved_problem(found)
+    loss, unknowns = LOSSES[found.loss], found.plan.unknowns
+    weights = problem.weights(given, problem.first_weights(), loss)
+    reached = [given]
+    for _ in range(starts):
+        start = given.copy()
+        start[: len(unknowns)] *= ELSEWHERE ** random.uniform(-1.0, 1.0, len(unknowns))
+        with suppress(ValueError, FloatingPointError):  # a model that is not valid there
+            reached.append(problem.solve(start, weights, loss, ROUGH, trials=TRIALS))
+    costs = [problem.cost(x, weights, loss) for x in reached]
+    lower = min(costs) < costs[0] - 1.0  # a standard deviation
+    best = found
+    if lower:
+        best = solved_from(problem, reached[int(np.argmin(costs))], found.loss)
+        _, lowest = solved_problem(best)
+        weights = problem.weights(lowest, weights, loss)
+        reached[int(np.argmin(costs))] = lowest
+        costs = [problem.cost(x, weights, loss) for x in reached]
+    sigma = np.array([max(each.sigma, ALIKE * abs(each.value)) or 1.0 for each in best.estimates[: len(unknowns)]])
+    ends = _ends(np.array(reached)[:, : len(unknowns)], np.array(costs) - min(costs), sigma)
+    paths = [each.path for each in unknowns]
+    told = tuple(End(dict(zip(paths, x.tolist(), strict=True)), cost, count) for x, cost, count in ends)
+    return Minima(best, told, {each.path: each.unit for each in unknowns}, lower)
+
+
+def _ends(reached: Array, costs: Array, sigma: Array) -> list[tuple[Array, float, int]]:
+    """What was reached, its rise of cost, and how many starts led there: what lies near one of less cost is one with it."""
+    ends: list[tuple[Array, float, int]] = []
+    for x, cost in sorted(zip(reached, costs.tolist(), strict=True), key=lambda each: each[1]):
+        near = [bool(np.all(np.abs(x - end) < APART * sigma)) for end, *_ in ends]
+        if any(near):
+            place = near.index(True)
+            end, least, count = ends[place]
+            ends[place] = end, least, count + 1
+        else:
+            ends.append((x, cost, 1))
+    return ends
