@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.labels import Content, Label, Source, labels_of, seconds_since_first, unreadable
+from strainwave.files.text_layout import CLOCK, NUMBER, lines_above, lists_apart, seconds_of_clock, with_units
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -24,10 +25,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 TITLE = "# title: "
-
-# Sign, digits, one decimal mark (group 1), exponent.
-_NUMBER = re.compile(r"[+-]?(?=[.,]?\d)\d*([.,]?)\d*(?:[eE][+-]?\d+)?", re.ASCII)
-
 
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
 NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
@@ -50,6 +47,8 @@ def open_csv(path: str | Path) -> CsvTable:
     title = re.match(TITLE.encode() + rb"([^\n]*)", data)
     comment = re.match(rb"(?:(?:#[^\n]*| *)\n)*?#([^\n]*)\n(?!#)", data)
     data = _blank_comments(data)
+    above_it = data[: lines_above(data)]
+    data = re.sub(rb"[^\n]+", b"", above_it) + data[len(above_it) :]
     header = re.match(rb"\n*([^\n]+)(?:\n+([^\n]+))?", data)
     if not header:
         raise ValueError(f"{file} is empty")
@@ -63,15 +62,21 @@ def open_csv(path: str | Path) -> CsvTable:
         first = re.sub(r" (?=[\[(])", "", header[1].decode())
     labels = _labels(f"{file} line {line}", first, delimiter)
     begins = header.end(1)
-    numeric = [bool(_NUMBER.fullmatch(label.text)) for label in labels]
+    numeric = [bool(NUMBER.fullmatch(label.text)) for label in labels]
     above = _labels_above(comment, len(labels), delimiter) if any(numeric) else None
     if above or all(numeric):
         begins = header.start(1)
         labels = above or [Label(f"column_{number}", f"column_{number}", None) for number in range(1, len(labels) + 1)]
-    body = memoryview(data)[begins:]
+    below = re.match(rb"\n*([^\n]+)", memoryview(data)[begins:])
+    if below and (with_units_below := with_units(labels, below[1].decode().split(delimiter))):
+        end = begins + below.end(1)
+        labels, begins, line = with_units_below, end, line + data.count(b"\n", begins, end)
+    labels, data = lists_apart(labels, data[begins:], delimiter)
+    body = memoryview(data)
     if not re.search(rb"[^\n]", body):
         raise ValueError(f"{file} has a header but no rows")
-    return CsvTable(file, title[1].decode() if title else "", delimiter, labels, body, line)
+    title_there = title[1].decode() if title else ""
+    return CsvTable(file, title_there, delimiter, labels, body, line, above_it.count(b"\n"))
 
 
 def _checked_text(file: str, data: bytes) -> bytes:
@@ -101,7 +106,7 @@ def _delimiter(header: str, row: str) -> str:
         return found
     cells = row.split() if row else header.split()
     names = re.sub(r" +(?=[\[(])", "", header).split()
-    apart = len(cells) > 1 and len(names) == len(cells) and all(_NUMBER.fullmatch(cell) for cell in cells)
+    apart = len(cells) > 1 and len(names) == len(cells) and all(NUMBER.fullmatch(cell) for cell in cells)
     return " " if apart and '"' not in header else ","
 
 
@@ -122,14 +127,17 @@ def _labels_above(comment: re.Match[bytes] | None, count: int, delimiter: str) -
         return None
     text = re.sub(r"\s+(?=[\[(])", "", comment[1].decode().strip())
     names = [each.strip() for each in (text.split() if delimiter == " " else text.split(delimiter))]
-    if len(names) != count or not all(names) or any(_NUMBER.fullmatch(name) for name in names):
+    if len(names) != count or not all(names) or any(NUMBER.fullmatch(name) for name in names):
         return None
     return labels_of(names)
 
 
 @dataclass(frozen=True)
 class CsvTable:
-    """A text table whose rows are still text; `line` is the line its header stands in, `file` how messages call it."""
+    """A text table whose rows are still text; `line` is the line its header stands in, `file` how messages call it.
+
+    `above` lines stand above the header that are no part of the table.
+    """
 
     file: str
     title: str
@@ -137,11 +145,14 @@ class CsvTable:
     labels: Sequence[Label]
     body: memoryview
     line: int
+    above: int = 0
 
     def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
         """The columns wanted; a cell that is no number is refused with its place."""
         import pyarrow
 
+        if self.above:
+            raise ValueError(f"{self.file}: {self._of_header()}; delete what stands above it, or begin those lines with #")
         self._check_quotes()
         for mark in "." if self.delimiter == "," else ".,":
             try:
@@ -167,6 +178,8 @@ class CsvTable:
         import pyarrow
 
         whole, remarks = self._without_torn_end()
+        if self.above:
+            remarks.insert(0, f"{self._of_header()}; what stands above it is left out")
         contents = self.contents
         dates = [source for source in sources if contents[source.position] == "dates"]
         whole._check_quotes()
@@ -177,6 +190,9 @@ class CsvTable:
                 reason = f": {one_line(str(error))}"
         numbers = [source for source in sources if source not in dates]
         raise ValueError(f"{self.file}{whole._fault(numbers, NOTHING) or reason}")
+
+    def _of_header(self) -> str:
+        return f"its header is line {self.above + 1}"
 
     def _without_torn_end(self) -> tuple[CsvTable, list[str]]:
         """This table without its last row, if that has fewer cells than the header, and the others have not."""
@@ -236,15 +252,17 @@ class CsvTable:
             ),
         )
         seconds = {source.name for source in dates}
-        found = {name: table.column(key).to_numpy() for name, key in keys.items()}
-        return {name: seconds_since_first(values) if name in seconds else values for name, values in found.items()}
+        found = {name: table.column(key) for name, key in keys.items()}
+        return {name: _seconds(column) if name in seconds else column.to_numpy() for name, column in found.items()}
 
     def _date_type(self, source: Source) -> pyarrow.DataType:
-        """A time stamp with the zone, if the first one has one."""
+        """A time stamp, with the zone, if the first one has one; a text, where it is none that Arrow reads."""
         import pyarrow
 
         cells = (self._cells(line, text)[source.position].strip(" \t") for line, text in islice(self._rows(), _SEEN))
         written = next(cell for cell in cells if cell not in NOTHING)
+        if not _DATE.fullmatch(written):
+            return pyarrow.string()
         return pyarrow.timestamp("ns", "UTC" if re.search(r"(?:Z|[+-]\d\d:?\d\d)$", written) else None)
 
     def _fault(self, sources: Sequence[Source], nothing: Sequence[str] = ()) -> str | None:
@@ -258,7 +276,7 @@ class CsvTable:
                 return f" line {line}: {self._miscounted(cells)}"
             for source in sources:
                 cell = cells[source.position].strip(" \t")
-                number = _NUMBER.fullmatch(cell)
+                number = NUMBER.fullmatch(cell)
                 if cell in nothing:
                     continue
                 if not number or number[1] not in marks:
@@ -286,9 +304,19 @@ class CsvTable:
 
 
 def _content(cells: Sequence[str]) -> Content:
-    if cells and all(_NUMBER.fullmatch(cell) for cell in cells):
+    if cells and all(NUMBER.fullmatch(cell) for cell in cells):
         return "numbers"
-    return "dates" if cells and all(_DATE.fullmatch(cell) for cell in cells) else "other"
+    is_date = cells and any(all(form.fullmatch(cell) for cell in cells) for form in (_DATE, CLOCK))
+    return "dates" if is_date else "other"
+
+
+def _seconds(column: pyarrow.ChunkedArray) -> Array:
+    """Of dates or times of day, since the first that is written."""
+    import pyarrow
+
+    if pyarrow.types.is_string(column.type):
+        return seconds_of_clock(column.to_pylist())
+    return seconds_since_first(column.to_numpy())
 
 
 def _quotation_fault(text: memoryview, delimiter: str) -> int | None:
@@ -304,6 +332,6 @@ def _quotation_fault(text: memoryview, delimiter: str) -> int | None:
 def _not_a_number(text: str, marks: str) -> str:
     if not text:
         return "the cell is empty; every cell must hold a number"
-    if _NUMBER.fullmatch(text) and len(marks) == 1:
+    if NUMBER.fullmatch(text) and len(marks) == 1:
         return f'{quoted(text)} is not a number with the decimal mark "{marks}"'
     return f"{quoted(text)} is not a number"

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -122,4 +123,57 @@ def test_dates_are_seconds_since_the_first(tmp_path: Path) -> None:
     opened = open_table(path)
     assert opened.contents == ["dates", "numbers"]
     columns, _ = opened.measured([Source(0, "when", "time", "s")])
+    assert np.array_equal(columns["time"], [0.0, np.nan, 1.75], equal_nan=True)
+
+
+@FOLDER
+@given(grids.filter(lambda rows: len(rows[0]) > 1), st.sampled_from([",", ";", "\t"]), st.booleans())
+def test_units_below_the_header_and_lines_above_it(
+    tmp_path: Path, rows: list[list[float]], delimiter: str, above: bool
+) -> None:
+    """As recorders write them: what it is and when above, units below the names."""
+    count = len(rows[0])
+    header = [delimiter.join(NAMES[:count]), delimiter.join(UNITS[:count])]
+    before = ["Recorder: X 100", "Date: 2026-03-01 10:00", ""] if above else []
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join([*before, *header, *rows_as(rows, delimiter, ".")]) + "\n")
+    opened = open_table(path)
+    assert [(label.name, label.unit) for label in opened.labels] == list(zip(NAMES, UNITS, strict=True))[:count]
+    columns, remarks = opened.measured([Source(i, NAMES[i], NAMES[i], UNITS[i]) for i in range(count)])
+    assert [columns[NAMES[i]].tolist() for i in range(count)] == [[row[i] for row in rows] for i in range(count)]
+    assert remarks == (["its header is line 4; what stands above it is left out"] if above else [])
+    if above:
+        with pytest.raises(ValueError, match="its header is line 4; delete what stands above it"):
+            Recording.read(path)
+    else:
+        assert Recording.read(path, {"x": NAMES[1]}).unit("x") == UNITS[1]
+
+
+@pytest.mark.parametrize("written", ['"[{}, {}]"', "[{} {}]", "\"array('d', [{}, {}])\"", '"({}, {})"'])
+def test_lists_in_cells_are_columns(tmp_path: Path, written: str) -> None:
+    path = tmp_path / "table.csv"
+    rows = [f"{row},{written.format(row + 0.1, -row)},{row + 0.5}" for row in range(3)]
+    path.write_text("\n".join(["time,position,note (x)", *rows]) + "\n")
+    opened = open_table(path)
+    assert [label.name for label in opened.labels] == ["time", "position_1", "position_2", "note (x)"]
+    columns, _ = opened.measured([Source(place, "", str(place), "1") for place in range(4)])
+    assert columns["1"].tolist() == [0.1, 1.1, 2.1]
+    assert columns["2"].tolist() == [0.0, -1.0, -2.0]
+    assert columns["3"].tolist() == [0.5, 1.5, 2.5]
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        ("23:59:59,5", "", "00:00:01,25"),
+        ("31.01.2026 23:59:59,5", "", "01.02.2026 00:00:01,25"),
+        ("2026/01/31 23:59:59.5", "", "2026/02/01 00:00:01.25"),
+    ],
+)
+def test_times_of_day_are_seconds_since_the_first(tmp_path: Path, written: tuple[str, ...]) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join(["Zeit;c [1]", *(f"{text};{place}" for place, text in enumerate(written))]) + "\n")
+    opened = open_table(path)
+    assert opened.contents == ["dates", "numbers"]
+    columns, _ = opened.measured([Source(0, "Zeit", "time", "s")])
     assert np.array_equal(columns["time"], [0.0, np.nan, 1.75], equal_nan=True)

@@ -1,0 +1,124 @@
+"""What programs write around a table of text: lines above its header, units below it, lists in one cell, times of day."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from datetime import date
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.labels import Label, is_unit
+
+Array = NDArray[np.float64]
+
+NUMBER = re.compile(
+    r"[+-]?(?=[.,]?\d)\d*([.,]?)\d*(?:[eE][+-]?\d+)?", re.ASCII
+)  # sign, digits, one decimal mark (group 1), exponent
+CLOCK = re.compile(  # a time of day, or with a date as controllers and loggers write it
+    r"(?:(?P<day>\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})[ T])?(?P<h>\d\d?):(?P<m>\d\d):(?P<s>\d\d(?:[.,]\d{1,9})?)", re.ASCII
+)
+DAY = 86400.0  # s
+SEEN = 100  # lines that show what the rows of a table look like
+_NO_UNIT = ("", "-", "1")
+_LIST = re.compile(rb"""["']?(?:array\((?:'d', *)?)?[\[(](\s*(?:[-+.\d']|nan)[^\[\]()"\n]*)[\])]{1,2}["']?""")
+
+
+def lines_above(data: bytes) -> int:
+    """How many bytes stand above the header of a table, as a recorder writes what it is and when; 0 where it is the first line.
+
+    >>> lines_above(b"Recorder: X\\n\\ntime,torque\\n0,1\\n1,2\\n")
+    13
+    """
+    lines = [(match.start(), match[0].decode()) for match in islice(re.finditer(rb"[^\n]+", data), SEEN)]
+    for mark in "\t;,":
+        cells = [[cell.strip(' "') for cell in text.split(mark)] for _, text in lines]
+        usual = len(cells[-1]) if cells else 0
+        if usual < 2:
+            continue
+        if len(cells[0]) == usual:
+            return 0
+        for place, names in enumerate(cells[:-1]):
+            below = [each for each in cells[place + 1 : place + 3] if len(each) == usual]
+            if (
+                len(names) == usual
+                and all(map(_is_name, names))
+                and any(NUMBER.fullmatch(each[0]) or NUMBER.fullmatch(each[1]) for each in below)
+            ):
+                return lines[place][0]
+    return 0
+
+
+def _is_name(cell: str) -> bool:
+    return bool(cell) and not NUMBER.fullmatch(cell)
+
+
+def with_units(labels: Sequence[Label], cells: Sequence[str]) -> list[Label] | None:
+    """The labels with the units in the row below them; None where that holds anything else."""
+    units = [re.fullmatch(r"[\[(]?([^\[\]()]*)[\])]?", cell.strip(' "')) for cell in cells]
+    texts = [match[1] if match else "?" for match in units]
+    if len(texts) != len(labels) or not all(text in _NO_UNIT or is_unit(text) for text in texts) or set(texts) <= {*_NO_UNIT}:
+        return None
+    return [
+        label if text in _NO_UNIT else Label(f"{label.text} [{text}]", label.name, label.unit or text)
+        for label, text in zip(labels, texts, strict=True)
+    ]
+
+
+def lists_apart(labels: Sequence[Label], body: bytes, delimiter: str) -> tuple[list[Label], bytes]:
+    """Labels and rows with a column for each number of cells that hold lists, as `"[0.1, 0.2]"`.
+
+    >>> labels, body = lists_apart([Label("t", "t", None), Label("q", "q", None)], b'0,"[0.1, 0.2]"\\n', ",")
+    >>> [label.name for label in labels], body
+    (['t', 'q_1', 'q_2'], b'0,0.1,0.2\\n')
+    """
+    first = re.search(rb"[^\n]+", body)
+    if first is None or not _LIST.search(first[0]):
+        return list(labels), body
+    counts = [len(_items(match[1])) for match in _LIST.finditer(first[0])]
+    cells = _LIST.sub(b"\0", first[0]).split(delimiter.encode())
+    if not counts or len(cells) != len(labels):
+        return list(labels), body
+    left, found = iter(counts), list[Label]()
+    for label, cell in zip(labels, cells, strict=True):
+        if cell.strip() != b"\0":
+            found.append(label)
+            continue
+        for number in range(1, next(left) + 1):
+            name = f"{label.name}_{number}"
+            found.append(Label(name, name, label.unit))
+    return found, _LIST.sub(lambda match: delimiter.encode().join(_items(match[1])), body)
+
+
+def _items(text: bytes) -> list[bytes]:
+    return re.split(rb"[,;\s]+", text.strip())
+
+
+def seconds_of_clock(texts: Sequence[str | None]) -> Array:
+    """Times of day as seconds since the first that is written, over midnight too; nan where there is none.
+
+    >>> seconds_of_clock(["23:59:59,5", None, "00:00:00.25"]).tolist()
+    [0.0, nan, 0.75]
+    """
+    found = np.full(len(texts), np.nan)
+    for row, text in enumerate(texts):
+        if text is not None and (match := CLOCK.fullmatch(text.strip())):
+            seconds = 3600.0 * int(match["h"]) + 60.0 * int(match["m"]) + float(match["s"].replace(",", "."))
+            found[row] = DAY * _day(match["day"]) + seconds
+    there = np.isfinite(found)
+    if there.any():
+        later = np.cumsum(np.where(np.diff(found[there], prepend=found[there][0]) < -0.5 * DAY, DAY, 0.0))
+        found[there] += later - found[there][0]
+    return found
+
+
+def _day(text: str | None) -> int:
+    if text is None:
+        return 0
+    numbers = [int(part) for part in re.split(r"[-/.]", text)]
+    try:
+        return date(*(numbers if numbers[0] > 31 else numbers[::-1])).toordinal()
+    except ValueError:
+        return 0
