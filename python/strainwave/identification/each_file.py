@@ -53,10 +53,20 @@ def fitted(file: Recognised, known: Known) -> tuple[Finding, Known]:
         "breakaway": breakaway,
     }
     if file.kind not in of_kind:
-        do = "does it" if len(file.unused) == 1 else "do they"
-        hint = f" (columns not used: {listed(file.unused)}: {do} hold texts?)" if file.unused else ""
-        raise ValueError(f"torque without motion tells orders alone: strainwave orders finds them{hint}")
+        raise ValueError(_without_motion(file))
     return of_kind[file.kind](file, known)
+
+
+def _without_motion(file: Recognised) -> str:
+    """What to do with a torque or a current that has no motion beside it."""
+    do = "does it" if len(file.unused) == 1 else "do they"
+    hint = f" (columns not used: {listed(file.unused)}: {do} hold texts?)" if file.unused else ""
+    if {"angle", "speed", *ANGLES} & {*file.recording.names, *file.constants}:
+        return f"torque without motion tells orders alone: strainwave orders finds them{hint}"
+    return (
+        "torque alone tells nothing of the gear: record an angle or a speed with it, or, if the shaft turned at one speed, give "
+        f"that with --constant speed='100 1/min'{hint}"
+    )
 
 
 def _friction(file: Recognised, known: Known) -> tuple[Finding, Known]:
