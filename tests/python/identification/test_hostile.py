@@ -97,7 +97,7 @@ REFUSED: dict[str, tuple[Make, str]] = {
     "no file": (lambda folder: folder / "none.csv", "cannot be read: No such file"),
     "an empty folder": (folder_of(empty=True), r"holds no file that may be a measurement, as \*\.csv"),
     "texts among numbers": (text("texts.csv", with_texts()), r"columns not used: speed \[rad/s\]: does it hold texts"),
-    "torque alone": (text("torque.csv", "time [s],torque [N.m]\n" + "".join(f"{t},{t % 7}\n" for t in range(50))), "--constant speed="),
+    "torque alone": (text("torque.csv", "time [s],torque [N.m]\n" + "0,1\n1,2\n2,1\n" * 20), "--constant speed="),
     "a constant current": (log(current=np.full(len(CURRENT), 1.0)), "current never changes: a set value, a limit"),
     "a shaft that stands": (log(input_angle=np.full(len(ANGLE), 1.0)), "the angle never changes"),
     "a log one way": (log(input_angle=one_way()), "record motion both ways"),
