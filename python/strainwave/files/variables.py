@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,41 +16,78 @@ from strainwave.messages import listed
 Array = NDArray[np.float64]
 
 MANY = 100  # columns of a matrix: more are no channels
+DEPTH = 6  # of structures in structures: a bound for the work that a file from outside can cause
+NUMBERS_OF_SCOPE = ".signals.values"  # as Simulink saves what it shows, with the time beside it
+
+
+class Unreadable(NamedTuple):
+    """What stands in a file, but only the program reads that wrote it."""
+
+    what: str
 
 
 def table_of(file: str, variables: Iterable[tuple[str, Any]]) -> ArrayTable:
     """The series that are of the length most of them have.
 
     A series is a variable, or a field of a structure, as `data.q`; a matrix holds several, `q_1`, `q_2` …, and one without a
-    name `column_1`, `column_2` … Series of another length are told of and left out.
+    name `column_1`, `column_2` … Of structures that are alike, as of several runs, the longest is taken. Series of another
+    length are told of and left out.
 
     Raises:
         ValueError: there is no series of numbers
     """
     series: dict[str, Array] = {}
     singles: dict[str, float] = {}
+    left_out: list[str] = []
     for name, value in variables:
-        for part, values in _series(name, value):
+        for part, values in _series(name, value, left_out):
             if values.size == 1:
                 singles[part] = float(values[0])
             else:
                 series[part] = values
     if not series:
-        raise ValueError(f"{file} holds no series of numbers")
+        raise ValueError("; ".join([f"{file} holds no series of numbers", *left_out]))
     length, _ = max(Counter(len(values) for values in series.values()).items(), key=lambda each: (each[1], each[0]))
     kept = {name: values for name, values in series.items() if len(values) == length}
     others = [f"{name} ({len(values)})" for name, values in series.items() if len(values) != length]
-    left_out = [f"of another length than {length}, and left out: {listed(others)}"] if others else []
+    left_out += [f"of another length than {length}, and left out: {listed(others)}"] if others else []
     return ArrayTable(file, "", [label_of(name) for name in kept], list(kept.values()), left_out, singles)
 
 
-def _series(name: str, value: Any, depth: int = 1) -> Iterator[tuple[str, Array]]:
+def _series(name: str, value: Any, left_out: list[str], depth: int = DEPTH) -> Iterator[tuple[str, Array]]:
     """The series that a variable holds."""
-    if isinstance(value, Mapping):
+    if isinstance(value, Unreadable):
+        left_out.append(f"{name} is left out: {value.what}")
+    elif isinstance(value, Mapping):
+        for key, each in value.items() if depth else ():
+            yield from _series(f"{name}.{key}" if name else str(key), each, left_out, depth - 1)
+    elif isinstance(value, list) or (isinstance(value, np.ndarray) and value.dtype == object):
         if depth:
-            for key, each in value.items():
-                yield from _series(f"{name}.{key}", each, depth - 1)
+            yield from _several(name, list(value.ravel()) if isinstance(value, np.ndarray) else value, left_out, depth - 1)
+    else:
+        yield from _matrix(name.removesuffix(NUMBERS_OF_SCOPE), value)
+
+
+def _several(name: str, values: Sequence[Any], left_out: list[str], depth: int) -> Iterator[tuple[str, Array]]:
+    """The series in a list: of structures that are alike the longest, of signals each by its label, else each by its number."""
+    structures = [each for each in values if isinstance(each, Mapping)]
+    if len(structures) > 1 and len({tuple(each) for each in structures}) == 1 and "values" not in structures[0]:
+        read = [list(_series(name, each, [], depth)) for each in structures]
+        longest = max(range(len(read)), key=lambda place: max((len(found) for _, found in read[place]), default=0))
+        taken = f"of which number {longest + 1} is taken, the first of the longest"
+        left_out.append(f"{name} holds {len(read)} recordings, {taken}; save each in a file of its own")
+        yield from read[longest]
         return
+    for number, each in enumerate(values, start=1):
+        if isinstance(each, Mapping) and "values" in each:
+            label = each.get("label")
+            yield from _matrix(label if isinstance(label, str) and label else f"{name}_{number}", each["values"])
+        else:
+            yield from _series(name if len(values) == 1 else f"{name}_{number}", each, left_out, depth)
+
+
+def _matrix(name: str, value: Any) -> Iterator[tuple[str, Array]]:
+    """The series that an array of numbers holds."""
     array = np.asarray(value)
     if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size == 0:
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import struct
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -93,6 +94,76 @@ def test_a_mat_file_is_a_recording_where_units_are_given(tmp_path: Path) -> None
     path = tmp_path / "log.mat"
     savemat(path, {"t": TIME, "q": np.sin(TIME)})
     assert Recording.read(path, {"time": "t", "angle": "q"}, {"time": "s", "angle": "rad"}).time.tolist() == TIME.tolist()
+
+
+def structures(values: list[dict[str, Any]]) -> Any:
+    """A row of structures, as MATLAB has it."""
+    found = np.empty((1, len(values)), [(name, "O") for name in values[0]])
+    for place, each in enumerate(values):
+        found[0, place] = tuple(each.values())
+    return found
+
+
+def test_structures_of_structures_cells_and_scopes(tmp_path: Path) -> None:
+    runs = [{"t": TIME[:count], "q": np.sin(TIME[:count])} for count in (20, 50, 50)]
+    cells = np.empty((1, 3), object)
+    cells[0] = runs
+    for name, variable in (("runs", structures(runs)), ("runs", cells)):
+        savemat(tmp_path / "log.mat", {name: variable})
+        values, remarks = read(tmp_path / "log.mat", "runs.t", "runs.q")
+        assert values == [TIME.tolist(), np.sin(TIME).tolist()]
+        told = "runs holds 3 recordings, of which number 2 is taken, the first of the longest; save each in a file of its own"
+        assert remarks == [told]
+    savemat(tmp_path / "log.mat", {"data": {"joint2": {"meas": {"q": TIME}}, "t": TIME}})
+    assert read(tmp_path / "log.mat", "data.joint2.meas.q", "data.t")[0] == [TIME.tolist()] * 2
+    signals = structures([{"values": np.sin(TIME), "label": "q"}, {"values": np.cos(TIME), "label": "tau"}])
+    savemat(
+        tmp_path / "log.mat",
+        {"ScopeData": {"time": TIME, "signals": signals}, "i": {"time": TIME, "signals": {"values": TIME}}},
+    )
+    labels = [label.name for label in open_table(tmp_path / "log.mat").labels]
+    assert labels == ["ScopeData.time", "q", "tau", "i.time", "i"]
+
+
+def test_groups_of_groups_texts_and_objects_of_version_7_3(tmp_path: Path) -> None:
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        file["robot/arm/time"], file["robot/arm/q"] = TIME, np.sin(TIME)
+        file["note"] = np.frombuffer(b"arm", np.uint8).astype(np.uint16)
+        file["note"].attrs["MATLAB_class"] = np.bytes_("char")
+        file["table"] = np.arange(6, dtype=np.uint32)
+        file["table"].attrs.update(MATLAB_class=np.bytes_("timetable"), MATLAB_object_decode=3)
+        file["#refs#/a"], file["#refs#/b"] = TIME, np.cos(TIME)
+        references = np.array([file["#refs#/a"].ref, file["#refs#/b"].ref], h5py.ref_dtype)
+        file.create_dataset("cells", data=references)
+    values, remarks = read(path, "robot.arm.time", "robot.arm.q", "cells_2")
+    assert values == [TIME.tolist(), np.sin(TIME).tolist(), np.cos(TIME).tolist()]
+    (told,) = remarks
+    assert told.startswith(
+        "table is left out: an object of MATLAB (timetable), which MATLAB alone reads: save its numbers instead"
+    )
+
+
+def element(kind: int, content: bytes) -> bytes:
+    """Of a MAT file of version 5, with its tag."""
+    return struct.pack("<2I", kind, len(content)) + content.ljust(-(-len(content) // 8) * 8, b"\0")
+
+
+def test_a_mat_file_of_an_object_says_what_to_do(tmp_path: Path) -> None:
+    """An object of class timeseries, as MATLAB's description of the format of version 5 has it (classes 17 and 13)."""
+    numbers = [
+        element(6, struct.pack("<2I", 13, 0)),
+        element(5, struct.pack("<2i", 1, 1)),
+        element(1, b""),
+        element(6, bytes(4)),
+    ]
+    texts = [element(1, text) for text in (b"log", b"MCOS", b"timeseries")]
+    whole = [element(6, struct.pack("<2I", 17, 0)), *texts, element(14, b"".join(numbers))]
+    head = b"MATLAB 5.0 MAT-file, written by a test".ljust(124) + b"\x00\x01IM"
+    (tmp_path / "log.mat").write_bytes(head + element(14, b"".join(whole)))
+    told = r"holds no series of numbers; log is left out: an object of MATLAB \(timeseries\), .* save its numbers instead"
+    with pytest.raises(ValueError, match=told):
+        open_table(tmp_path / "log.mat")
 
 
 @pytest.mark.parametrize("content", [b"", b"MATLAB 5.0 MAT-file", b"x" * 500])

@@ -58,15 +58,16 @@ COMMANDED = (
     "sollwert", "vorgabe", "consigne", "consigna", "riferimento", "referencia", "goal", "computed", "cmptd", "planned",
 )  # fmt: skip
 NEUTRAL = (
-    "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data", "sensor",
-    "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the", "rig", "fb",
-    "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady",
+    "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data",
+    "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the", "rig",
+    "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady",
 )  # fmt: skip
 # What is no measurement of the quantity beside it.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
-    "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "estimate", "est", "estimated", "tool", "gripper", "power", "id",
-    "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model", "simulated", "predicted", "rne",
+    "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power", "id",
+    "est", "estimated", "estimate", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model", "simulated", "predicted",
+    "rne",
 )  # fmt: skip
 # Symbols that say two things at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {
@@ -74,8 +75,9 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "dqdes": ("dq", "desired"), "taudes": ("tau", "desired"), "dqm": ("dq", "motor"), "dql": ("dq", "link"),
     "taum": ("tau", "motor"), "tauj": ("tau", "joint"), "thetam": ("theta", "motor"), "thetal": ("theta", "link"),
     "im": ("i", "motor"), "um": ("u", "motor"), "jpos": ("joint", "pos"), "jvel": ("joint", "vel"), "jtor": ("joint", "torque"),
-    "qmsr": ("q", "measured"), "qcmd": ("q", "command"), "aipos": ("axis", "actual", "pos"), "aspos": ("axis", "soll", "pos"),
-    "macur": ("motor", "axis", "current"), "jtau": ("joint", "tau"), "jcur": ("joint", "current"), "mpos": ("motor", "pos"), "mvel": ("motor", "vel"),
+    "jtau": ("joint", "tau"), "jcur": ("joint", "current"), "mpos": ("motor", "pos"), "mvel": ("motor", "vel"),
+    "qmsr": ("q", "measured"), "qcmd": ("q", "command"), "macur": ("motor", "axis", "current"),
+    "aipos": ("axis", "actual", "pos"), "aspos": ("axis", "soll", "pos"),
 }  # fmt: skip
 BEHIND = {"m": "motor", "l": "link", "d": "desired", "r": "reference", "a": "actual"}  # an index behind a symbol, as in q_m
 FAR = 2  # words behind a symbol at which its index stands, as in tau_J_d
@@ -124,7 +126,7 @@ def meaning(label: Label) -> Meaning | None:
     words = words_of(name)
     if any(word in OTHERS for word in words):
         return None
-    quantity, at = _quantity(words, unit)
+    quantity, at = _of_last_part(name, words, unit) or _quantity(words, unit)
     if quantity is None and any(word in COMMANDED for word in words):
         quantity = "angle"
     if quantity is None or (unit is not None and not measures(unit, UNITS[quantity]) and not counts(unit)):
@@ -139,6 +141,14 @@ def meaning(label: Label) -> Meaning | None:
         unit or next((_UNIT_NAMES[word] for word in words if word in _UNIT_NAMES), None),
         at >= 0 and words[at] in ROBOT,
     )
+
+
+def _of_last_part(name: str, words: list[str], unit: str | None) -> tuple[Quantity, int] | None:
+    """The quantity that the last part of a path names, as q in `robot.arm.q_1`, and the place of its word."""
+    last = words_of(re.split(r"[./]", name)[-1])
+    quantity, at = _quantity(last, unit)
+    before = len(words) - len(last)
+    return (quantity, before + at) if quantity is not None and before > 0 and at >= 0 and words[before:] == last else None
 
 
 def _of_unit_alone(name: str) -> Meaning | None:

@@ -52,6 +52,8 @@ NAMES = {
     "joint_angles_1": Meaning("angle", "output", which="1"),
     "Position in rad": Meaning("angle", unit="rad"),
     "Strom_A": Meaning("current", unit="A"),
+    "robot.arm.q_1": Meaning("angle", "output", which="1", robot=True),
+    "log.t": Meaning("time", which="log"),
     "Sensor X [N.m]": Meaning("torque", which="x", unit="N.m"),
 }
 NO_NAMES = (
