@@ -24,7 +24,7 @@ from strainwave.report import identify_figures as plots
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
-from strainwave.report.typeset import fixed, number, plain_symbols, quantity, uncertain, unit
+from strainwave.report.typeset import fixed, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -277,7 +277,7 @@ def _untold(found: Identified) -> list[tuple[str, str, list[dict[str, str]]]]:
         for told in finding.told:
             if told.why or not np.isfinite(told.sigma):
                 why = told.why or "the file does not determine it"
-                value = f"{uncertain(told.value, told.sigma)} {unit(told.unit)}".strip()
+                value = uncertain_quantity(told.value, told.sigma, told.unit)
                 number_there = {"name": name_of(told), "path": told.path, "value": value}
                 untold.setdefault((finding.name, why), []).append(number_there)
     return [(*place, numbers) for place, numbers in untold.items()]

@@ -22,7 +22,7 @@ from strainwave.report import orders_figures as plots
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.rig_files import results_json
-from strainwave.report.typeset import number, quantity, uncertain, unit
+from strainwave.report.typeset import number, quantity, uncertain, uncertain_quantity
 
 LINE = 110  # letters of a line on a terminal
 STRIP = 72  # letters of a spectrum on a terminal
@@ -66,6 +66,7 @@ def _section(found: OrdersFound, place: int) -> dict[str, Any]:
             "title": f"{ripple.column.replace('_', ' ')} over the angle of the {ripple.side}",
             "facts": _facts(ripple),
             "lines": [_line(each, ripple) for each in ripple.lines],
+            "scaled": ripple.side == "output" and any(each.per_input is not None for each in ripple.lines),
             "candidates": [_candidate(each.ratio, each.share, each.matched) for each in ripple.candidates],
             "spectrum": Markup(plots.spectrum_figure(ripple, f"spectrum-{place}")),
             "map": Markup(drawn) if (drawn := plots.map_figure(ripple, f"map-{place}")) else "",
@@ -103,7 +104,7 @@ def _error(error: TransmissionError, name: str) -> dict[str, Any]:
 
 
 def _quantity(measured: Any) -> str:
-    return "" if measured is None else f"{uncertain(measured.value, measured.sigma)} {unit(measured.unit)}".strip()
+    return "" if measured is None else uncertain_quantity(measured.value, measured.sigma, measured.unit)
 
 
 def _chance(probability: float) -> str:
@@ -128,7 +129,7 @@ def _line(line: RippleLine, ripple: Ripple) -> dict[str, str]:
         "order": order,
         "per_input": number(line.per_input, 5) if line.per_input is not None and ripple.side == "output" and order else "",
         "frequency": "" if line.frequency is None else f"{number(line.frequency, 4)} Hz",
-        "amplitude": f"{uncertain(line.amplitude, line.sigma)} {unit(ripple.unit)}",
+        "amplitude": uncertain_quantity(line.amplitude, line.sigma, ripple.unit),
         "forward": "" if line.forward is None else quantity(line.forward, ripple.unit),
         "backward": "" if line.backward is None else quantity(line.backward, ripple.unit),
         "alarm": _chance(line.false_alarm),
@@ -184,7 +185,7 @@ def _error_lines(error: TransmissionError) -> Iterator[str]:
     if error.lost_motion is not None:
         yield f"  lost motion, backward against forward: {_quantity(error.lost_motion)}"
     if error.windup is not None:
-        yield f"  twist by {'torque' if 'N' in error.windup.unit else 'current'}: {_quantity(error.windup)}"
+        yield f"  wind-up: {_quantity(error.windup)}"
     if error.natural_frequency is not None:
         yield f"  output vibrates at {_quantity(error.natural_frequency)} with the input held"
 
@@ -200,7 +201,7 @@ def _ripple_lines(ripple: Ripple) -> Iterator[str]:
     yield f"    {number(ripple.lowest, 3):<{STRIP // 2}}{number(ripple.highest, 4):>{STRIP - STRIP // 2}}"
     for line in ripple.lines:
         place = _place(line)
-        text = f"    {KINDS[line.kind]} {place}: {uncertain(line.amplitude, line.sigma)} {unit(ripple.unit)}"
+        text = f"    {KINDS[line.kind]} {place}: {uncertain_quantity(line.amplitude, line.sigma, ripple.unit)}"
         if line.forward is not None and line.backward is not None and line.kind != "time":
             text += f"; forward {quantity(line.forward, ripple.unit)}, backward {quantity(line.backward, ripple.unit)}"
         if parts := list(_parts(line, ripple.unit)):

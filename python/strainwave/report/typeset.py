@@ -123,6 +123,16 @@ def fixed(value: float, places: int) -> str:
     return f"{round(value, places) + 0.0:.{max(places, 0)}f}".replace("-", "−")
 
 
+def uncertain_quantity(value: float, sigma: float, of: str) -> str:
+    """A value with its standard deviation and unit, scaled by a prefix where that reads better.
+
+    >>> uncertain_quantity(1.2e-5, 1.4e-5, "rad"), uncertain_quantity(-340.7e-6, 2.2e-6, "rad/A")
+    ('12 ± 14 µrad', '−340.7 ± 2.2 µrad/A')
+    """
+    power = prefix_power(max(abs(value), sigma) if math.isfinite(sigma) else value, of)
+    return f"{uncertain(value / 10.0**power, sigma / 10.0**power)} {prefixed(of, power)}".strip()
+
+
 def prefix_power(largest: float, of: str) -> int:
     """The power of ten, a multiple of three, by whose prefix numbers of this size are best written."""
     takes_none = of == "1" or of.startswith(("k", "1/"))
