@@ -27,6 +27,7 @@ class Column:
         neighbour: whether it is the angle of another joint than the one that is asked for
         regressor: whether it is a torque of which a share that is not known acts
         unit: its unit in the file; None where none is stated
+        sure: whether its unit is stated, or its numbers tell it by themselves
         values: in SI units, once they are read
     """
 
@@ -39,6 +40,7 @@ class Column:
     neighbour: bool = False
     regressor: bool = False
     unit: str | None = None
+    sure: bool = True
     values: Array | None = None
 
     @property

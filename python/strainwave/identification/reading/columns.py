@@ -122,9 +122,10 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
         unit = label.unit or (told.unit if told and told.quantity == channel.quantity else None) or None
         unit = "s" if table.contents[places[0]] == "dates" else unit
         which = (told.which if told else "") or str(places[0] + 1)
-        beside = {"neighbour": name == "other_angles", "regressor": name == "regressors"}
+        neighbour, regressor = name == "other_angles", name == "regressors"
         unit = channel.unit if name == "regressors" else unit  # of a regressor any unit is that of torque over its share's
-        found.append(Column(places[0], label, channel, which if name == "other_angles" else "", said=True, unit=unit, **beside))
+        kept = which if neighbour else ""
+        found.append(Column(places[0], label, channel, kept, said=True, neighbour=neighbour, regressor=regressor, unit=unit))
     return found
 
 
@@ -136,7 +137,7 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
     several = [group for group in groups.values() if len(group) > 1]
     joints = list(dict.fromkeys(column.which for group in several for column in group if column.which))
     if mapping.joint is not None:
-        known = joints or [column.which for column in columns if column.which]
+        known = joints or list(dict.fromkeys(column.which for column in columns if column.which))
         joint = mapping.joint if mapping.joint in known else which_of(words_of(mapping.joint))  # J3 is joint 3
         if joint not in known:
             there = f"it has {listed(known)}" if known else f"its columns name none; {apparent(table) or SAY}"
@@ -158,12 +159,21 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
     taken = []
     for group in groups.values():
         plain = [column for column in group if not column.which] if len(group) > 1 else group
+        if _may_be_of_both_shafts(plain):
+            taken += plain
+            continue
         if plain and plain[0].channel.quantity in FIRST:
             plain = plain[:1]
         if len(plain) != 1:
             raise ValueError(one_line(f"{table.file}: {_choice(group, joints)}"))
         taken += plain
     return taken
+
+
+def _may_be_of_both_shafts(group: Sequence[Column]) -> bool:
+    """Whether two angles or two speeds may be those of input and output, which their sizes tell."""
+    channel = group[0].channel if group else Channel("time")
+    return len(group) == 2 and channel.quantity in ("angle", "speed") and channel.side is None and channel.measured
 
 
 def _are_two_encoders(columns: Sequence[Column], group: Sequence[Column]) -> bool:
@@ -199,23 +209,29 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     raw = {column.position: numbers[str(column.position)] for column in columns}
     known, told = _with_units(table, columns, mapping)
     try:
-        assumed = missing_units([column for column in known if column.own], raw)
+        assumed = missing_units([_with_side(column, mapping) for column in known if column.own], raw)
     except ValueError as error:
         raise ValueError(one_line(f"{table.file} {error}")) from None
     known = _as_the_joint(known, assumed)
     if assumed:
-        taken = ", ".join(f"{c.name} in {' '.join(assumed[c.position]).strip()}" for c in known if c.position in assumed)
+        taken = ", ".join(f"{c.name} in {' '.join(assumed[c.position][:2]).strip()}" for c in known if c.position in assumed)
         told.append(f"no unit is stated: {taken}; --unit NAME=UNIT says another one")
     found = []
     for column in known:
-        unit = column.unit or assumed[column.position].unit
-        found.append(replace(column, unit=unit, values=_in_si(table, column, raw[column.position], unit)))
+        unit, sure = (column.unit, True) if column.unit else (assumed[column.position].unit, assumed[column.position].sure)
+        found.append(replace(column, unit=unit, sure=sure, values=_in_si(table, column, raw[column.position], unit)))
     remarks = [*left_out, *told]
     empty = [column for column in found if not column.said and not np.isfinite(column.si).any()]
     if empty and len(empty) < len(found):
         remarks.append(f"left out, as no row holds a number: {listed(column.name for column in empty)}")
         found = [column for column in found if column not in empty]
     return _whole_rows(table, found, remarks)
+
+
+def _with_side(column: Column, mapping: FileMapping) -> Column:
+    """The column with the side that a person said of the file, where its name says none."""
+    side = column.channel.side or (mapping.side if column.channel.quantity in ("angle", "speed") else None)
+    return replace(column, channel=column.channel._replace(side=side))
 
 
 def _as_the_joint(columns: Sequence[Column], assumed: Mapping[int, Assumed]) -> list[Column]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from strainwave.identification.reading.sides import (
 from strainwave.identification.reading.steady import averaged, stretches
 from strainwave.messages import as_option, listed
 
+SHAFTS: tuple[Side, Side] = ("input", "output")
 STEADY = 0.05  # of the usual speed: a record whose speed differs from it by less has one speed
 WITHIN = 0.95  # of the rows, that must lie so near: the others are its beginning and end
 SAMPLED = 500  # rows: no table of friction measured point by point has more
@@ -203,11 +204,10 @@ def _put_sided(
     found: dict[str, Column], columns: Sequence[Column], torques: Sequence[Column], mapping: FileMapping
 ) -> tuple[set[Side], list[str]]:
     """Puts motions and torques of a log on their sides; returns the sides that move, and what tells them."""
-    motions = [*_measured(columns, "angle"), *_measured(columns, "speed")]
+    motions, why = _of_both_shafts([*_measured(columns, "angle"), *_measured(columns, "speed")])
     if not motions:
         raise UndecidedError(f"a log needs an angle or a speed; it holds {_names(columns)}")
     sides: set[Side] = set()
-    why = []
     for column in motions:
         side, told = side_of_motion(column, (*motions, *torques), found.get("time"), mapping.side)
         sides.add(side)
@@ -218,6 +218,19 @@ def _put_sided(
         why.append(told)
         _put(found, "joint_torque" if side == "output" else "input_torque", column)
     return sides, [told for told in why if told]
+
+
+def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]:
+    """The motions, of two whose names say no side with those that their sizes tell; and what tells so."""
+    found, why = list(motions), list[str]()
+    for quantity in ("angle", "speed"):
+        pair_of = [column for column in found if column.channel.quantity == quantity and column.channel.side is None]
+        if len(pair_of) == 2:
+            fast, slow, told = sides_of_angles(pair_of)
+            for column, side in zip((fast, slow), SHAFTS, strict=True):
+                found[found.index(column)] = replace(column, channel=column.channel._replace(side=side))
+            why.append(told)
+    return found, why
 
 
 def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tuple[str, ...]]:

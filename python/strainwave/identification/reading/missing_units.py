@@ -30,10 +30,11 @@ SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
 
 
 class Assumed(NamedTuple):
-    """A unit that is not stated, and what tells it, if anything does."""
+    """A unit that is not stated; what tells it, if anything does; and whether that leaves no other."""
 
     unit: str
     why: str
+    sure: bool = False
 
 
 def missing_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[int, Assumed]:
@@ -112,7 +113,7 @@ def _of_angle(column: Column, values: Array) -> Assumed:
     step = smallest_step(values)
     for unit, turn in (("deg", 360.0), ("rad", 2.0 * np.pi), ("rev", 1.0)):
         if step and COARSEST <= (bits := round(np.log2(turn / step))) <= FINEST and abs(turn / step / 2.0**bits - 1.0) < EQUAL:
-            return Assumed(unit, f"as its steps are those of an encoder of {bits} bits")
+            return Assumed(unit, f"as its steps are those of an encoder of {bits} bits", True)
     if step and np.array_equal(values, np.round(values)) and np.ptp(values) > 1000.0:
         name = "command" if column.channel.commanded else column.name
         hint = as_option("unit", name, "counts/16384")

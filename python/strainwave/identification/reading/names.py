@@ -59,15 +59,15 @@ COMMANDED = (
 )  # fmt: skip
 NEUTRAL = (
     "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data",
-    "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the", "rig",
-    "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady",
+    "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the",
+    "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady",
 )  # fmt: skip
 # What is no measurement of the quantity beside it.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
-    "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power", "id",
-    "est", "estimated", "estimate", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model", "simulated", "predicted",
-    "rne",
+    "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
+    "id", "est", "estimated", "estimate", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
+    "simulated", "predicted", "rne",
 )  # fmt: skip
 # Symbols that say two things at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {

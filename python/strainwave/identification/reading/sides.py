@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.names import Side
+from strainwave.messages import as_option
 
 Array = NDArray[np.float64]
 
+JOINT_SPEED, JOINT_RANGE = 400.0, 720.0  # deg/s and deg: what is no larger may be a joint in degrees, where no unit is stated
 FAST = 60.0  # rad/s, 570 1/min: what turns faster is a motor, and no output of a strain wave gear
 ALIKE = (0.5, 2.0)  # between the speed of one channel and of another: they are of one side
 APART = 10.0  # times: of two angles of which one runs so much further it is that of the input
@@ -58,6 +60,15 @@ def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None
             return side, f"{column.name} runs as {other.name} does, so it is at the {side} too"
     fastest = 0.0 if time is None else float(np.quantile(np.abs(_speed(column, time)), OFTEN))
     if fastest > FAST:
+        if (
+            not column.sure
+            and fastest < JOINT_SPEED
+            and (column.channel.quantity == "speed" or np.ptp(column.si) < JOINT_RANGE)
+        ):
+            unit = {"angle": "deg", "speed": "deg/s"}[column.channel.quantity]
+            joint = f"--side output {as_option('unit', column.name, unit)}"
+            may_be = f"{column.name} has no unit: it may be that of a motor in {column.unit}, or that of a joint in {unit}"
+            raise UndecidedError(f"{may_be}; say it, with --side input, or with {joint}")
         return "input", f"{column.name} reaches {_per_minute(fastest)}, so it is at the input"
     others = {other.channel.side or ("output" if other.robot else None) for other in beside} - {None}
     if others == {"output"}:
@@ -87,7 +98,7 @@ def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple
 
 
 def sides_of_angles(angles: Sequence[Column]) -> tuple[Column, Column, str]:
-    """Which of two angles is that of the input and which that of the output, and what tells so.
+    """Which of two angles, or of two speeds, is that of the input and which that of the output, and what tells so.
 
     Raises:
         UndecidedError: nothing does
@@ -99,8 +110,11 @@ def sides_of_angles(angles: Sequence[Column]) -> tuple[Column, Column, str]:
         return first, second, ""
     slow, fast = sorted(angles, key=lambda column: float(np.ptp(column.si)))
     if np.ptp(fast.si) < APART * np.ptp(slow.si):
-        ways = f"--column input_angle={fast.name} --column output_angle={slow.name}"
-        raise UndecidedError(f"which of {pair(slow, fast)} is the angle of the output cannot be told; say it, as with {ways}")
+        quantity = fast.channel.quantity
+        ways = f"--column input_{quantity}={fast.name} --column output_{quantity}={slow.name}"
+        raise UndecidedError(
+            f"which of {pair(slow, fast)} is the {quantity} of the output cannot be told; say it, as with {ways}"
+        )
     times = "" if np.ptp(slow.si) == 0.0 else f" {np.ptp(fast.si) / np.ptp(slow.si):.3g} times as far as {slow.name}"
     return fast, slow, f"{fast.name} runs{times}, so it is that of the input"
 
