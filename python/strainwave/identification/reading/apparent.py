@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +16,7 @@ EVEN = 0.5  # of the usual step: by which half of the steps of a time differ fro
 SLOPE = 0.95  # correlation of a speed and of the slope of its angle
 SEEN = 20_000  # rows that are looked at
 MOST = 64  # columns that are compared with each other
+ALONE = "of a record at one constant speed say it, as with --column current=1 --constant speed='20 1/min'"
 
 
 def apparent(table: OpenTable) -> str:
@@ -32,28 +35,47 @@ def apparent(table: OpenTable) -> str:
     '--column time=1 --column output_angle=2 --column output_speed=3 --column current=4'
     """
     places = [place for place, content in enumerate(table.contents) if content == "numbers"][:MOST]
-    if len(places) < 3:
-        return ""
+    if len(places) < 2:
+        return ALONE if len(places) == 1 else ""
     numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in places])
     columns = {place: numbers[str(place)][:SEEN] for place in places}
     time = next((place for place, values in columns.items() if _rises_evenly(values)), None)
-    if time is None:
+    moving = {place: values for place, values in columns.items() if place != time and np.nanstd(values) > 0.0}
+    if not moving:
         return ""
-    pairs = _speeds({place: values for place, values in columns.items() if place != time}, columns[time])
-    said = [f"column {time + 1} rises as a time does"]
-    options = [f"--column time={time + 1}"]
+    instants = np.arange(len(columns[places[0]]), dtype=float) if time is None else columns[time]
+    pairs = _speeds(moving, instants)
+    said = ["no column rises as a time does" if time is None else f"column {time + 1} rises as a time does"]
+    options = ["--constant rate=HZ" if time is None else f"--column time={time + 1}"]
+    slopes = {place for pair in pairs for place in pair}
+    pairs = [pair for pair in pairs if pair[0] not in {speed for _, speed in pairs}]  # speeds have slopes, too
     if pairs:
         more = "".join(f", {speed + 1} of {angle + 1}" for angle, speed in pairs[1:])
         angle, speed = pairs[0]
         said.append(f"column {speed + 1} is the speed of {angle + 1}{more}")
         options += [f"--column output_angle={angle + 1}", f"--column output_speed={speed + 1}"]
     else:
-        options.append(f"--column output_angle={places[1] + 1}")
-    taken = {time, *(place for pair in pairs for place in pair)}
-    rest = next((place for place in places if place not in taken and np.ptp(columns[place]) > 0.0), places[-1])
-    options.append(f"--column current={rest + 1}")
+        angle, speed = min(moving, key=lambda place: _roughness(moving[place])), None
+        options.append(f"--column output_angle={angle + 1}")
+    effort = _effort([place for place in moving if place not in slopes and place != angle], angle, speed)
     guess = "" if pairs else " the angle and"
-    return f"{', and '.join(said)}: name{guess} what tells the torque, as with {' '.join(options)}"
+    tells = [f"--column current={effort + 1}"] if effort is not None else []
+    return f"{', and '.join(said)}: name{guess} what tells the torque, as with {' '.join([*options, *tells])}"
+
+
+def _effort(left: Sequence[int], angle: int, speed: int | None) -> int | None:
+    """The column that may tell the torque: as far behind the speed as that is behind the angle, or else any that is left.
+
+    Matrices hold the angles of all joints, then their speeds, perhaps accelerations, and then torques.
+    """
+    if speed is None:
+        return next(iter(left), None)
+    return min(left, key=lambda place: (place < speed or (place - speed) % (speed - angle) != 0, place), default=None)
+
+
+def _roughness(values: Array) -> float:
+    """How much a series changes from row to row, over how much it varies."""
+    return float(np.nanstd(np.diff(values)) / np.nanstd(values))
 
 
 def _rises_evenly(values: Array) -> bool:
@@ -63,13 +85,15 @@ def _rises_evenly(values: Array) -> bool:
 
 
 @np.errstate(all="ignore")
-def _speeds(columns: dict[int, Array], time: Array) -> list[tuple[int, int]]:
+def _speeds(columns: Mapping[int, Array], time: Array) -> list[tuple[int, int]]:
     """Angles and the speeds that are their slopes, the angles that move most first."""
     apart = max(2, len(time) // 2000)
     elapsed = time[apart:] - time[:-apart]
     forward = elapsed > 0.0
     found = []
     for angle, values in columns.items():
+        if len(values) <= apart:
+            continue
         slope = ((values[apart:] - values[:-apart])[forward]) / elapsed[forward]
         if not np.std(slope) > 0.0:
             continue
