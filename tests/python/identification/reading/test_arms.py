@@ -149,3 +149,73 @@ def test_the_joint_that_moves_alone_is_taken_and_told(tmp_path: Path, seen: dict
         ValueError, match=r"it holds 3 joints \(1, 2, 3\).* say which with --joint 1, or .* --column output_angle=q_1"
     ):
         recognise(tmp_path / "all.mat")
+
+
+def written(path: Path, columns: dict[str, np.ndarray]) -> Path:
+    np.savetxt(path, np.column_stack(list(columns.values())), "%.7f", ",", header=",".join(columns), comments="")
+    return path
+
+
+def joints(name: str, series: np.ndarray) -> dict[str, np.ndarray]:
+    return {name.format(number): each for number, each in enumerate(series, start=1)}
+
+
+def test_numbers_of_the_robot_are_none_of_its_joints(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    """Names and time as a KUKA LBR iiwa writes them: whole seconds, and nanoseconds beside."""
+    time = {"ZeitInSec": np.floor(seen["time"]), "ZeitInNanoSec": np.round(seen["time"] % 1.0 * 1e9)}
+    angles, torques = (
+        joints(f"axis{what}Msr_LBR_iiwa_14_R820_1_A{{}}", seen[name]) for what, name in (("Q", "q"), ("Tau", "motor_torque"))
+    )
+    found = recognise(written(tmp_path / "a.csv", time | angles | torques), FileMapping(joint="2"))
+    is_joint(found, seen, 1)
+
+
+def test_degrees_that_begin_anew_have_the_slope_of_their_speed(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    angles = joints("actuator{}.position", np.degrees(seen["q"]) % 360.0)
+    speeds = joints("actuator{}.velocity", np.degrees(seen["dq"]))
+    columns = {"timestamp": seen["time"]} | angles | speeds | joints("actuator{}.torque", seen["motor_torque"])
+    found = recognise(written(tmp_path / "a.csv", columns), FileMapping(joint="2"))
+    assert (found.units["output_angle"], found.units["output_speed"]) == ("deg", "deg/s")
+    assert found.recording["output_speed"] == pytest.approx(seen["dq"][1], abs=1e-6)
+
+
+def test_two_angles_are_told_apart_by_how_far_they_run(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    columns = {"time": seen["time"], "theta": seen["theta"][1], "q": seen["q"][1], "tau_J": seen["joint_torque"][1]}
+    found = recognise(written(tmp_path / "a.csv", columns))
+    assert (found.columns["input_angle"], found.columns["output_angle"]) == ("theta", "q")
+    assert any("so it is that of the input" in why for why in found.why)
+    scaled = columns | {"theta": columns["theta"] / JOINT.ratio}
+    with pytest.raises(
+        ValueError, match=r"which of .* is the angle of the output cannot be told; say it, as with --column input_angle="
+    ):
+        recognise(written(tmp_path / "b.csv", scaled))
+
+
+def test_an_angle_without_a_unit_may_be_of_a_motor_or_of_a_joint_in_degrees(
+    tmp_path: Path, seen: dict[str, np.ndarray]
+) -> None:
+    columns = {"t": seen["time"], "theta": np.degrees(seen["q"][1]), "tau": seen["joint_torque"][1]}
+    path = written(tmp_path / "a.csv", columns)
+    with pytest.raises(
+        ValueError, match=r"motor in rad, or that of a joint in deg; .*--side input, or with --side output --unit theta=deg"
+    ):
+        recognise(path)
+    is_joint(recognise(path, FileMapping(side="output")), seen, 1, "joint_torque")
+    assert recognise(path, FileMapping(side="input")).units["input_angle"] == "rad"
+    fast = written(tmp_path / "b.csv", columns | {"theta": 20.0 * columns["theta"]})
+    assert recognise(fast).side == "input"
+
+
+def test_a_matrix_without_time_says_which_columns_belong_together(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    """Angles, speeds, accelerations and torques of all joints, as in data sets for learning inverse dynamics."""
+    alone = arms.Recorder(rate=200.0)(arms.run((JOINT,) * 3, arms.fourier(4.0, (1,), seed=1)))
+    rows = [*alone["q"], *alone["dq"], *np.gradient(alone["dq"], 0.005, axis=1), *alone["motor_torque"]]
+    np.savetxt(tmp_path / "a.txt", np.column_stack(rows))
+    with pytest.raises(ValueError, match="no column rises as a time does, and column 5 is the speed of 2") as refused:
+        recognise(tmp_path / "a.txt")
+    assert "--constant rate=HZ --column output_angle=2 --column output_speed=5 --column current=11" in str(refused.value)
+    np.savetxt(tmp_path / "b.txt", alone["current"][1])
+    with pytest.raises(
+        ValueError, match="of a record at one constant speed say it, as with --column current=1 --constant speed="
+    ):
+        recognise(tmp_path / "b.txt")
