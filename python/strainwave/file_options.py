@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,7 +27,7 @@ Side = Annotated[str | None, typer.Option(help="Where a table or angles were mea
 Kind = Annotated[
     str | None, typer.Option(help="What files are that may be two things: friction, torsion, log, encoders or effort.")
 ]
-Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several.")]
+Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several; identify takes all, too.")]
 
 
 def said_of(
@@ -38,26 +38,42 @@ def said_of(
     side: Any,
     joint: str | None,
     kind: Any = None,
+    paths: Sequence[Path] = (),
 ) -> Callable[[Path], FileMapping]:
-    """What the options say of a file: of columns that it has; over what the mapping file says."""
-    from strainwave.files.tables import open_table
+    """What the options say of a file: of columns that it has; over what the mapping file says.
+
+    Raises:
+        ValueError: an option is not written as it must be, or names what is no channel and no column of any of the paths
+    """
     from strainwave.identification.reading.channels import ALIASES, CHANNELS
     from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
     from strainwave.messages import pairs
 
     known = {*CHANNELS, *ALIASES}
-    columns, units = pairs("--column", column, known), pairs("--unit", unit, known)
+    names = known.union(*map(names_in, paths)) if unit else known
+    columns, units = pairs("--column", column, known), pairs("--unit", unit, names)
     constants = {name: constant_of(name, value) for name, value in pairs("--constant", constant, set(CONSTANTS)).items()}
     from_file = MappingFile.read(mapping) if mapping is not None else None
 
     def of(path: Path) -> FileMapping:
-        there = {text for label in open_table(path).labels for text in (label.text, label.name)} if columns else set()
+        there = names_in(path) if columns or units else set()
         own = {
             name: wanted
             for name, wanted in columns.items()
             if wanted in there or all(part in there or part.isdigit() for part in map(str.strip, wanted.split(",")))
         }
-        given = FileMapping(columns=own, units=units, constants=constants, side=side, joint=joint, kind=kind)
+        of_it = {name: each for name, each in units.items() if name in known or name in there}
+        given = FileMapping(columns=own, units=of_it, constants=constants, side=side, joint=joint, kind=kind)
         return from_file.of(path).updated(given) if from_file is not None else given
 
     return of
+
+
+def names_in(path: Path) -> set[str]:
+    """What a file calls its columns; nothing where it cannot be read, which is told when it is."""
+    from strainwave.files.tables import open_table
+
+    try:
+        return {text for label in open_table(path).labels for text in (label.text, label.name)}
+    except (ValueError, OSError):
+        return set()

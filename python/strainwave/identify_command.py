@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +14,8 @@ from strainwave.file_options import Columns, Constants, Gear, Joint, Kind, Mappi
 if TYPE_CHECKING:
     from strainwave.identification.findings import Finding, Number
     from strainwave.identification.identify import Identified
+    from strainwave.identification.reading.mapping import FileMapping
+    from strainwave.report.provenance import Provenance
 
 MOST_REMARKS = 5  # of a file on the terminal; the report has all
 
@@ -40,15 +42,17 @@ def identify(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    from strainwave.files import gear_file
     from strainwave.files.writing import write_folder
     from strainwave.identification.identify import files_of
     from strainwave.identification.identify import identify as identified
-    from strainwave.report.identify import identify_files, identify_report
+    from strainwave.identification.joints import ALL
     from strainwave.report.provenance import Provenance
 
     paths = [file for path in paths for file in files_of(path)]
-    said = said_of(mapping, column, unit, constant, side, joint, kind)
+    said = said_of(mapping, column, unit, constant, side, joint, kind, paths)
+    if joint == ALL:
+        _every_joint(gear, paths, said, accept, out)
+        return
     columns = (SpinnerColumn(), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("reading", total=len(paths))
@@ -61,11 +65,40 @@ def identify(
 
         found = identified(gear, paths, mapping=said, accept=accept, progress=turn)
         bar.update(task, description="report", completed=len(paths))
-        files = identify_files(found) | {"gear.toml": gear_file.text(found.gear_set)}
-        files["report.html"] = identify_report(found, Provenance.of_this_command(paths))
+        files = _files(found, Provenance.of_this_command(paths))
         write_folder(out, files)
     print("\n".join(_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+
+
+def _files(found: Identified, provenance: Provenance) -> dict[str, str]:
+    """What is written of one gear, by the names of the files."""
+    from strainwave.files import gear_file
+    from strainwave.report.identify import identify_files, identify_report
+
+    files = identify_files(found) | {"gear.toml": gear_file.text(found.gear_set)}
+    return files | {"report.html": identify_report(found, provenance)}
+
+
+def _every_joint(gear: str, paths: list[Path], said: Callable[[Path], FileMapping], accept: bool, out: Path) -> None:
+    """All joints of an arm: a folder for each, and one page and one table of all."""
+    from rich.console import Console
+
+    from strainwave.files.writing import write_folder
+    from strainwave.identification.joints import identify_joints
+    from strainwave.report.joints import folder_of, joints_csv, joints_report, joints_summary
+    from strainwave.report.provenance import Provenance
+
+    with Console(stderr=True).status("reading") as status:
+        joints = identify_joints(gear, paths, mapping=said, accept=accept, progress=status.update)
+        status.update("report")
+        provenance = Provenance.of_this_command(paths)
+        for name, found in joints.found.items():
+            write_folder(out / folder_of(name), _files(found, provenance))
+        write_folder(out, {"joints.csv": joints_csv(joints), "report.html": joints_report(joints, provenance)})
+    print("\n".join(joints_summary(joints)))
+    folders = ", ".join(map(folder_of, joints.found))
+    print(f"\nwrote {out / 'report.html'}, and beside it joints.csv and the results of each joint in {folders}")
 
 
 def _summary(found: Identified) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.file_options import Columns, Joint, Kind, Units
+from strainwave.file_options import Columns, Joint, Kind, Units, names_in
 
 if TYPE_CHECKING:
     from strainwave.identification.orders.measured import OrdersFound
@@ -95,9 +95,10 @@ def _of_file(
 
     where: Any = side
     known = set(CHANNELS)
+    names = known | names_in(path) if unit else known
     said = FileMapping(
         columns=pairs("--column", list(column), known),
-        units=pairs("--unit", list(unit), known),
+        units=pairs("--unit", list(unit), names),
         constants={} if rate is None else {"rate": rate},
         joint=joint,
         side=where,

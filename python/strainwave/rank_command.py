@@ -37,7 +37,7 @@ def rank(
     from strainwave.identification.reading.channels import KINDS
     from strainwave.identification.reading.recognise import recognise
 
-    said, start, told = said_of(mapping, column, unit, constant, side, joint, kind), GearSet.read(gear), list[str]()
+    said, start, told = said_of(mapping, column, unit, constant, side, joint, kind, paths), GearSet.read(gear), list[str]()
     with Console(stderr=True).status("reading") as status:
         for path in paths:
             status.update(path.name)

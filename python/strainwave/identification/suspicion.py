@@ -13,6 +13,7 @@ from strainwave.files.recording import Recording
 
 Array = NDArray[np.float64]
 
+NONE = 1e-3  # of the friction of the set: a torque that shows less is none that the motor gives
 APART = 10.0  # gears of one kind differ by less in friction
 FLAT = 0.05  # of the path: a torque that stays at its end for longer is clipped
 SAMPLES = 5  # of such an end, at least
@@ -97,6 +98,11 @@ def unlike_set(law: Any, known: Any, speeds: Array, effort: str) -> str | None:
     if speed <= 0.0:
         return None
     found, before = law.steady(speed), known.steady(speed)
+    if before > 0.0 and effort == "joint_torque" and found < NONE * before:
+        return (
+            "its torque shows no friction, as that of a sensor behind the gear: friction is told by what the motor gives, its "
+            "current with --column current=NAME, or its torque"
+        )
     if before <= 0.0 or not found > 0.0 or 1.0 / APART < found / before < APART:
         return None
     factor = found / before

@@ -21,6 +21,21 @@ def test_the_error_held_out_is_no_worse_than_that_of_least_squares(tmp_path: Pat
     assert ours < min(simple, with_model)
 
 
+@pytest.mark.parametrize("names", ["J2_{:g}deg_s.txt", "{:g}dps run.txt"])
+def test_names_of_files_tell_the_speeds_of_currents_without_anything_beside_them(tmp_path: Path, names: str) -> None:
+    joint, light = arms.Joint(loss=0.0), arms.Links(masses=(0.0, 0.0))
+    for speed in (5.0, 10.0, 20.0, 40.0, -5.0, -10.0, -20.0, -40.0):
+        command = arms.resting(2.0)
+        command[1] += np.radians(speed) * np.arange(command.shape[1]) / arms.FINE
+        seen = arms.Recorder(rate=500.0)(arms.run((joint,) * 3, command, light))
+        np.savetxt(tmp_path / names.format(speed), seen["current"][1], "%.6f")
+    said = FileMapping(columns={"current": "1"}, side="output", constants={"torque_constant": joint.torque_constant})
+    found = identify("hfuc-25-100", [tmp_path], mapping=lambda path: said)
+    told = {each.told.path.rpartition(".")[2]: each.told.value for each in found.numbers}
+    assert told["coulomb"] == pytest.approx(joint.coulomb, rel=0.02)
+    assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
+
+
 def test_currents_at_constant_speeds_of_a_joint_tell_friction_at_the_motor(tmp_path: Path) -> None:
     """Ten files without time: joint-side speed and the current of the motor, counted where each was measured."""
     joint, light = arms.Joint(loss=0.0), arms.Links(masses=(0.0, 0.0))

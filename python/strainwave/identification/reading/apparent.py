@@ -16,6 +16,7 @@ EVEN = 0.5  # of the usual step: by which half of the steps of a time differ fro
 SLOPE = 0.95  # correlation of a speed and of the slope of its angle
 SEEN = 20_000  # rows that are looked at
 MOST = 64  # columns that are compared with each other
+FEWEST = 20  # rows of samples: fewer are a table
 ALONE = "of a record at one constant speed say it, as with --column current=1 --constant speed='20 1/min'"
 
 
@@ -41,7 +42,7 @@ def apparent(table: OpenTable) -> str:
     columns = {place: numbers[str(place)][:SEEN] for place in places}
     time = next((place for place, values in columns.items() if _rises_evenly(values)), None)
     moving = {place: values for place, values in columns.items() if place != time and np.nanstd(values) > 0.0}
-    if not moving:
+    if not moving or len(columns[places[0]]) < FEWEST:
         return ""
     instants = np.arange(len(columns[places[0]]), dtype=float) if time is None else columns[time]
     pairs = _speeds(moving, instants)

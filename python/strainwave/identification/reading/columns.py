@@ -26,6 +26,7 @@ SAY = "say what they are with --column"
 FEW = 4  # names that are listed where none says anything
 STILL = 0.01  # of how far a joint moves, by which others move less that rest
 SEVERAL = ("other_angles", "regressors")  # as what a person names several columns
+ALIKE = (("angle", "speed"), ("torque", "current", "voltage"))  # of which a person names what is needed of one joint
 FIRST = ("time", "temperature")  # of which the first column is taken, where a file has several
 
 
@@ -35,7 +36,21 @@ def chosen(table: OpenTable, mapping: FileMapping) -> list[Column]:
     Where a person says the rate of the rows, a column of time is taken only if the person names it.
     """
     said = _said(table, mapping)
-    return said + _of_one_joint(table, _of_one_time(_told(table, mapping, said)), mapping)
+    told = _of_one_time(_told(table, mapping, said))
+    return said + _of_one_joint(table, told if mapping.joint is not None else _beside(said, told), mapping)
+
+
+def _beside(said: Sequence[Column], told: Sequence[Column]) -> list[Column]:
+    """Those columns that stand beside what a person named, without several joints that move, or tell a torque, as that does."""
+    named = {place for place, group in enumerate(ALIKE) for column in said if column.channel.quantity in group and column.own}
+    return [
+        column
+        for column in told
+        if not any(
+            place in named and column.channel.quantity in group and sum(each.channel == column.channel for each in told) > 1
+            for place, group in enumerate(ALIKE)
+        )
+    ]
 
 
 def _told(table: OpenTable, mapping: FileMapping, said: Sequence[Column] = ()) -> list[Column]:
@@ -83,25 +98,24 @@ def _of_one_time(columns: Sequence[Column]) -> list[Column]:
     ]
 
 
-def alone_in_motion(table: OpenTable, mapping: FileMapping) -> str | None:
-    """The joint whose angle alone changes, of a file with several of which a person named none."""
-    if mapping.joint is not None or mapping.columns:
-        return None
+def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
+    """The joints whose angles change, of a file with several of which a person named none."""
+    if mapping.joint is not None or "output_angle" in mapping.columns or "input_angle" in mapping.columns:
+        return []
     angles: dict[str, int] = {}
     for column in _told(table, mapping):
         if column.channel.quantity == "angle" and column.channel.measured and column.which:
             if column.which in angles:
-                return None
+                return []
             angles[column.which] = column.position
     if len(angles) < 2:
-        return None
+        return []
     numbers, _ = table.measured([Source(place, which, which, "1") for which, place in angles.items()])
     spans = {
         which: float(np.nanmax(values) - np.nanmin(values)) for which, values in numbers.items() if np.isfinite(values).any()
     }
-    widest = max(spans, key=lambda which: spans[which], default=None)
-    others = [span for which, span in spans.items() if which != widest]
-    return widest if widest is not None and spans[widest] > 0.0 and max(others, default=0.0) < STILL * spans[widest] else None
+    least = STILL * max(spans.values(), default=0.0)
+    return [which for which, span in spans.items() if span > 0.0 and span >= least]
 
 
 def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:

@@ -67,7 +67,7 @@ OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
     "id", "est", "estimated", "estimate", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
-    "simulated", "predicted", "rne",
+    "simulated", "predicted", "rne", "permille", "promille", "percent", "pct", "prozent",
 )  # fmt: skip
 # Symbols that say two things at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {

@@ -15,9 +15,10 @@ from strainwave.files.tables import OpenTable, open_table
 from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.columns import alone_in_motion, chosen, read
+from strainwave.identification.reading.columns import chosen, moving_joints, read
 from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.name_of_file import speed_in
 from strainwave.identification.reading.names import Side, meaning
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.two_part_time import with_whole_time
@@ -91,11 +92,12 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     table = open_table(path)
     said, remarks = _with_single_numbers(table, said)
     table = with_whole_time(table)
-    if (joint := alone_in_motion(table, said)) is not None:
-        said = replace(said, joint=joint)
-        remarks.append(f"joint {joint} alone moves, and is taken; --joint says another one")
+    if not said.columns and len(joints := moving_joints(table, said)) == 1:
+        said = replace(said, joint=joints[0])
+        remarks.append(f"joint {joints[0]} alone moves, and is taken; --joint says another one")
     columns, more = read(table, chosen(table, said), said)
     remarks += more
+    said, by_name = _with_speed_of_name(columns, said, Path(path))
     try:
         found = kind_of([column for column in columns if column.own], said)
     except UndecidedError as undecided:
@@ -123,7 +125,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         {name: column.name for name, column in found.columns.items()},
         {name: column.unit or "1" for name, column in found.columns.items()},
         found.side,
-        found.why,
+        (*found.why, *by_name),
         (*remarks, *_of_unused(unused)),
         dict(said.constants),
         Recording(series, {name: _unit(name, used) for name in series}, table.title),
@@ -132,6 +134,18 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         found.columns["output_angle"].which if "output_angle" in found.columns else "",
         unused,
     )
+
+
+def joints_of(path: str | Path, mapping: FileMapping | None = None) -> tuple[str, ...]:
+    """The joints that move in a file, by what it calls them; none where it holds one alone.
+
+    Args:
+        path, mapping: as of `recognise`
+
+    Raises:
+        ValueError: the file cannot be read
+    """
+    return tuple(moving_joints(open_table(path), mapping or FileMapping()))
 
 
 def _neighbours(columns: Sequence[Column]) -> dict[str, Column]:
@@ -156,6 +170,17 @@ def _with_single_numbers(table: OpenTable, said: FileMapping) -> tuple[FileMappi
         numbers = listed(f"{name} = {value:g}" for name, value in singles.items())
         remarks.append(f"single numbers, not used: {numbers}")
     return said, remarks
+
+
+def _with_speed_of_name(columns: Sequence[Column], said: FileMapping, path: Path) -> tuple[FileMapping, tuple[str, ...]]:
+    """What is said of a file, with the speed that its name says, where nothing in it tells how it moved; and what tells so."""
+    known = {column.channel.quantity for column in columns if column.channel.measured}
+    told = bool(known & {"time", "speed"} or said.constants.keys() & {"rate", "speed"} or said.kind not in (None, "effort"))
+    speed = None if told or not known & {"torque", "current"} else speed_in(path)
+    if speed is None:
+        return said, ()
+    why = f"its name says that it turned at {speed:.4g} rad/s; --constant speed=… says another speed"
+    return said.updated(FileMapping(constants={"speed": speed})), (why,)
 
 
 def _rate(name: str, value: float) -> float | None:

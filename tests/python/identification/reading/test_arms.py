@@ -219,3 +219,17 @@ def test_a_matrix_without_time_says_which_columns_belong_together(tmp_path: Path
         ValueError, match="of a record at one constant speed say it, as with --column current=1 --constant speed="
     ):
         recognise(tmp_path / "b.txt")
+
+
+def test_what_a_person_names_needs_no_choice_of_what_is_like_it(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    """Names of a benchmark of nonlinear systems: inputs and outputs, in degrees."""
+    columns = joints("y_train_{}", np.degrees(seen["q"])) | joints("u_train_{}", seen["motor_torque"])
+    said = FileMapping(columns={"output_angle": "y_train_2", "joint_torque": "u_train_2"}, units={"output_angle": "deg"})
+    found = recognise(written(tmp_path / "a.csv", {"time_train": seen["time"]} | columns), said)
+    is_joint(found, seen, 1)
+
+
+def test_a_share_of_what_a_motor_is_rated_for_is_no_torque(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    columns = {"t": seen["time"], "joint_pos_rad": seen["q"][1], "torque_permille": seen["current"][1]}
+    with pytest.raises(ValueError, match=r"a log time, a motion, and a current, torque, .*columns not used: torque_permille"):
+        recognise(written(tmp_path / "a.csv", columns))

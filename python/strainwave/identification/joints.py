@@ -1,0 +1,70 @@
+"""All joints of an arm: each identified by itself, as each has a gear of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.identify import Identified, identify
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import joints_of
+
+ALL = "all"  # in place of the name of a joint
+
+
+@dataclass(frozen=True)
+class Joints:
+    """What files tell of the joints of an arm.
+
+    Attributes:
+        found: what they tell of each joint, by its name
+        refused: why nothing was found of a joint, by its name
+    """
+
+    found: Mapping[str, Identified]
+    refused: Mapping[str, str]
+
+
+def identify_joints(
+    start: GearSet | str | Path,
+    files: Sequence[str | Path],
+    *,
+    mapping: Callable[[Path], FileMapping] | None = None,
+    accept: bool = False,
+    progress: Callable[[str], None] = lambda stage: None,
+) -> Joints:
+    """Finds out what files tell of every joint that moves in them.
+
+    Args:
+        start: the set to start from, for each joint
+        files: logs of an arm
+        mapping, accept: as of `identify`
+        progress: called with the name of each joint as its turn comes
+
+    Raises:
+        ValueError: no joint moves in any file, or nothing is found of any; says why of each
+    """
+    said = mapping or (lambda path: FileMapping())
+    by_joint: dict[str, list[Path]] = {}
+    for path in map(Path, files):
+        for joint in joints_of(path, replace(said(path), joint=None)):
+            by_joint.setdefault(joint, []).append(path)
+    if not by_joint:
+        raise ValueError("no file has the angles of several joints by their names, and one that moves; leave --joint away")
+    found, refused = dict[str, Identified](), dict[str, str]()
+    for joint, paths in by_joint.items():
+        progress(f"joint {joint}")
+        try:
+            found[joint] = identify(start, paths, mapping=_of_joint(said, joint), accept=accept)
+        except ValueError as error:
+            refused[joint] = str(error)
+    if not found:
+        raise ValueError("; ".join(f"joint {joint}: {why}" for joint, why in refused.items()))
+    return Joints(found, refused)
+
+
+def _of_joint(said: Callable[[Path], FileMapping], joint: str) -> Callable[[Path], FileMapping]:
+    """What is said of files, with the joint that is asked for."""
+    return lambda path: replace(said(path), joint=joint)

@@ -1,0 +1,35 @@
+"""The speed that the name of a file says, as of one record of many at constant speed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from strainwave.files.units import convert
+
+# How people write the units of a speed in names of files, which have neither slashes nor brackets.
+UNITS = {
+    **dict.fromkeys(("rpm", "upm", "umin", "1min", "min-1", "rev_min"), "rpm"),
+    **dict.fromkeys(("dps", "degps", "deg_s", "degs", "deg-s", "deg_per_s", "grad_s"), "deg/s"),
+    **dict.fromkeys(("radps", "rad_s", "rads", "rad-s", "rad_per_s"), "rad/s"),
+}
+_SPEED = re.compile(
+    r"(?<![\w.+-])(?P<sign>[+-]|(?:neg|minus|pos|plus)[ _]?)?(?P<number>\d+(?:[.p]\d+)?)[ _]?"
+    rf"(?P<unit>{'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?![a-z0-9])"
+)
+
+
+def speed_in(path: Path) -> float | None:
+    """The speed that the name of a file says with its unit [rad/s]; None where it says none, or two.
+
+    A minus right behind a word may be a hyphen: what stands behind it is not taken.
+
+    >>> speed_in(Path("run_-20rpm.csv")), speed_in(Path("J2_0p5_rad_s.txt")), speed_in(Path("run_20.csv"))
+    (-2.0943951023931953, 0.5, None)
+    """
+    found = list(_SPEED.finditer(re.sub(r"_(?=[+-]?\d)|_(?=neg|minus|pos|plus)", " ", path.stem.casefold())))
+    if len(found) != 1:
+        return None
+    (match,) = found
+    sign = -1.0 if (match["sign"] or "").startswith(("-", "neg", "minus")) else 1.0
+    return sign * convert(float(match["number"].replace("p", ".")), UNITS[match["unit"]], "rad/s")

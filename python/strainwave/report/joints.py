@@ -1,0 +1,113 @@
+"""The page of all joints of an arm, the same in lines for a terminal, and as a table."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator
+from importlib import metadata
+from io import StringIO
+from math import isfinite
+from typing import Any
+
+from strainwave.identification.findings import Finding, Number
+from strainwave.identification.identify import Identified
+from strainwave.identification.joints import Joints
+from strainwave.report import figures
+from strainwave.report.identify import name_of
+from strainwave.report.page import render
+from strainwave.report.provenance import Provenance
+from strainwave.report.typeset import number, uncertain, unit
+
+COLUMNS = ("joint", "path", "law", "unit", "value", "sigma", "file")
+
+
+def joints_report(joints: Joints, provenance: Provenance | None = None) -> str:
+    """The page, as one HTML file; the report of each joint lies in the folder beside it that `folder_of` names."""
+    return render(
+        "joints.html.jinja",
+        {
+            "joints": [_joint(name, found) for name, found in joints.found.items()],
+            "refused": list(joints.refused.items()),
+            "numbers": list(_rows(joints)),
+            "provenance": provenance or Provenance(),
+            "version": metadata.version("strainwave"),
+            "light": figures.variables(figures.LIGHT),
+            "dark": figures.variables(figures.DARK),
+        },
+    )
+
+
+def folder_of(joint: str) -> str:
+    """The folder with the results of a joint.
+
+    >>> folder_of("arm/elbow")
+    'joint-arm_elbow'
+    """
+    return f"joint-{re.sub(r'[^A-Za-z0-9._-]', '_', joint)}"
+
+
+def joints_summary(joints: Joints) -> Iterator[str]:
+    """What each joint is told to be, in lines."""
+    for name, found in joints.found.items():
+        yield f"joint {name}: {'; '.join(_of_files(found))}"
+        yield from (f"  DOUBT: {doubt}" for finding in found.findings for doubt in finding.doubts)
+        width = max(len(_path(each)) for each in found.numbers)
+        for each in found.numbers:
+            told = each.told
+            yield f"  {_path(each):{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {each.taken_from}"
+    yield from (f"joint {name}: NOT USED: {why}" for name, why in joints.refused.items())
+
+
+def joints_csv(joints: Joints) -> str:
+    """Every number of every joint, a row each, in SI units."""
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for name, found in joints.found.items():
+        for each in found.numbers:
+            told = each.told
+            writer.writerow([name, told.path, told.law, told.unit, told.value, told.sigma, each.taken_from])
+    return text.getvalue()
+
+
+def _of_files(found: Identified) -> Iterator[str]:
+    """What was made of each file."""
+    for each in found.findings:
+        held_out = f", error on data held out {_error(each)} of what varies" if _error(each) else ""
+        yield f"{each.name} {f'NOT USED: {each.refused}' if each.refused else each.model}{held_out}"
+
+
+def _error(finding: Finding) -> str:
+    return f"{number(100.0 * finding.error, 2)} %" if isfinite(finding.error) else ""
+
+
+def _joint(name: str, found: Identified) -> dict[str, Any]:
+    return {
+        "name": name,
+        "report": f"{folder_of(name)}/report.html",
+        "files": [{"name": each.name, "model": each.refused or each.model, "error": _error(each)} for each in found.findings],
+        "doubts": [doubt for each in found.findings for doubt in each.doubts],
+    }
+
+
+def _path(each: Number) -> str:
+    law = each.told.law
+    return f"{each.told.path} ({law})" if law.startswith(("in ", "of ")) else each.told.path
+
+
+def _rows(joints: Joints) -> Iterator[dict[str, Any]]:
+    """A row for each number that any joint tells, with its value of each joint; nothing where a joint does not tell it."""
+    keys = dict.fromkeys((each.told.path, each.told.unit) for found in joints.found.values() for each in found.numbers)
+    for path, of_unit in keys:
+        told = {
+            name: next((each.told for each in found.numbers if (each.told.path, each.told.unit) == (path, of_unit)), None)
+            for name, found in joints.found.items()
+        }
+        first = next(each for each in told.values() if each is not None)
+        yield {
+            "name": name_of(first),
+            "path": path,
+            "unit": unit(of_unit),
+            "values": ["" if each is None else uncertain(each.value, each.sigma) for each in told.values()],
+        }

@@ -1,0 +1,59 @@
+"""All joints of an arm in one command: each as if it were asked for by itself."""
+
+from __future__ import annotations
+
+import csv
+import json
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from strainwave.identification.identify import identify
+from strainwave.identification.joints import identify_joints
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import joints_of
+
+from tests import arms
+from tests.python.command import strainwave
+
+JOINT = arms.Joint(loss=0.0)
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of an arm without masses beyond those of its base, whose third joint rests."""
+    light = arms.Links(base=1.0, masses=(0.0, 0.0), inertias=(0.4, 0.1))
+    done = arms.run((JOINT,) * 3, arms.fourier(20.0, (0, 1), seed=1), light)
+    path: Path = tmp_path_factory.mktemp("arm") / "log.csv"
+    arms.panda(path, arms.Recorder(rate=200.0)(done))
+    return path
+
+
+def _said(joint: str, path: Path) -> FileMapping:
+    return FileMapping(joint=joint)
+
+
+def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Path, log: Path) -> None:
+    assert joints_of(log) == ("1", "2")
+    done = strainwave("identify", "hfuc-25-100", log, "--joint", "all", "--out", "out", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "out" / "joints.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    page = (tmp_path / "out" / "report.html").read_text()
+    for joint in ("1", "2"):
+        alone = identify("hfuc-25-100", [log], mapping=partial(_said, joint))
+        told = {each.told.path: each.told.value for each in alone.numbers}
+        assert {row["path"]: float(row["value"]) for row in rows if row["joint"] == joint} == told
+        assert told["gear.friction_input.coulomb"] == pytest.approx(JOINT.coulomb, rel=0.05)
+        results = json.loads((tmp_path / "out" / f"joint-{joint}" / "results.json").read_text())
+        assert {each["path"]: each["value"] for each in results["numbers"]} == told
+        assert f'<a href="joint-{joint}/report.html">' in page
+        assert f"joint {joint}: log.csv " in done.stdout
+
+
+def test_a_file_of_one_joint_has_no_others(tmp_path: Path, log: Path) -> None:
+    rows = np.loadtxt(log, delimiter=",", skiprows=1)[:, [0, 2, 5, 8]]
+    np.savetxt(tmp_path / "one.csv", rows, "%.6f", ",", header="time,q,dq,tau", comments="")
+    with pytest.raises(ValueError, match=r"no file has the angles of several joints by their names, .*leave --joint away"):
+        identify_joints("hfuc-25-100", [tmp_path / "one.csv"])
