@@ -81,6 +81,11 @@ class ExperimentPlan:
         steps: the measurements
         expectations: of each parameter that is not known
         notes: what the numbers rest on
+
+    >>> step = Step("friction", "hold 10 rad/s at the input", {"input_speed_rad_s": 10.0}, 3, 60.0)
+    >>> plan = ExperimentPlan((step,), (Expectation("gear.damping", "N.m.s/rad", 2.0, np.inf, 0.5, True, ""),), ())
+    >>> plan.duration, plan["gear.damping"].after
+    (60.0, 0.5)
     """
 
     steps: tuple[Step, ...]

@@ -30,6 +30,10 @@ class Bootstrap(ComparedByFields):
         units: unit of each
         values: estimates of each draw, shape (draws, p)
         failed: draws for which no fit was found; they are not among the values
+
+    >>> drawn = Bootstrap(("friction_input.coulomb",), ("N.m",), np.array([[0.019], [0.020], [0.021]]), 0)
+    >>> drawn.sigma.round(4).tolist(), [round(end, 4) for end in drawn.interval("friction_input.coulomb", 0.5)]
+    ([0.001], [0.0195, 0.0205])
     """
 
     paths: tuple[str, ...]

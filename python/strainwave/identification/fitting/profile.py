@@ -35,6 +35,10 @@ class Profile(ComparedByFields):
         interval: between which the parameter lies with the confidence asked for; to a side where the data do not bound it, it
             ends at the limit of the law or of `bounds`, or is infinite
         open_below, open_above: whether the data do not bound it to that side
+
+    >>> cost = np.array([4.0, 0.0, 1.0])
+    >>> print(Profile("gear.damping", "N.m.s/rad", np.array([1.0, 2.0, 9.0]), cost, 4.0, (1.0, np.inf), False, True))
+    gear.damping is above 1 N.m.s/rad; how large it is, the data do not tell
     """
 
     path: str
