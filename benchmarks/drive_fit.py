@@ -11,14 +11,14 @@ many as the fit around strainwave's simulation does.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal
 
 import numpy as np
 import strainwave as sw
+from measure import least
 from numpy.typing import NDArray
 from report import Column, save, tell, three_digits
 from rich.console import Console
@@ -26,7 +26,6 @@ from strainwave.identification.fitting.fit import Fit
 
 Array = NDArray[np.float64]
 Method = Literal["RK45", "LSODA", "Radau"]
-T = TypeVar("T")
 
 DURATION, SAMPLE, DT = 30.0, 2e-3, 1e-3  # s; the step of strainwave's simulation
 RATIO, BACK_EMF, INDUCTANCE, PROPORTIONAL, DERIVATIVE, LIMIT = 80.0, 0.0755, 1e-3, 1.0, 0.02, 48.0
@@ -179,16 +178,6 @@ def by_scipy(log: sw.Recording, run: Callable[[Array, Array], Array]) -> tuple[A
     return np.asarray(found.x * start()), runs
 
 
-def least(run: Callable[[], T], rounds: int) -> tuple[T, float, float]:
-    """What it returns, and the least time of all cores and on the wall [s]."""
-    taken = []
-    for _ in range(rounds):
-        begun, used = time.perf_counter(), time.process_time()
-        found = run()
-        taken.append((time.process_time() - used, time.perf_counter() - begun))
-    return found, *(min(each) for each in zip(*taken, strict=True))
-
-
 def run(console: Console) -> None:
     """Prints, and writes the table."""
     log, command = measured(), commanded()
@@ -212,9 +201,7 @@ def run(console: Console) -> None:
             row.name,
             str(row.runs),
             "–" if row.off is None else f"{row.off:.2f}",
-            three_digits(row.cpu_time),
-            three_digits(row.cpu_time / rows[0].cpu_time),
-            three_digits(row.wall_time),
+            *map(three_digits, (row.cpu_time, row.cpu_time / rows[0].cpu_time, row.wall_time)),
         )
         for row in rows
     ]

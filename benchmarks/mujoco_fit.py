@@ -9,22 +9,20 @@ the same length; both begin at the same numbers. `mujoco.sysid` is told how much
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import strainwave as sw
+from measure import least
 from numpy.typing import NDArray
 from report import Column, installed, save, tell, three_digits
 from rich.console import Console
 from strainwave.identification.fitting.fit import Fit
 
 Array = NDArray[np.float64]
-T = TypeVar("T")
 
 DURATION, SAMPLE, DT = 10.0, 2e-3, 1e-3  # s; the step of both simulations
 RATIO, TORQUE_CONSTANT, GRAVITY, ARM = 80.0, 0.1, 9.81, 0.2  # arm: m, from the axis to the centre of mass of the pendulum
@@ -187,16 +185,6 @@ def by_mujoco(log: Mujoco) -> Array:
     return np.asarray(found["drive"].value * truth())
 
 
-def least(run: Callable[[], T], rounds: int) -> tuple[T, float, float]:
-    """What it returns, and the least time of all cores and on the wall [s]."""
-    taken = []
-    for _ in range(rounds):
-        begun, used = time.perf_counter(), time.process_time()
-        found = run()
-        taken.append((time.process_time() - used, time.perf_counter() - begun))
-    return found, *(min(each) for each in zip(*taken, strict=True))
-
-
 def run(console: Console) -> None:
     """Prints, and writes the table."""
     own_log = log_of_strainwave()
@@ -220,9 +208,7 @@ def run(console: Console) -> None:
             row.name,
             three_digits(row.off),
             three_digits(100.0 * row.relative),
-            three_digits(row.cpu_time),
-            three_digits(row.cpu_time / rows[0].cpu_time),
-            three_digits(row.wall_time),
+            *map(three_digits, (row.cpu_time, row.cpu_time / rows[0].cpu_time, row.wall_time)),
         )
         for row in rows
     ]
