@@ -1,17 +1,18 @@
 #pragma once
 #include <strainwave/condition.hpp>
 #include <strainwave/control/law.hpp>
+#include <strainwave/drive/contacts.hpp>
+#include <strainwave/drive/coupled_bodies.hpp>
 #include <strainwave/drive/input.hpp>
 #include <strainwave/drive/output.hpp>
 #include <strainwave/drive/power.hpp>
+#include <strainwave/drive/prescribed_motion.hpp>
 #include <strainwave/drive/state.hpp>
-#include <strainwave/friction/resistance.hpp>
 #include <strainwave/gear.hpp>
 #include <strainwave/load/load.hpp>
 #include <strainwave/meter/no_meter.hpp>
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/sensors.hpp>
-#include <strainwave/shaft.hpp>
 #include <strainwave/system.hpp>
 #include <strainwave/thermal/isothermal.hpp>
 
@@ -100,17 +101,14 @@ struct Drive {
     using Measurement = control::Measurement<S>;
     using Shaft = strainwave::Shaft<S>;
     using Contact = friction::Contact<S>;
+    using Contacts = strainwave::Contacts<S>;
+    using Mesh = typename Gear::Mesh;
     using Resistance = friction::Resistance<S>;
-
-    /// The places where friction acts.
-    struct Contacts {
-        Contact input, mesh, output;
-    };
 
     /// The rate of the continuous numbers, and what it was worked out from.
     struct Derivatives {
         Continuous rate;
-        typename Gear::Mesh mesh;
+        Mesh mesh;
         Contacts contacts;
         S actuation, load_torque;
         Braking<S> braking;                                ///< of the load
@@ -175,8 +173,7 @@ struct Drive {
     }
 
     /// The gear comes to rest where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
-    constexpr void settle_gear(State& x, const typename Gear::Mesh& mesh, const S& twist, const S& torque,
-                               const S& temperature) const {
+    constexpr void settle_gear(State& x, const Mesh& mesh, const S& twist, const S& torque, const S& temperature) const {
         const auto found = gear.settled(x.continuous.structure, gear_shafts(x, x.continuous), mesh, twist, torque, temperature);
         x.continuous.structure = found.state;
         x.continuous.transmission_error = found.transmission_error;
@@ -185,7 +182,7 @@ struct Drive {
     constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u) const {
         if constexpr (load::can_prescribe<Load>) {
             if (prescribes(load)) {
-                const Continuous z = placed(x, y, u);
+                const Continuous z = prescribed_motion::placed<S>(*this, x, y, u);
                 return derivatives(x, z, u, mesh(x, z, u));
             }
         }
@@ -194,20 +191,13 @@ struct Drive {
 
     /// Brings the memory of a state up to date.
     constexpr Evaluation evaluate(State x, const Input& u) const {
-        if constexpr (load::can_prescribe<Load>) {
-            if (prescribes(load)) {
-                x.continuous = placed(x, x.continuous, u);
-                x.output_slip_direction = sign(u.load_rate);
-            }
-        }
-        if constexpr (motor::can_prescribe<Motor>)
-            if (motor::prescribes(motor)) x.input_slip_direction = sign(x.continuous.input_speed);
+        prescribed_motion::place<S>(*this, x, u);
         const auto geometry = this->geometry(x, x.continuous);
         commit(x, geometry);
         return {x, derivatives(x, x.continuous, u, loaded(geometry, x, x.continuous, u))};
     }
 
-    constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const typename Gear::Mesh& mesh) const {
+    constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u, const Mesh& mesh) const {
         const auto asked = command(u);
         const Measurement actual = measurable(x, y, u, mesh.torque), measured = sensors.shown(y.sensors, actual);
         const S actuation = control::actuation(control, y.control, x.discrete.control, asked, measured);
@@ -215,7 +205,7 @@ struct Drive {
         const S motor_torque = motor.torque(y.motor, actuation, rotor);
 
         Continuous rate{};
-        const Contacts at = contacts(x, y, mesh, u);
+        const Contacts at = contacts::at<S>(*this, x, y, mesh, u);
         const Resistance input = friction::resistance(gear.friction_input, y.friction_input, at.input, rate.friction_input);
         const Resistance meshing = friction::resistance(gear.friction_mesh, y.friction_mesh, at.mesh, rate.friction_mesh);
         const Resistance output = friction::resistance(gear.friction_output, y.friction_output, at.output, rate.friction_output);
@@ -234,7 +224,7 @@ struct Drive {
         if constexpr (motor::can_prescribe<Motor>) {
             if (motor::prescribes(motor)) {
                 rate.input_speed = motor::acceleration<S>(motor, actuation);
-                input_driving_torque = input_inertia() * rate.input_speed + meshing.sliding * mesh.per_input + input.sliding;
+                input_driving_torque = prescribed_motion::driving_torque<S>(*this, rate.input_speed, mesh, meshing, input);
             }
         }
         rate.structure = mesh.rate;
@@ -265,81 +255,52 @@ struct Drive {
         return rates;
     }
     constexpr Continuous clamped(Continuous y, const Derivatives& now) const {
-        const Contacts at = moved(now, y);
+        const Contacts at = contacts::moved<S, Drive>(now, y);
         y.friction_input = friction::clamped(gear.friction_input, y.friction_input, at.input);
         y.friction_mesh = friction::clamped(gear.friction_mesh, y.friction_mesh, at.mesh);
         y.friction_output = friction::clamped(gear.friction_output, y.friction_output, at.output);
         return y;
     }
     constexpr Continuous update_mode(Continuous y, const Derivatives& now) const {
-        const Contacts at = moved(now, y);
+        const Contacts at = contacts::moved<S, Drive>(now, y);
         y.friction_input = friction::update_mode(gear.friction_input, y.friction_input, at.input);
         y.friction_mesh = friction::update_mode(gear.friction_mesh, y.friction_mesh, at.mesh);
         y.friction_output = friction::update_mode(gear.friction_output, y.friction_output, at.output);
         return y;
     }
 
-    // Bodies within the gear, and both shafts: what masses, dampers and even springs do to them is linear.
+    // Bodies within the gear and both shafts, as one block.
 
-    static constexpr int coupled_count = Gear::always_rigid ? 0 : 3 + size_of<S, typename Structure::State>;
+    static constexpr int coupled_count = coupled_bodies::count<S, Gear, Structure>;
     using Coupled = Array<S, (coupled_count > 0 ? coupled_count : 1)>;
     constexpr bool couples() const { return !gear.structure.rigid(); }
-    constexpr Coupled coupled(const Continuous& y) const {
-        Coupled z{{y.input_speed, y.transmission_error, y.output_speed}};
-        const auto inner = flattened<S>(y.structure);
-        for (int i = 0; i < inner.size(); ++i) z[3 + i] = inner[i];
-        return z;
-    }
-    constexpr void set_coupled(Continuous& y, const Coupled& z) const {
-        y.input_speed = z[0];
-        y.transmission_error = z[1];
-        y.output_speed = z[2];
-        auto inner = flattened<S>(y.structure);
-        for (int i = 0; i < inner.size(); ++i) inner[i] = z[3 + i];
-        refill(y.structure, inner);
-    }
-    /// For each shaft 1 where it moves as it is driven, else 0: it sticks, or is placed.
-    constexpr Array<S, 2> coupled_mode(const State& x) const {
-        const auto moves = [](const S& slip_direction) { return select(slip_direction == S(0.0), S(0.0), S(1.0)); };
-        return {{motor::prescribes(motor) ? S(0.0) : moves(x.input_slip_direction),
-                 prescribes(load) ? S(0.0) : moves(x.output_slip_direction)}};
-    }
+    constexpr Coupled coupled(const Continuous& y) const { return coupled_bodies::numbers<S, Drive>(y); }
+    constexpr void set_coupled(Continuous& y, const Coupled& z) const { coupled_bodies::set_numbers<S, Drive>(y, z); }
+    constexpr Array<S, 2> coupled_mode(const State& x) const { return coupled_bodies::mode<S>(*this, x); }
     constexpr Coupled coupled_rate(const Array<S, 2>& moves, const Coupled& z) const {
-        Continuous y{};
-        y.structure = strainwave::initial_state(gear.structure);
-        set_coupled(y, z);
-        const auto even = gear.even_reaction(y.structure, gear_shafts(State{}, y));
-        Continuous rate{};
-        rate.input_speed = -moves[0] * even.input_torque / input_inertia();
-        rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
-        rate.output_speed = moves[1] * even.torque / output_inertia();
-        rate.structure = even.rate;
-        return coupled(rate);
+        return coupled_bodies::rate<S>(*this, moves, z);
     }
-    /// By the angle of the wave generator: there the torque on it jumps.
     constexpr S side(const State& x) const { return gear.side(generator(x).angle); }
     constexpr S side(const State& x, const State& after, const S& dt, const S& fraction) const {
-        const structure::Generator<S> from = generator(x), to = generator(after);
-        const S moved = to.angle.within - from.angle.within + S(2.0 * pi) * (to.angle.turns - from.angle.turns);
-        const S begin = dt * from.speed, end = dt * to.speed, bend = S(3.0) * moved - S(2.0) * begin - end;
-        const S way = fraction * (begin + fraction * (bend + fraction * (begin + end - S(2.0) * moved)));
-        return gear.side({from.angle.within + way, from.angle.turns});
+        return coupled_bodies::side<S>(*this, x, after, dt, fraction);
     }
     constexpr structure::Generator<S> generator(const State& x) const {
         return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous));
     }
-    /// The inertia [kg.m2] that a torque of the gear moves at the input: where the motor prescribes the motion, it moves nothing.
-    constexpr S movable(const S& inertia) const { return motor::prescribes(motor) ? S(load::immovable) : inertia; }
     /// What vibrates in the gear where its spring has a stiffness [N.m/rad].
     constexpr structure::Bodies<S> bodies(const S& stiffness) const {
-        return {movable(input_inertia()),        gear.input_inertia, output_inertia(),
-                gear.kinematics.inverse_ratio(), stiffness,          gear.damping,
+        return {prescribed_motion::movable<S>(*this, input_inertia()),
+                gear.input_inertia,
+                output_inertia(),
+                gear.kinematics.inverse_ratio(),
+                stiffness,
+                gear.damping,
                 load_stiffness<S>(load)};
     }
 
     /// What friction remembers after `dt` [s] at constant speeds; what moves stays where it is.
     constexpr State aged(State x, const Input& u, const S& dt) const {
-        const Contacts at = contacts(x, x.continuous, mesh(x, x.continuous, u), u);
+        const Contacts at = contacts::at<S>(*this, x, x.continuous, mesh(x, x.continuous, u), u);
         x.continuous.friction_input = friction::advance(gear.friction_input, x.continuous.friction_input, at.input, dt);
         x.continuous.friction_mesh = friction::advance(gear.friction_mesh, x.continuous.friction_mesh, at.mesh, dt);
         x.continuous.friction_output = friction::advance(gear.friction_output, x.continuous.friction_output, at.output, dt);
@@ -355,7 +316,7 @@ struct Drive {
 
     /// Commits the twist at which the shafts now stand to the hysteresis. Where the twist has turned round on the way, the turning
     /// point is committed first: to miss it would be an error of memory, which stays.
-    constexpr void commit(State& x, const typename Gear::Mesh& now) const {
+    constexpr void commit(State& x, const Mesh& now) const {
         const auto turned = x.held_rate * now.twist_rate < S(0.0);
         if (any(turned)) {
             State there = x;
@@ -413,7 +374,8 @@ struct Drive {
         (i == 0 ? x.input_slip_direction : x.output_slip_direction) = slip_direction;
     }
     constexpr S slip_friction(int i, const State& x, const Derivatives& now, const S& direction) const {
-        return i == 0 ? input_friction(x, now, direction) : output_friction(x, now, direction) + direction * now.braking.slip;
+        return i == 0 ? contacts::input_friction<S>(*this, x, now, direction)
+                      : contacts::output_friction<S>(*this, x, now, direction) + direction * now.braking.slip;
     }
     constexpr void move_positions(State& x, const State& before, const S& dt) const {
         const S half = S(0.5) * dt, inverse = gear.kinematics.inverse_ratio();
@@ -459,17 +421,16 @@ struct Drive {
                bounded<Contact>(gear.friction_output);
     }
 
-    constexpr typename Gear::Mesh geometry(const State& x, const Continuous& y) const {
-        return gear.geometry(y.structure, gear_shafts(x, y));
+    constexpr S input_angle(const State& x, const Continuous& y) const { return y.input_angle + S(2.0 * pi) * x.turns; }
+    constexpr S output_angle(const State& x, const Continuous& y) const {
+        return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;
     }
+    constexpr Mesh geometry(const State& x, const Continuous& y) const { return gear.geometry(y.structure, gear_shafts(x, y)); }
     constexpr typename Gear::Shafts gear_shafts(const State& x, const Continuous& y) const {
         return gear.shafts({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
     }
-    constexpr typename Gear::Mesh mesh(const State& x, const Continuous& y, const Input& u) const {
-        return loaded(geometry(x, y), x, y, u);
-    }
-    constexpr typename Gear::Mesh loaded(const typename Gear::Mesh& geometry, const State& x, const Continuous& y,
-                                         const Input& u) const {
+    constexpr Mesh mesh(const State& x, const Continuous& y, const Input& u) const { return loaded(geometry(x, y), x, y, u); }
+    constexpr Mesh loaded(const Mesh& geometry, const State& x, const Continuous& y, const Input& u) const {
         return gear.loaded(geometry, y.structure, gear_shafts(x, y), x.hysteresis, x.held_twist, temperatures(y, u).gear);
     }
     constexpr thermal::Temperatures<S> temperatures(const Continuous& y, const Input& u) const {
@@ -480,13 +441,11 @@ struct Drive {
     constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u) const {
         return {{y.input_angle, x.turns}, y.input_speed, temperatures(y, u).winding};
     }
-    /// The same, and the torque that its motion needs, where the motor prescribes it: Newton's second law.
+    /// The same, and the torque that its motion needs, where the motor prescribes it.
     constexpr Rotor rotor(const State& x, const Continuous& y, const Input& u, const Derivatives& now) const {
         Rotor at = rotor(x, y, u);
         if constexpr (motor::can_prescribe<Motor>)
-            if (motor::prescribes(motor))
-                at.torque = input_inertia() * now.rate.input_speed + now.mesh.input_torque +
-                            now.friction_mesh * now.mesh.per_input + now.friction_input;
+            if (motor::prescribes(motor)) at.torque = prescribed_motion::motor_torque<S>(*this, now);
         return at;
     }
 
@@ -575,66 +534,14 @@ private:
     }
 
     constexpr Shaft input_shaft(const State& x, const Derivatives& now) const {
-        const S hold = input_sticks() ? input_hold(now) : S(0.0);
+        const S hold = input_sticks() ? contacts::input_hold<S>(*this, now) : S(0.0);
         const S driving = motor::prescribes(motor) ? input_inertia() * now.rate.input_speed : now.input_driving_torque;
         return {input_sticks(), input_inertia(), x.continuous.input_speed, x.input_slip_direction, driving, hold};
     }
     constexpr Shaft output_shaft(const State& x, const Derivatives& now) const {
-        const S hold = output_sticks() ? output_hold(now) : S(0.0);
+        const S hold = output_sticks() ? contacts::output_hold<S>(*this, now) : S(0.0);
         return {output_sticks(),         output_inertia(),          x.continuous.output_speed,
                 x.output_slip_direction, now.output_driving_torque, hold};
-    }
-
-    /// How each place moves and what it bears. The output's angle is split into whole turns before it is multiplied out.
-    constexpr Contacts contacts(const State& x, const Continuous& y, const typename Gear::Mesh& mesh, const Input& u) const {
-        const S inverse = gear.kinematics.inverse_ratio(), turned = x.turns * inverse, turns = rint(turned);
-        const S rigid = S(2.0 * pi) * (turned - turns) + y.input_angle * inverse, temperature = temperatures(y, u).gear;
-        return {{y.input_speed, x.input_slip_direction, {y.input_angle, x.turns}, mesh.input_torque, temperature},
-                {y.input_speed * mesh.per_input,
-                 along(mesh.per_input, x.input_slip_direction),
-                 {rigid, turns},
-                 mesh.torque,
-                 temperature},
-                {y.output_speed, x.output_slip_direction, {rigid - y.transmission_error, turns}, mesh.torque, temperature}};
-    }
-
-    /// The contacts of an instant, moving at other speeds.
-    constexpr Contacts moved(const Derivatives& now, const Continuous& y) const {
-        return {now.contacts.input.moving(y.input_speed), now.contacts.mesh.moving(y.input_speed * now.mesh.per_input),
-                now.contacts.output.moving(y.output_speed)};
-    }
-
-    /// The largest torque that holds a shaft against what drives it.
-    constexpr S input_hold(const Derivatives& now) const {
-        const S push = sign(now.input_driving_torque), per_input = now.mesh.per_input;
-        const S held = friction::hold(gear.friction_input, now.contacts.input.pushed(push)) +
-                       abs(per_input) * friction::hold(gear.friction_mesh, now.contacts.mesh.pushed(along(per_input, push)));
-        return max(held, S(negligible_hold));
-    }
-    constexpr S output_hold(const Derivatives& now) const {
-        const S held = friction::hold(gear.friction_output, now.contacts.output.pushed(sign(now.output_driving_torque)));
-        return max(held + now.braking.hold, S(negligible_hold));
-    }
-
-    /// The torque of set-valued friction against a shaft that slips one way.
-    constexpr S input_friction(const State& x, const Derivatives& now, const S& sense) const {
-        const Contact mesh = now.contacts.mesh.pushed(along(now.mesh.per_input, sense));
-        return friction::sliding_torque(gear.friction_input, x.continuous.friction_input, now.contacts.input.pushed(sense)) +
-               friction::sliding_torque(gear.friction_mesh, x.continuous.friction_mesh, mesh) * now.mesh.per_input;
-    }
-    constexpr S output_friction(const State& x, const Derivatives& now, const S& sense) const {
-        return friction::sliding_torque(gear.friction_output, x.continuous.friction_output, now.contacts.output.pushed(sense));
-    }
-    constexpr S input_angle(const State& x, const Continuous& y) const { return y.input_angle + S(2.0 * pi) * x.turns; }
-    constexpr S output_angle(const State& x, const Continuous& y) const {
-        return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;
-    }
-
-    /// The numbers with the output shaft where its load puts it.
-    constexpr Continuous placed(const State& x, Continuous y, const Input& u) const {
-        y.transmission_error = input_angle(x, y) * gear.kinematics.inverse_ratio() - u.load;
-        y.output_speed = u.load_rate;
-        return y;
     }
 
     constexpr control::Command<S> command(const Input& u) const { return {u.command, u.command_rate, gear.kinematics.ratio()}; }

@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/control/law.hpp>
+#include <strainwave/drive/prescribed_motion.hpp>
 #include <strainwave/fastest.hpp>
 #include <strainwave/friction/resistance.hpp>
 #include <strainwave/load/load.hpp>
@@ -27,7 +28,7 @@ constexpr S steepest(const Drive& drive, const S& twist, const S& temperature) {
 template <class S, class Drive>
 constexpr S of_two_masses(const Drive& drive, const S& stiffness) {
     const S inverse = drive.gear.kinematics.inverse_ratio();
-    const S by_input = inverse * inverse / drive.movable(inertia_of<S>(drive.motor) + drive.gear.input_inertia);
+    const S by_input = inverse * inverse / prescribed_motion::movable<S>(drive, inertia_of<S>(drive.motor) + drive.gear.input_inertia);
     const S of_gear = stiffness * (S(1.0) / drive.output_inertia() + by_input);
     const S of_load = load_stiffness<S>(drive.load) / drive.output_inertia();
     const S mean = S(0.5) * (of_gear + of_load), share = stiffness * by_input / max(mean, S(smallest));
@@ -116,7 +117,7 @@ constexpr S bristle_frequency(const Drive& drive) {
     const S input = friction::presliding_stiffness<S>(gear.friction_input) +
                     friction::presliding_stiffness<S>(gear.friction_mesh) * inverse * inverse;
     const S output = friction::presliding_stiffness<S>(gear.friction_output);
-    return sqrt(max(input / drive.movable(drive.input_inertia()), output / drive.output_inertia()));
+    return sqrt(max(input / prescribed_motion::movable<S>(drive, drive.input_inertia()), output / drive.output_inertia()));
 }
 
 }  // namespace strainwave::own_motion
