@@ -159,16 +159,18 @@ private:
 
     constexpr void prepare(const System& system, const State& x, const S& dt) {
         const Mode asked = system.coupled_mode(x);
-        bool same = known;
+        S taken = dt;
         if (known) {
             const S off = dt - length;
-            same = all(abs(off) < S(rounding) * length) && !sought(off);
-            for (int i = 0; i < asked.size(); ++i) same = same && all(mode[i] == asked[i]);
+            auto same = abs(off) < S(rounding) * length;
+            for (int i = 0; i < asked.size(); ++i) same = same & (mode[i] == asked[i]);
+            if (all(same) && !sought(off)) return;
+            // What other lanes and derivatives need anew has in this lane the length that it keeps alone, to the last bit.
+            taken = select(same, detached(length) + (dt - detached(dt)), dt);
         }
-        if (same) return;
-        coupling.set(coupled_matrix<S>(system, asked), dt);
+        coupling.set(coupled_matrix<S>(system, asked), taken);
         mode = asked;
-        length = dt;
+        length = taken;
         known = true;
     }
     /// Up to shortly before a moment, past it, and on to the end.
