@@ -63,12 +63,12 @@ struct OneOf<S, Law> {
 };
 
 /// The models of most papers and of most catalogues.
-template <class S, template <class...> class... FrictionInput>
+template <class S, class FrictionOutput, template <class...> class... FrictionInput>
 using Usual = Drive<S, AnyOf<S, List<control::OpenLoop, control::PID>>, motor::DC<S>,
                     Gear<S, AnyOf<S, kinematics::Models>, kinematic_error::Fourier<S>, kinematic_error::Stochastic<S>,
                          AnyOf<S, List<stiffness::Linear, stiffness::Piecewise, stiffness::ThreeSegment, stiffness::Cubic>>,
                          hysteresis::MaxwellSlip<S>, typename OneOf<S, FrictionInput...>::type, friction::Viscous<S>,
-                         friction::Viscous<S>, softening::ThermalSoftening<S>>,
+                         FrictionOutput, softening::ThermalSoftening<S>>,
                     AnyOf<S, List<load::Inertia, load::Pendulum>>, Sensors<S, sensor::Ideal<S>>>;
 
 }  // namespace detail
@@ -79,11 +79,13 @@ using CompiledDrive = decltype(AnyDrive<S>{}.compile());
 /// The same without the laws that have long states.
 template <class S>
 using ShortDrive = typename detail::ShortDriveOf<CompiledDrive<S>>::type;
-/// The usual drives, by the friction at their input.
+/// The usual drives, by the friction at their input. Without memory that of the output may stick, too, as a seal does.
 template <class S>
-using DriveOnBristles = decltype(detail::Usual<S, friction::LuGre>{}.compile());
+using DriveOnBristles = decltype(detail::Usual<S, friction::Viscous<S>, friction::LuGre>{}.compile());
 template <class S>
-using DriveWithoutMemory = decltype(detail::Usual<S, friction::Viscous, friction::Coulomb, friction::Stribeck>{}.compile());
+using DriveWithoutMemory = decltype(detail::Usual<S, AnyOf<S, List<friction::Viscous, friction::Coulomb>>, friction::Viscous,
+                                                  friction::Coulomb, friction::Stribeck>{}
+                                        .compile());
 
 namespace detail {
 
