@@ -201,6 +201,7 @@ struct Choice {
     SW_VERB(gear_rate)
     SW_VERB(growth)
     SW_VERB(largest)
+    SW_VERB(most)
     SW_VERB(generator)
     SW_VERB(generator_acceleration)
     SW_VERB(gap)
@@ -211,6 +212,7 @@ struct Choice {
     SW_VERB(compliance)
     SW_VERB(natural_frequency)
     SW_VERB(uneven_frequency)
+    SW_VERB(uneven_decay)
     SW_VERB(decay)
 #undef SW_VERB
 

@@ -262,26 +262,26 @@ struct Gear {
     /// What of the wave generator turns with the input shaft, kg.m2.
     constexpr S shaft_inertia() const { return structure.rigid() ? input_inertia : S(0.0); }
 
-    /// The largest stiffness [N.m/rad] of the spring at twists up to `twist` [rad], of either sign, and with it that of the
-    /// hysteresis where it is first loaded, at a temperature [K]; on turning back some are up to twice as stiff.
+    /// The largest stiffness [N.m/rad] at twists up to `twist` [rad], of either sign, and at a temperature [K]: that of the spring,
+    /// and with it that of the hysteresis as it is first loaded; on turning back some are up to twice as stiff.
     constexpr S steepest(const S& twist, const S& temperature) const {
         S largest = stiffness.tangent(S(0.0));
         over_twists(twist, [&](const S& tangent) { largest = max(largest, tangent); });
         largest = stiffness_variation.largest() * largest;
-        const S little(1e-12);  // rad: within any loop's first slope, and more than rounding
-        const S remembered = hysteresis.torque(typename Hysteresis::State{}, little) / little;
+        const S remembered = max(steepest_loading(twist, S(1.0)), steepest_loading(twist, S(-1.0)));
         if (!softening.active()) return largest + remembered;
         return softening.of_stiffness(temperature) * largest + softening.of_hysteresis(temperature) * remembered;
     }
 
-    /// What the even reaction leaves out at such twists and temperature, over a turn of the wave generator, random errors apart.
+    /// What the even reaction leaves out at such twists and temperature, over a turn of the wave generator.
     constexpr structure::Unevenness<S> unevenness(const S& twist, const S& temperature) const {
         constexpr int parts = 512;
         const S even = even_stiffness();
         S softest = stiffness.tangent(S(0.0));
         over_twists(twist, [&](const S& tangent) { softest = min(softest, tangent); });
         softest = (S(2.0) - stiffness_variation.largest()) * softness(temperature) * softest;
-        structure::Unevenness<S> found{max(steepest(twist, temperature) - even, even - softest), S(0.0), S(0.0)};
+        const S stiffest = steepest(twist, temperature);
+        structure::Unevenness<S> found{max(stiffest - even, even - softest), S(0.0), S(0.0), S(0.0)};
         const auto inner = initial_state(structure);
         for (int i = 0; i < parts; ++i) {
             const Shafts at = shafts({S((2.0 * i / parts - 1.0) * pi), S(0.0)}, S(0.0), S(0.0), S(0.0));
@@ -289,7 +289,14 @@ struct Gear {
             found.slope = max(found.slope, abs(stood.error.slope));
             found.per_twist = max(found.per_twist, abs(stood.per_twist));
         }
-        return found;
+        const structure::Unevenness<S> random = random_unevenness(stiffest);
+        return {found.stiffness, found.slope + random.slope, found.per_twist + random.per_twist, random.per_speed};
+    }
+    /// What of it is the random error's, at rest, where the spring has a stiffness [N.m/rad].
+    constexpr structure::Unevenness<S> random_unevenness(const S& spring) const {
+        if (!kinematic_noise.active()) return {S(0.0), S(0.0), S(0.0), S(0.0)};
+        const auto most = kinematic_noise.most();
+        return {S(0.0), most.slope, most.per_torque * spring, most.per_speed};
     }
 
 private:
@@ -298,6 +305,23 @@ private:
     constexpr void over_twists(const S& twist, const Visit& visit) const {
         constexpr int parts = 64;
         for (int i = -parts; i <= parts; ++i) visit(stiffness.tangent(twist * S(double(i) / parts)));
+    }
+    /// The largest stiffness [N.m/rad] of the hysteresis on its first way to a twist [rad], to one side.
+    constexpr S steepest_loading(const S& twist, const S& side) const {
+        constexpr int parts = 64;
+        const typename Hysteresis::State virgin{};
+        const S little = side * S(1e-12);  // rad: within any loop's first slope, and more than rounding
+        S largest = hysteresis.torque(virgin, little) / little;
+        if (!any(twist > S(0.0))) return largest;
+        const S part = side * max(twist / S(parts), S(1e-12));
+        S before{0.0};
+        for (int i = 1; i <= parts; ++i) {
+            const S torque = hysteresis.torque(virgin, S(i) * part);
+            largest = max(largest, (torque - before) / part);
+            before = torque;
+        }
+        const S rest = S(1.0 / parts) * part;  // of the way, for a stiffness that rises steeply
+        return max(largest, (before - hysteresis.torque(virgin, S(parts) * part - rest)) / rest);
     }
     /// Teeth that the kinematic error is told are those of the kinematics, or have its ratio where it is told no teeth.
     constexpr Contradiction<S> problem_of_teeth(const S& ratio) const {

@@ -24,11 +24,12 @@ constexpr S steepest(const Drive& drive, const S& twist, const S& temperature) {
     return drive.gear.steepest(twist, detail::temperature<S>(drive, temperature));
 }
 
-/// The faster angular frequency [rad/s] of two masses, one spring between them and one behind the output: of gear and load.
+/// The faster angular frequency [rad/s] of two masses, one spring between them and one behind the output: of gear and load. A
+/// kinematic error with a slope [rad/rad] adds to what the input twists the spring by.
 template <class S, class Drive>
-constexpr S of_two_masses(const Drive& drive, const S& stiffness) {
-    const S inverse = drive.gear.kinematics.inverse_ratio();
-    const S by_input = inverse * inverse / prescribed_motion::movable<S>(drive, inertia_of<S>(drive.motor) + drive.gear.input_inertia);
+constexpr S of_two_masses(const Drive& drive, const S& stiffness, const S& slope) {
+    const S lever = abs(drive.gear.kinematics.inverse_ratio()) + slope;
+    const S by_input = lever * lever / prescribed_motion::movable<S>(drive, inertia_of<S>(drive.motor) + drive.gear.input_inertia);
     const S of_gear = stiffness * (S(1.0) / drive.output_inertia() + by_input);
     const S of_load = load_stiffness<S>(drive.load) / drive.output_inertia();
     const S mean = S(0.5) * (of_gear + of_load), share = stiffness * by_input / max(mean, S(smallest));
@@ -84,12 +85,13 @@ constexpr S current_damping(const Drive& drive) {
 template <class S, class Drive>
 constexpr S natural_frequency(const Drive& drive, const S& twist, const S& temperature) {
     const S stiffness = detail::steepest<S>(drive, twist, temperature);
-    return drive.gear.structure.rigid() ? detail::of_two_masses<S>(drive, stiffness)
+    return drive.gear.structure.rigid() ? detail::of_two_masses<S>(drive, stiffness, S(0.0))
                                         : drive.gear.structure.natural_frequency(drive.bodies(stiffness));
 }
 
 /// The fastest that fixed steps must follow, as an angular frequency [rad/s]: vibrations, the decay of speeds and of a controlled
-/// current, sensors, what the controller filters, and temperatures. Of a decay a Runge-Kutta step of fourth order bears 2.78 times
+/// current, sensors, what the controller filters, and temperatures; with the random error of the gear, which stiffens the one and
+/// damps the other, be it the wrong way round. Of a decay a Runge-Kutta step of fourth order bears 2.78 times
 /// its length, of a vibration 2.83 times, and 2.5 leaves room. Of bodies within the gear it is what their even reaction leaves
 /// out, for steps take that exactly; where much is left out, their vibrations: 1.25 radians of these a step are stable, whatever is
 /// left out.
@@ -98,15 +100,19 @@ constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const auto& gear = drive.gear;
     const S filters = max(drive.sensors.fastest(), strainwave::fastest<S>(drive.control));
     const S inner = max(filters, strainwave::fastest<S>(drive.thermal));
-    const S stiffness = detail::steepest<S>(drive, twist, temperature);
-    const S decay = max(detail::damping<S>(drive), detail::current_damping<S>(drive));
-    if (gear.structure.rigid()) return max(max(detail::of_two_masses<S>(drive, stiffness), decay / S(2.5)), inner);
+    const S stiffest = detail::steepest<S>(drive, twist, temperature);
+    const auto random = gear.random_unevenness(stiffest);
+    const S stiffness = gear.structure.rigid() ? stiffest * (S(1.0) + random.per_twist) : stiffest;
+    auto bodies = drive.bodies(stiffness);
+    const S decay = max(detail::damping<S>(drive) + gear.structure.uneven_decay(bodies, random), detail::current_damping<S>(drive));
+    if (gear.structure.rigid()) return max(max(detail::of_two_masses<S>(drive, stiffness, random.slope), decay / S(2.5)), inner);
     const auto x = drive.rest();
     const S softer = S(1.0) + stiffness * gear.compliance(drive.gear_shafts(x, x.continuous), drive.geometry(x, x.continuous));
-    const auto bodies = drive.bodies(stiffness);
-    const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies)) / S(1.25);
     const S uneven = gear.structure.uneven_frequency(bodies, gear.unevenness(twist, detail::temperature<S>(drive, temperature)));
-    return max(max(detail::of_two_masses<S>(drive, stiffness / softer), max(decay / S(2.5), min(uneven, of_bodies))), inner);
+    bodies.inverse_ratio = along(bodies.inverse_ratio, abs(bodies.inverse_ratio) + random.slope);
+    const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies)) / S(1.25);
+    const S of_shafts = detail::of_two_masses<S>(drive, stiffness / softer, random.slope);
+    return max(max(of_shafts, max(decay / S(2.5), min(uneven, of_bodies))), inner);
 }
 
 /// The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.

@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/math.hpp>
 #include <strainwave/structure/structure.hpp>
 
 namespace strainwave::structure {
@@ -67,6 +68,9 @@ struct Lumped {
     }
     constexpr S natural_frequency(const Bodies<S>&) const { return S(0.0); }
     constexpr S uneven_frequency(const Bodies<S>&, const Unevenness<S>&) const { return S(0.0); }
+    constexpr S uneven_decay(const Bodies<S>& bodies, const Unevenness<S>& of) const {
+        return bodies.stiffness * of.per_speed * (abs(bodies.inverse_ratio) + of.slope) / bodies.input_inertia;
+    }
     constexpr S decay(const Bodies<S>&) const { return S(0.0); }
 };
 

@@ -294,6 +294,9 @@ struct Staged {
             const S square = S(4.0) * springs + bearing.most() * (along_both + sqrt(straight * bent) + bent);
             return max(sqrt(square), S(growth) * square / max(slowest_decay(bodies), S(smallest)));
         }
+        constexpr S uneven_decay(const Bodies<S>& bodies, const Unevenness<S>& of) const {
+            return bearing.most() * of.per_speed * (abs(bodies.inverse_ratio) + of.slope) / bodies.generator_inertia;
+        }
         constexpr S decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
             return largest_eigenvalue(bodies, {coupling.damping, bearing.damping, mesh.damping, ends.held, ends.driving, S(0.0)});
@@ -448,6 +451,7 @@ struct Staged {
     SW_OF_CHAIN(compliance)
     SW_OF_CHAIN(natural_frequency)
     SW_OF_CHAIN(uneven_frequency)
+    SW_OF_CHAIN(uneven_decay)
     SW_OF_CHAIN(decay)
 #undef SW_OF_CHAIN
 };

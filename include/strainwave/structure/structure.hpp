@@ -19,6 +19,7 @@
 ///     compliance(shafts, mesh)               rad/(N.m), of all but the spring
 ///     natural_frequency(bodies)              rad/s, of the fastest mode
 ///     uneven_frequency(bodies, unevenness)   rad/s, that what the even reaction leaves out would have by itself
+///     uneven_decay(bodies, unevenness)       1/s, of the speed of the wave generator, by an error that follows it
 ///     decay(bodies)                          1/s, by damping alone
 namespace strainwave::structure {
 
@@ -81,7 +82,8 @@ template <class S>
 struct Unevenness {
     S stiffness;  ///< of the spring, beside what it has at rest, N.m/rad
     S slope;      ///< of the kinematic error over the angle of the wave generator, rad/rad
-    S per_twist;  ///< and over the twist of the spring, rad/rad
+    S per_twist;  ///< over the twist of the spring, rad/rad
+    S per_speed;  ///< and over the speed of the wave generator, rad.s/rad
 };
 
 }  // namespace strainwave::structure
