@@ -16,6 +16,7 @@ from strainwave.identification.duplicates import same_as
 from strainwave.identification.each_file import fitted
 from strainwave.identification.findings import Finding, Number, numbers_of
 from strainwave.identification.known import Known, plain
+from strainwave.identification.parts import joined
 from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
@@ -89,8 +90,10 @@ def identify(
     """
     _check_arguments(files, mapping)
     paths = [file for path in files for file in files_of(Path(path))]
-    read = [_recognised(path, mapping) for path in paths]
-    recognised = [each for each in read if isinstance(each, Recognised)]
+    each_read = {path: _recognised(path, mapping) for path in paths}
+    recognised = joined([each for each in each_read.values() if isinstance(each, Recognised)])
+    whole = {each.path: each for each in recognised}
+    read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, Finding)}
     start = _with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
     found = _Found(Known(start, accept=accept), same_as(recognised), mapping)
     runs = list(found.runs(recognised))
@@ -104,8 +107,8 @@ def identify(
                 progress(file.path.name)
                 found.take(file)
     found.take_turns(runs)
-    own = [each if isinstance(each, Finding) else found.findings[each.path] for each in read]
-    findings = (*_named_apart(own, paths, found.copies), *found.together)
+    own = [each if isinstance(each, Finding) else found.findings[each.path] for each in read.values()]
+    findings = (*_named_apart(own, list(read), found.copies), *found.together)
     numbers = numbers_of(findings)
     if not numbers:
         raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, findings))}")

@@ -38,11 +38,13 @@ class Clock(ComparedByFields):
         time: of each row that is kept [s], increasing, shape (n,)
         rows: which rows are kept, shape (n,)
         remarks: what was found and done, in words
+        began: the stamp from which the time is counted [s]
     """
 
     time: Array
     rows: Rows
     remarks: tuple[str, ...] = ()
+    began: float = 0.0
 
 
 def regular(rows: int, rate: float) -> Clock:
@@ -88,11 +90,12 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None, angle: Array
             rows = rows[~again]
             remarks.append(f"{_rows(count)} {_verb(count, 'repeats', 'repeat')} the row before and {_is(count)} left out")
     found = _regular(stamps[rows], step, None if angle is None else angle[rows]) or _as_they_are(stamps[rows])
-    time = found.time
+    time, began = found.time, 0.0
     if time[0] > LATE:
-        time = time - time[0]
+        began = float(time[0])
+        time = time - began
         remarks.append("its time is counted from its first row")
-    return Clock(time, rows[found.rows], (*remarks, *found.remarks))
+    return Clock(time, rows[found.rows], (*remarks, *found.remarks), began)
 
 
 def _longest_stretch(stamps: Array) -> Clock:

@@ -50,6 +50,7 @@ class Recognised:
         regressors: the columns of the recording with torques of which shares that are not known act
         joint: what it calls the joint whose recording it is; empty where it says nothing of it
         unused: what it calls the columns that are not used
+        began: the stamp in the file from which the time is counted [s]
     """
 
     path: Path
@@ -65,6 +66,7 @@ class Recognised:
     regressors: tuple[str, ...] = ()
     joint: str = ""
     unused: tuple[str, ...] = ()
+    began: float = 0.0
 
 
 def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognised:
@@ -110,6 +112,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     series |= {name: column.si for name, column in (neighbours | regressors).items()}
     used = {**found.columns, **neighbours, **regressors}
     remarks += _unwrap(table, series, used)
+    began = 0.0
     if found.kind in ("log", "encoders", "effort", "breakaway"):
         try:
             when = _clock(series, said, found.kind)
@@ -117,6 +120,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
             raise ValueError(one_line(f"{table.file}: {error}")) from None
         if when is not None:
             remarks += when.remarks
+            began = when.began
             series = {"time": when.time} | {name: values[when.rows] for name, values in series.items() if name != "time"}
     unused = _unused(table, used.values())
     return Recognised(
@@ -133,6 +137,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         tuple(regressors),
         found.columns["output_angle"].which if "output_angle" in found.columns else "",
         unused,
+        began,
     )
 
 
