@@ -278,13 +278,15 @@ def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[Mo
         log, drive, file.recording.time, {name: file.recording[at] for name, at in file.neighbours.items()}, file.joint
     )
     errors = f"error {100.0 * found.before:.2g} % of what varies without and {100.0 * found.after:.2g} % with them"
-    terms = list(found.log.regressors)
     which = f"joints {listed(found.joints)} move too: "
-    if not terms:
+    if not found.terms:
         return log, [f"{which}no torque of them was found that other parts of the record show; if they load it, record longer"]
     own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
-    fitted_beside = f"{len(terms)} terms of them are fitted beside, {listed(terms)}; {errors}"
-    return found.log, [f"{which}{fitted_beside}; numbers are as sure as these terms: {own}"]
+    terms = f"{len(found.terms)} terms of them are fitted beside, {listed(found.terms)}"
+    if found.combined:
+        count = len(found.log.regressors) - len(log.regressors)
+        terms = f"{count} combinations of all terms that they may add are fitted beside, the largest {listed(found.terms)}"
+    return found.log, [f"{which}{terms}; {errors}; numbers are as sure as these terms: {own}"]
 
 
 def _log(file: Recognised, known: Known) -> tuple[Finding, Known]:

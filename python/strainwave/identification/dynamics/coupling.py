@@ -6,9 +6,13 @@ Lagrange's equations make of each such term of the energy one of the torque, cen
 
 .. math:: \\frac{\\mathrm d}{\\mathrm dt} \\frac{\\partial E}{\\partial \\dot q_j} - \\frac{\\partial E}{\\partial q_j}
 
-Which terms an arm has, its geometry says, which is not known here: those are taken, one after another, that explain the torque
-best, for as long as they also predict blocks of time that they were not chosen by. A term of one more joint must explain twice
-as much, as joints of an arm often move in like periods, and many terms then explain the same.
+Which terms an arm has, its geometry says, which is not known here. Two ways lead to them. Those are taken, one after another,
+that explain the torque best, for as long as they also predict blocks of time that they were not chosen by; a term of one more
+joint must explain twice as much. Of a long record that finds what there is. Of a short one it may fail: joints of an arm move
+in like periods, and many terms explain the same. Then all are taken, with shares that are normal about zero. Those of the
+energy are inertias of links, of one size but for sums of more angles; those of gravity are larger by its acceleration over a
+length. The combinations of terms that the record tells are unknowns of a fit; of the others the little that is told is taken
+as known. Of the two ways that one is gone which predicts blocks of time better that were left out.
 """
 
 from __future__ import annotations
@@ -21,18 +25,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
+from strainwave.identification.dynamics.selection import Selection
+from strainwave.identification.dynamics.shrinkage import Shrunk, Told
 from strainwave.identification.experiments.motion import Motion, motion_of
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 
 Array = NDArray[np.float64]
 
-BLOCKS = 10  # of time; the odd ones are left for who compares models, of the others every second one checks
-MOST = 40  # terms
-PATIENCE = 4  # terms that may bring nothing before the search ends
-BETTER = 0.99  # of the error, that the terms of a step must leave at most
-PLAIN = 0.5  # what a term counts for each other joint in it
-INDEPENDENT = 1e-3  # of a term's size, that must not be told by terms before it
-RIGID = 3  # of what a joint has by itself: inertia and gravity
+BLOCKS = 10  # of time; the odd ones are left for who compares models, of the others each checks what the rest tell
+BETTER = 0.99  # of an error, that must be left at most
+PLAIN = 0.5  # what a term counts for each other joint in it, where terms are selected
+SMALLER = 0.3  # share of a term over that of one with an angle less in its sum (assumed)
+NAMED = 5  # terms that are named of combinations
 SLOW = (0.1, 0.5)  # of the usual speed, at which friction may fall
 AT_ONCE = 64  # terms that are filtered at a time
 CROSSED = 3  # angles in a sum, for gravity
@@ -43,19 +47,23 @@ class Coupled:
     """A log with the terms of other joints.
 
     Attributes:
-        log: with the terms as regressors, by their names
+        log: with terms, or combinations of them, as regressors
         joints: that move, too
+        terms: names of those that were selected, or of those with the largest part in the torque
+        combined: whether all terms are taken, in combinations
         before, after: rms error on the blocks that check, over the rms of the torque about its mean, without and with the terms
     """
 
     log: MotionLog
     joints: tuple[str, ...]
+    terms: tuple[str, ...]
+    combined: bool
     before: float
     after: float
 
 
 def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Array], joint: str = "") -> Coupled:
-    """A log with those terms of other joints that its torque shows.
+    """A log with what its torque shows of the terms of other joints.
 
     Args:
         log: of the joint
@@ -73,14 +81,41 @@ def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Arra
     block = np.minimum((BLOCKS * (log.time - log.time[0]) / np.ptp(log.time)).astype(int), BLOCKS - 1)
     terms = list(arm.terms())
     columns, base = _columns(own, arm, terms), own.filtered(_alone(itself)).T
-    search = _Search(torque, base, np.array([term.plain(joint) for term in terms]), block % 4 == 0, block % 4 == 2)
-    loss = search.transmitted(columns[:, search.best(columns)]) * np.sign(own.speed[own.rows])
-    search = replace(search, base=np.column_stack([base, loss]))
-    places = search.best(columns)
-    taken = [terms[place] for place in places]
-    regressors = {term.name: term.torque(arm) for term in taken}
-    found = replace(log, regressors={**log.regressors, **regressors})
-    return Coupled(found, tuple(others), search.error(columns[:, []]), search.error(columns[:, places]))
+    expected, is_energy = np.array([term.expected for term in terms]), np.array([bool(term.speeds) for term in terms])
+    shrunk = Shrunk(torque, base, columns, expected, is_energy)
+    even, checks = block % 2 == 0, [block == place for place in range(0, BLOCKS, 2)]
+    loss = shrunk.transmitted(even) * np.sign(own.speed[own.rows])
+    shrunk = replace(shrunk, base=np.column_stack([base, loss]))
+    plain = np.array([term.plain(joint) for term in terms])
+    places = Selection(torque, shrunk.base, plain, block % 4 == 0, block % 4 == 2).best(columns)
+    told = shrunk.told(even)
+    before, with_all = (shrunk.error(even, checks, scatter) for scatter in (np.zeros_like(told.scatter), told.scatter))
+    with_selected = shrunk.beside_base(columns[:, places]).error(even, checks, np.zeros(0))
+    joints = tuple(others)
+    if not min(with_selected, with_all) < BETTER * before:
+        return Coupled(log, joints, (), False, before, before)
+    if with_selected * BETTER <= with_all:
+        selected = {terms[place].name: terms[place].torque(arm) for place in places}
+        found = replace(log, regressors={**log.regressors, **selected})
+        return Coupled(found, joints, tuple(selected), False, before, with_selected)
+    combined, left = _on_grid(arm, terms, told)
+    size = np.sqrt(np.mean(own.filtered(combined) ** 2, axis=1))
+    regressors = {f"combination {place + 1}": each / size[place] for place, each in enumerate(combined)}
+    found = replace(log, regressors={**log.regressors, **regressors}, extra=log.extra + left)
+    parts = np.std(columns, axis=0) * np.abs(told.shares)
+    largest = tuple(terms[place].name for place in np.argsort(-parts)[:NAMED])
+    return Coupled(found, joints, largest, True, before, with_all)
+
+
+def _on_grid(arm: _Arm, terms: Sequence[_Term], told: Told) -> tuple[Array, Array]:
+    """The combinations that a record tells, shape (k, n), and the torque of the others as they are expected, shape (n,)."""
+    points = len(arm.moving[arm.joint].angle)
+    combined, left = np.zeros((told.combinations.shape[1], points)), np.zeros(points)
+    for term, shares, rest in zip(terms, told.combinations, told.rest, strict=True):
+        torque = term.torque(arm)
+        combined += np.outer(shares, torque)
+        left += rest * torque
+    return combined, left
 
 
 def _alone(joint: Motion) -> Array:
@@ -148,6 +183,12 @@ class _Term:
         others = {*self.speeds, *dict(self.sum_of)} - {joint}
         return float(PLAIN ** len(others))
 
+    @property
+    def expected(self) -> float:
+        """How large its share may be, over that of the plainest terms: less for each more angle and multiple in its sum."""
+        angles = sum(abs(times) for _, times in self.sum_of)
+        return float(SMALLER ** max(angles - 1, 0))
+
     def torque(self, arm: _Arm) -> Array:
         """What it adds to the torque of the joint, by Lagrange's equations, shape (n,)."""
         moving, own = arm.moving, arm.joint
@@ -166,69 +207,6 @@ class _Term:
             wave = wave - np.average(wave, weights=other.acceleration**2)
         rate = slope * sum((times * moving[name].speed for name, times in self.sum_of), np.zeros_like(angle))
         return found + twice * (wave * other.acceleration + rate * other.speed)
-
-
-@dataclass(frozen=True, eq=False)
-class _Search:
-    """Forward selection of terms by orthogonal least squares (ChenBillingsLuo1989), checked on other blocks of time.
-
-    Attributes:
-        torque: shape (n,)
-        plain: what a term counts for beside others that explain as much, shape (t,)
-        base: columns of what every joint has, shape (n, b)
-        train, check: rows that terms are chosen by, and those that check them, shape (n,)
-    """
-
-    torque: Array
-    base: Array
-    plain: Array
-    train: NDArray[np.bool_]
-    check: NDArray[np.bool_]
-
-    def best(self, columns: Array) -> list[int]:
-        """The columns to take, in the order of what they explain."""
-        taken: list[int] = []
-        errors = [self.error(columns[:, taken])]
-        left = columns[self.train] / np.maximum(np.linalg.norm(columns[self.train], axis=0), 1e-300)
-        orthogonal, _ = np.linalg.qr(self.base[self.train])
-        left -= orthogonal @ (orthogonal.T @ left)
-        rest = self.torque[self.train] - orthogonal @ (orthogonal.T @ self.torque[self.train])
-        while len(taken) < min(MOST, columns.shape[1]):
-            squares = np.einsum("ij,ij->j", left, left)
-            explained = (rest @ left) ** 2 / np.maximum(squares, 1e-300)
-            scores = np.where(squares > INDEPENDENT**2, self.plain * explained, 0.0)
-            place = int(np.argmax(scores))
-            if scores[place] == 0.0:
-                break
-            direction = left[:, place] / np.sqrt(squares[place])
-            left -= np.outer(direction, direction @ left)
-            rest -= direction * (direction @ rest)
-            taken.append(place)
-            errors.append(self.error(columns[:, taken]))
-            if min(errors[-PATIENCE:]) > BETTER * min(errors[:-PATIENCE] or [np.inf]):
-                break
-        least = min(errors)
-        return taken[: next(count for count, error in enumerate(errors) if error <= least / BETTER)]
-
-    def transmitted(self, columns: Array) -> Array:
-        """Size of the torque without friction, of which some is lost, shape (n,)."""
-        kept = np.hstack([self.base[:, :RIGID], columns])
-        shares = _shares(np.hstack([kept, self.base[:, RIGID:]])[self.train], self.torque[self.train])
-        return np.asarray(np.abs(kept @ shares[: kept.shape[1]]))
-
-    def error(self, columns: Array) -> float:
-        """Error of the rows that check, by the shares that the others tell, over how much the torque varies."""
-        every = np.hstack([self.base, columns])
-        left = self.torque[self.check] - every[self.check] @ _shares(every[self.train], self.torque[self.train])
-        return float(np.sqrt(np.mean(left**2)) / np.std(self.torque))
-
-
-def _shares(columns: Array, torque: Array) -> Array:
-    """By least squares."""
-    size = np.linalg.norm(columns, axis=0)
-    size[size == 0.0] = 1.0
-    found: Array = np.linalg.lstsq(columns / size, torque, rcond=1e-8)[0] / size
-    return found
 
 
 def _columns(motion: Motion, arm: _Arm, terms: Sequence[_Term]) -> Array:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.identification.dynamics.coupling import _Arm, _shares
+from strainwave.identification.dynamics.coupling import _Arm
+from strainwave.identification.dynamics.shrinkage import shares_of
 from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
@@ -30,7 +31,7 @@ def test_terms_of_the_energy_make_up_the_torque_of_an_arm(joint: str, named: boo
     rigid = [own.acceleration, np.sin(own.angle), np.cos(own.angle)]
     columns = np.stack([*rigid, *(term.torque(arm) for term in arm.terms())], axis=1)
     torque = arms.Links().torques(q, dq, ddq)[int(joint) - 1]
-    assert columns @ _shares(columns, torque) == pytest.approx(torque, abs=1e-6)
+    assert columns @ shares_of(columns, torque) == pytest.approx(torque, abs=1e-6)
 
 
 def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> None:

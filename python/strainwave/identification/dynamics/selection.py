@@ -1,0 +1,66 @@
+"""Terms that explain a torque, one after another, for as long as they predict rows that they were not chosen by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.identification.dynamics.shrinkage import shares_of
+
+Array = NDArray[np.float64]
+
+MOST = 40  # terms
+PATIENCE = 4  # terms that may bring nothing before the search ends
+BETTER = 0.99  # of the error, that the terms of a step must leave at most
+INDEPENDENT = 1e-3  # of a term's size, that must not be told by terms before it
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """Forward selection of terms by orthogonal least squares (ChenBillingsLuo1989), checked on other blocks of time.
+
+    Attributes:
+        torque: shape (n,)
+        plain: what a term counts for beside others that explain as much, shape (t,)
+        base: columns of what every joint has, shape (n, b)
+        train, check: rows that terms are chosen by, and those that check them, shape (n,)
+    """
+
+    torque: Array
+    base: Array
+    plain: Array
+    train: NDArray[np.bool_]
+    check: NDArray[np.bool_]
+
+    def best(self, columns: Array) -> list[int]:
+        """The columns to take, in the order of what they explain."""
+        taken: list[int] = []
+        errors = [self.error(columns[:, taken])]
+        left = columns[self.train] / np.maximum(np.linalg.norm(columns[self.train], axis=0), 1e-300)
+        orthogonal, _ = np.linalg.qr(self.base[self.train])
+        left -= orthogonal @ (orthogonal.T @ left)
+        rest = self.torque[self.train] - orthogonal @ (orthogonal.T @ self.torque[self.train])
+        while len(taken) < min(MOST, columns.shape[1]):
+            squares = np.einsum("ij,ij->j", left, left)
+            explained = (rest @ left) ** 2 / np.maximum(squares, 1e-300)
+            scores = np.where(squares > INDEPENDENT**2, self.plain * explained, 0.0)
+            place = int(np.argmax(scores))
+            if scores[place] == 0.0:
+                break
+            direction = left[:, place] / np.sqrt(squares[place])
+            left -= np.outer(direction, direction @ left)
+            rest -= direction * (direction @ rest)
+            taken.append(place)
+            errors.append(self.error(columns[:, taken]))
+            if min(errors[-PATIENCE:]) > BETTER * min(errors[:-PATIENCE] or [np.inf]):
+                break
+        least = min(errors)
+        return taken[: next(count for count, error in enumerate(errors) if error <= least / BETTER)]
+
+    def error(self, columns: Array) -> float:
+        """Error of the rows that check, by the shares that the others tell, over how much the torque varies."""
+        every = np.hstack([self.base, columns])
+        left = self.torque[self.check] - every[self.check] @ shares_of(every[self.train], self.torque[self.train])
+        return float(np.sqrt(np.mean(left**2)) / np.std(self.torque))
