@@ -71,7 +71,10 @@ def _proportional(one: Array, other: Array, allowed: float) -> bool:
     """Whether two series are multiples of each other but for zeros and noise; outliers do not count."""
     if np.std(one) == 0.0 or np.std(other) == 0.0:
         return False
-    a, b = ((each - np.median(each)) / np.median(np.abs(each - np.median(each))) for each in (one, other))
+    a, b = (each - np.median(each) for each in (one, other))
+    a, b = (
+        each / (np.median(np.abs(each)) or np.std(each)) for each in (a, b)
+    )  # what rests most of the time has no median size
     off = a - np.sign(a @ b) * b
     return bool(np.median(np.abs(off)) < allowed)
 

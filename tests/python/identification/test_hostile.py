@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.identification.duplicates import same_as
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import recognise
 
 from tests.python.command import strainwave
 from tests.python.identification.candidates.test_motion import TRUTH, record
@@ -174,6 +176,17 @@ def test_a_file_given_twice_counts_once(tmp_path: Path) -> None:
     assert found.findings[1].same_as == found.findings[0].name
     number = next(each for each in found.numbers if each.told.path.endswith("coulomb"))
     assert number.mean_of == (number.source,)
+
+
+def test_a_run_that_rests_most_of_the_time_is_no_copy_of_another(tmp_path: Path) -> None:
+    time = np.arange(0.0, 10.0, 0.01)
+    for name, begin in (("one.csv", 2.0), ("other.csv", 6.0), ("again.csv", 2.0)):
+        angle = np.clip(time - begin, 0.0, 1.5)
+        torque = np.sign(angle) + 0.1 * angle
+        write(tmp_path / name, {"time": time, "q": angle, "tau": torque}, {"time": "s", "q": "rad", "tau": "N.m"})
+    read = [recognise(tmp_path / name) for name in ("one.csv", "other.csv", "again.csv")]
+    with np.errstate(all="raise"):
+        assert same_as(read) == {str(tmp_path / "again.csv"): str(tmp_path / "one.csv")}
 
 
 def test_a_doubted_table_is_used_if_it_is_accepted(tmp_path: Path) -> None:

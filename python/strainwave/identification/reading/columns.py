@@ -22,7 +22,6 @@ from strainwave.messages import as_option, listed, one_line, quoted
 Array = NDArray[np.float64]
 
 
-SAY = "say what they are with --column"
 FEW = 4  # names that are listed where none says anything
 STILL = 0.01  # of how far a joint moves, by which others move less that rest
 SEVERAL = ("other_angles", "regressors")  # as what a person names several columns
@@ -144,18 +143,20 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
 
 
 def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> list[Column]:
-    """One column for each channel: those of the joint that is asked for, or the one whose name says nothing else."""
+    """One column for each channel: those of the joint that is asked for, or the one whose name says nothing else.
+
+    Where no name says a joint, they are those of the one that is asked for.
+    """
     groups: dict[Channel, list[Column]] = {}
     for column in columns:
         groups.setdefault(column.channel, []).append(column)
     several = [group for group in groups.values() if len(group) > 1]
     joints = list(dict.fromkeys(column.which for group in several for column in group if column.which))
-    if mapping.joint is not None:
-        known = joints or list(dict.fromkeys(column.which for column in columns if column.which))
+    known = joints or list(dict.fromkeys(column.which for column in columns if column.which))
+    if mapping.joint is not None and known:
         joint = mapping.joint if mapping.joint in known else which_of(words_of(mapping.joint))  # J3 is joint 3
         if joint not in known:
-            there = f"it has {listed(known)}" if known else f"its columns name none; {apparent(table) or SAY}"
-            raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; {there}"))
+            raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(known)}"))
         several_joints = len(known) > 1
         own = [
             replace(column, robot=column.robot or (several_joints and column.which == joint))

@@ -98,6 +98,8 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         said = replace(said, joint=joints[0])
         remarks.append(f"joint {joints[0]} alone moves, and is taken; --joint says another one")
     columns, more = read(table, chosen(table, said), said)
+    if said.joint is not None and not any(column.which for column in columns):
+        remarks.append(f"its columns name no joint: they are taken for those of joint {said.joint}")
     remarks += more
     said, by_name = _with_speed_of_name(columns, said, Path(path))
     try:

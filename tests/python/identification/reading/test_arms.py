@@ -233,3 +233,12 @@ def test_a_share_of_what_a_motor_is_rated_for_is_no_torque(tmp_path: Path, seen:
     columns = {"t": seen["time"], "joint_pos_rad": seen["q"][1], "torque_permille": seen["current"][1]}
     with pytest.raises(ValueError, match=r"a log time, a motion, and a current, torque, .*columns not used: torque_permille"):
         recognise(written(tmp_path / "a.csv", columns))
+
+
+def test_a_file_that_names_no_joint_is_of_the_one_that_is_asked_for(tmp_path: Path) -> None:
+    """As a friction table among the logs of an arm."""
+    speed = np.array([0.1, 0.2, 0.4, 0.8, -0.1, -0.2, -0.4, -0.8])
+    path = written(tmp_path / "a.csv", {"joint speed [rad/s]": speed, "joint torque [N.m]": 5.0 * np.sign(speed) + speed})
+    found = recognise(path, FileMapping(joint="2"))
+    assert found.kind == "friction"
+    assert "its columns name no joint: they are taken for those of joint 2" in found.remarks
