@@ -118,7 +118,8 @@ def _of_angle(column: Column, values: Array) -> Assumed:
         name = "command" if column.channel.commanded else column.name
         hint = as_option("unit", name, "counts/16384")
         raise ValueError(f"column {quoted(column.name)} seems to hold counts of an encoder; say how many are a turn: {hint}")
-    if (column.robot or column.channel.side == "output") and np.abs(values).max() > JOINT:
+    at_joint = column.channel.side == "output" or (column.robot and column.channel.side is None)
+    if at_joint and np.abs(values).max() > JOINT:
         return Assumed("deg", f"as a joint does not reach {np.abs(values).max():.4g} rad")
     return Assumed("rad", "")
 

@@ -60,14 +60,14 @@ COMMANDED = (
 NEUTRAL = (
     "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data",
     "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the",
-    "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady",
+    "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady", "present",
 )  # fmt: skip
 # What is no measurement of the quantity beside it.
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
     "id", "est", "estimated", "estimate", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
-    "simulated", "predicted", "rne", "permille", "promille", "percent", "pct", "prozent",
+    "simulated", "predicted", "rne", "ff", "feedforward", "permille", "promille", "percent", "pct", "prozent",
 )  # fmt: skip
 # Symbols that say two things at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {
@@ -217,8 +217,8 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
     places = [place for place, word in enumerate(words) if word in QUANTITY_OF]
     beside = {*_SIDE_OF, *COMMANDED, *NEUTRAL}
     places = [place for place in places if len(words[place]) > 1] or [
-        place for place in places[:1] if all(word in beside for word in words[:place])
-    ]  # a letter behind another word is an index
+        place for place in places[:1] if words[place] in ROBOT or all(word in beside for word in words[:place])
+    ]  # a letter behind another word is an index, but for the q of robots, unless it stands behind a letter, as in i_q
     named = [(QUANTITY_OF[words[place]], place) for place in places]
     twist = [each for each in named if each[0] == "twist"]
     torque = [each for each in named if each[0] == "torque"]

@@ -191,6 +191,13 @@ def test_two_angles_are_told_apart_by_how_far_they_run(tmp_path: Path, seen: dic
         recognise(written(tmp_path / "b.csv", scaled))
 
 
+def test_the_q_of_a_motor_may_be_as_far_as_it_likes(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
+    columns = {"t": seen["time"], "qm": seen["theta"][1], "ql": seen["q"][1], "taum": seen["motor_torque"][1] / JOINT.ratio}
+    found = recognise(written(tmp_path / "a.csv", columns))
+    assert (found.units["input_angle"], found.units["output_angle"]) == ("rad", "rad")
+    assert (found.columns["input_angle"], found.columns["input_torque"]) == ("qm", "taum")
+
+
 def test_an_angle_without_a_unit_may_be_of_a_motor_or_of_a_joint_in_degrees(
     tmp_path: Path, seen: dict[str, np.ndarray]
 ) -> None:

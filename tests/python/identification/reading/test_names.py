@@ -53,6 +53,8 @@ NAMES = {
     "Position in rad": Meaning("angle", unit="rad"),
     "Strom_A": Meaning("current", unit="A"),
     "robot.arm.q_1": Meaning("angle", "output", which="1", robot=True),
+    "left_arm_q2": Meaning("angle", "output", which="2", robot=True),
+    "present_position_deg": Meaning("angle", unit="deg"),
     "log.t": Meaning("time", which="log"),
     "Sensor X [N.m]": Meaning("torque", which="x", unit="N.m"),
 }
@@ -71,6 +73,7 @@ NO_NAMES = (
     "friction coefficient [1]",
     "torque_rne_1",
     "estExtJntTrq0",
+    "tau_ff_2",
 )
 
 
