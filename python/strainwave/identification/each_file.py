@@ -12,6 +12,7 @@ from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
+from strainwave.identification.between_encoders import Between, between_encoders
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion, regression
 from strainwave.identification.contact import breakaway, presliding
 from strainwave.identification.curves import curves_of, curves_of_orders
@@ -315,11 +316,14 @@ def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     told = list(_of_motion(best, taken, TorqueConstant.of(file, known.gear_set)))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
+    between = Between()
     if set(ANGLES) <= set(recording.names):
         errors = transmission_error(recording)
-        told += _orders(errors)
-        remarks += errors.remarks
-        known = _with_error(known, errors, file.path.name)
+        between = _between(file, taken, best, errors, known)
+        surer = {each.path for each in between.told}
+        told = [each for each in (*told, *_orders(errors)) if each.path not in surer] + list(between.told)
+        remarks += [*errors.remarks, *between.remarks]
+        known = _with_error(between.known(known, file.path.name), errors, file.path.name)
     remarks += _shares(best.fit, file.regressors)
     every, curves = (*file.remarks, *remarks), curves_of(best.fit)
     law = best.fit.parts[0].model.gear.friction_input
@@ -333,6 +337,26 @@ def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
     shares = {each.path.removeprefix("share of "): each for each in found.estimates}
     said = [f"{name.partition(' ')[2]} {shares[name].value:.4g} ± {shares[name].sigma:.2g}" for name in regressors]
     return [f"shares of the regressors in the torque at the output: {listed(said)}"] if said else []
+
+
+def _between(file: Recognised, taken: Taken, best: MotionCandidate, errors: TransmissionError, known: Known) -> Between:
+    """What both encoders tell of the gear between them."""
+    constant = TorqueConstant.of(file, known.gear_set)
+    return between_encoders(
+        taken.recording,
+        taken.log,
+        best,
+        errors,
+        known,
+        rotor_known=not taken.in_current and _rotor(file, known.gear_set) is not None,
+        in_current=taken.in_current,
+        relative=0.0 if constant is None else constant.relative,
+    )
+
+
+def _rotor(file: Recognised, gear_set: GearSet) -> float | None:
+    """The inertia of the motor, as a person or the set tells it."""
+    return file.constants.get("motor_inertia", getattr(gear_set.motor, "inertia", None))
 
 
 def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], name: str) -> Known:
@@ -353,7 +377,7 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         remarks.append(f"given, but not used of a log: {listed(unused)}")
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
-    inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
+    inertia = _rotor(file, gear_set)
     if not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
         by_voltage = _motor_by_voltage(file, given)
         share = 0.01 * by_voltage.torque_constant * by_voltage.back_emf / by_voltage.resistance

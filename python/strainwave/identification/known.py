@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -51,10 +51,10 @@ class Known:
 
     def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> Known:
         """The same, with parts of the gear that a file of this name tells."""
-        gear, names = self.gear_set.gear.replace(**parts), tuple(f"gear.{part}." for part in parts)
-        sources = {path: entry for path, entry in self.gear_set.sources.items() if not path.startswith(names)}
-        told_by = {path: file for path, file in self.told_by.items() if not path.startswith(names)}
-        for path in (path for path in numbers(gear) if path.startswith(names)):
+        gear = self.gear_set.gear.replace(**parts)
+        sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
+        told_by = {path: file for path, file in self.told_by.items() if not is_of(path, parts)}
+        for path in (path for path in numbers(gear) if is_of(path, parts)):
             told = path in sigmas and np.isfinite(sigmas[path])
             sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
             told_by |= {path: name} if told else {}
@@ -106,6 +106,15 @@ class Known:
                 sources[path] = before[old] if kept else Entry(source=f"assumed beside what {name} tells")
                 told_by |= {path: self.told_by[old]} if kept and old in self.told_by else {}
         return replace(after, gear_set=replace(after.gear_set, sources=sources), told_by=told_by)
+
+
+def is_of(path: str, parts: Collection[str]) -> bool:
+    """Whether a number of a gear set belongs to one of these parts of its gear.
+
+    >>> is_of("gear.stiffness.k1", {"stiffness"}), is_of("gear.damping", {"damping"}), is_of("motor.inertia", {"inertia"})
+    (True, True, False)
+    """
+    return path.startswith("gear.") and path.removeprefix("gear.").partition(".")[0] in parts
 
 
 def plain(path: str) -> str:

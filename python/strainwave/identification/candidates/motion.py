@@ -259,7 +259,7 @@ def _candidate(
         "per_record": load if len(logs) > 1 else (),
         "priors": {path: prior for path, prior in priors.items() if path in paths},
     }
-    masks = {name: _training(log) for name, log in logs.items()}
+    masks = {name: training_blocks(log.time) for name, log in logs.items()}
     held = fit(form.drive, dict(logs), paths, training=masks, **given)
     left = sum(float(np.sum(part.residuals[:, ~part.training] ** 2) / np.var(part.experiment.measured)) for part in held.parts)
     count = sum(int(np.sum(~part.training)) for part in held.parts)
@@ -278,9 +278,8 @@ def _from_there(logs: Mapping[str, MotionLog], held: Fit) -> dict[str, MotionLog
     }
 
 
-def _training(log: MotionLog) -> NDArray[np.bool_]:
-    """Every second of some blocks of time."""
-    time = log.time
+def training_blocks(time: Array) -> NDArray[np.bool_]:
+    """Every second of some blocks of time, over instants [s], shape (n,)."""
     block = np.minimum((BLOCKS * (time - time[0]) / (time[-1] - time[0])).astype(int), BLOCKS - 1)
     training: NDArray[np.bool_] = block % 2 == 0
     return training

@@ -19,6 +19,7 @@ from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.motion import Motion
 from strainwave.simulation.resolution import fine_enough
 from strainwave.simulation.run import differentiate
+from strainwave.simulation.scenario import Scenario, table
 from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
@@ -50,18 +51,26 @@ class DrivenLog(ComparedByFields):
 
     Gravity acts by the input angle over the ratio. Where the arm does not hang at its zero, `load.gravity_phase` is an unknown.
 
+    Channels that pass other electronics than the input angle may be late. Their delay is an unknown with `with_delays`. What it
+    looks like: of `output_angle`, viscous friction at the output, for both add to the transmission error in proportion to the
+    speed; of torque and current, softer bristles, for both let friction turn over later behind a reversal. A fit tells which by
+    the motion being fast and slow, and says how sure it is.
+
     Args:
         motion: of the input, smoothed
-        speed: of the input at the instants compared [rad/s], shape (n,)
+        angle, speed: of the input at the instants compared [rad, rad/s], shape (n,)
         time: instants to compare at [s], shape (n,)
         channels: names of the columns to compare
         zeros: about where those of them have their zero whose zero is not known, by name
         measured: their values, shape (channels, n)
         dt: largest step of the simulation [s]
         samples: how many were measured
+        held_back: torque of other bodies that holds the output back [N.m]
+        delayed: names of the channels whose delay behind the input angle is an unknown
     """
 
     motion: Motion
+    angle: Array
     speed: Array
     time: Array
     channels: tuple[str, ...]
@@ -69,6 +78,8 @@ class DrivenLog(ComparedByFields):
     measured: Array
     dt: float
     samples: int
+    held_back: Scenario | float = 0.0
+    delayed: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -82,6 +93,8 @@ class DrivenLog(ComparedByFields):
         cutoff: float | None = None,
     ) -> DrivenLog:
         """From columns time, input_angle and what is to be compared; all that can be, unless `channels` names some.
+
+        A column `rigid_torque` [N.m at the output] is known torque of other bodies that holds the output back.
 
         Args:
             recording: what was measured
@@ -122,15 +135,21 @@ class DrivenLog(ComparedByFields):
         rows = np.flatnonzero((time >= begin) & (time <= end))
         rows = rows[:: max(1, -(-len(rows) // COMPARED))]
         measured = np.stack([sensible(recording, name, CHANNELS[name])[rows] for name in chosen])
+        held_back: Scenario | float = 0.0
+        if "rigid_torque" in recording:
+            held_back = table(grid[:steps], np.interp(grid[:steps], time, recording.values("rigid_torque", "N.m")))
+        angle = np.interp(time[rows], grid, smoothed.angle)
         return cls(
             moved,
+            angle,
             np.interp(time[rows], grid, smoothed.speed),
             time[rows],
             chosen,
-            _zeros(chosen, measured, float(np.interp(time[rows[0]], grid, smoothed.angle)) / drive.gear.kinematics.ratio),
+            _zeros(chosen, measured, float(angle[0]) / drive.gear.kinematics.ratio),
             measured,
             step,
             len(recording),
+            held_back,
         )
 
     @property
@@ -139,8 +158,19 @@ class DrivenLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """The zeros of the encoders at the output, as the rigid drive has them, and of what tells the motor's torque."""
-        return tuple(Nuisance(f"{name}_zero", CHANNELS[name], zero) for name, zero in self.zeros.items())
+        """Zeros of encoders at the output, as the rigid drive has them, and of what tells the motor's torque; then delays."""
+        zeros = (Nuisance(f"{name}_zero", CHANNELS[name], zero) for name, zero in self.zeros.items())
+        return (*zeros, *(Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed))
+
+    def with_delays(self, *channels: str) -> DrivenLog:
+        """The same, with the delay of these channels behind the input angle as unknowns.
+
+        Raises:
+            ValueError: a channel is not compared
+        """
+        for name in channels:
+            arguments.one_of("the name of a delayed channel", name, self.channels)
+        return replace(self, delayed=channels)
 
     def step(self, model: Drive) -> float:
         """The largest step of a simulation of a model [s]."""
@@ -152,16 +182,7 @@ class DrivenLog(ComparedByFields):
         described = _core.parameters(model)
         known = [number for number in numbers if described[number][0] in places]
         names = list(outputs(moved))
-        samples = self.time if self.time[0] == 0.0 else np.append(0.0, self.time)
-        run, slopes = differentiate(
-            moved,
-            Excitation(self.motion.command),
-            [places[described[number][0]] for number in known],
-            self.step(model),
-            samples,
-            self.motion.initial,
-        )
-        first = len(samples) - len(self.time)
+        run, slopes, first = self._run(moved, [places[described[number][0]] for number in known])
         predicted = np.stack([self._shown(model, name, run[_told_by(name)][first:]) for name in self.channels])
         found = np.zeros((len(numbers) + len(nuisances), *predicted.shape))
         of_known = dict(zip(known, slopes, strict=True))
@@ -173,10 +194,37 @@ class DrivenLog(ComparedByFields):
                     found[unknown, row] = rate * self._scale(model, name)
                 elif name in EFFORTS:
                     found[unknown, row] = self._by_motor(model, number, name, torque)
-        for unknown, (name, zero) in enumerate(zip(self.zeros, nuisances, strict=True), len(numbers)):
+        zeros, delays = np.split(nuisances, [len(self.zeros)])
+        for unknown, (name, delay) in enumerate(zip(self.delayed, delays, strict=True), len(numbers) + len(zeros)):
+            row = self.channels.index(name)
+            series = self._late(np.concatenate([predicted[np.newaxis, row], found[: len(numbers), row]]), float(delay))
+            predicted[row], found[: len(numbers), row], found[unknown, row] = series[0], series[1:-1], -series[-1]
+        for unknown, (name, zero) in enumerate(zip(self.zeros, zeros, strict=True), len(numbers)):
             predicted[self.channels.index(name)] += zero
             found[unknown, self.channels.index(name)] = 1.0
         return predicted, found
+
+    def gear_torque(self, model: Drive) -> Array:
+        """Torque that the gear transmits at the instants compared [N.m], shape (n,)."""
+        run, _, first = self._run(driven(model), [])
+        torque: Array = run["torque"][first:]
+        return torque
+
+    def _run(self, moved: Drive, numbers: Sequence[int]) -> tuple[Recording, Array, int]:
+        """A run along the motion, its derivatives by numbers of the drive, and the place of the first instant compared."""
+        samples = self.time if self.time[0] == 0.0 else np.append(0.0, self.time)
+        acting = Excitation(self.motion.command, self.held_back)
+        run, slopes = differentiate(moved, acting, numbers, self.step(moved), samples, self.motion.initial)
+        return run, slopes, len(samples) - len(self.time)
+
+    def _late(self, series: Array, delay: float) -> Array:
+        """Series as they come after a delay [s], shape (k, n), and the rate of the first of them, shape (1, n)."""
+        from scipy.interpolate import CubicSpline
+
+        then = np.clip(self.time - delay, self.time[0], self.time[-1])
+        rate = CubicSpline(self.time, series[0])(then, 1)
+        late = CubicSpline(self.time, series, axis=1)(then) if delay else series
+        return np.concatenate([late, rate[np.newaxis]])
 
     def _scale(self, model: Drive, name: str) -> float:
         """What a channel shows of the output that tells it."""

@@ -116,6 +116,40 @@ def test_derivatives_are_those_of_differences(channels: tuple[str, ...]) -> None
         assert slopes[unknown].sum() == len(log.time), nuisance.name
 
 
+def test_delays_shift_channels_and_their_derivatives() -> None:
+    log = DrivenLog.of(measured(0), TRUTH).with_delays("output_angle")
+    assert [each.name for each in log.nuisances] == ["output_angle_zero", "current_zero", "output_angle_delay"]
+    number = [each[0] for each in _core.parameters(TRUTH)].index("gear.stiffness.k")
+    late = np.array([0.0, 0.0, 3e-3])
+    predicted, slopes = log.predict(TRUTH, [number], late)
+    now, by_stiffness = DrivenLog.of(measured(0), TRUTH).predict(TRUTH, [number], late[:2])
+    inside = slice(10, -10)
+    assert predicted[0, inside] == pytest.approx(np.interp(log.time - 3e-3, log.time, now[0])[inside], abs=1e-5)
+    assert predicted[1] == pytest.approx(now[1], abs=0.0)
+    assert slopes[0, 0, inside] == pytest.approx(
+        np.interp(log.time - 3e-3, log.time, by_stiffness[0, 0])[inside], abs=0.05 * np.abs(by_stiffness[0, 0]).max()
+    )
+    there = [log.predict(TRUTH, [], late + np.array([0.0, 0.0, by]))[0][0] for by in (-1e-5, 1e-5)]
+    assert slopes[-1, 0, inside] == pytest.approx(((there[1] - there[0]) / 2e-5)[inside], abs=1e-4)
+    with pytest.raises(ValueError, match="delayed channel"):
+        log.with_delays("torque")
+
+
+def test_known_torque_of_other_bodies_acts_at_the_output() -> None:
+    held = sw.scenario.constant(5.0, duration=1.0)
+    run = sw.simulate(TRUTH, sw.scenario.sine(0.2, 1.5, 1.0), 1e-4, load_torque=held, sample=1e-3)
+    columns = {name: run[name] for name in ("time", "input_angle", "output_angle")} | {
+        "rigid_torque": np.full(len(run.time), 5.0)
+    }
+    recording = sw.Recording(columns, {"time": "s", "input_angle": "rad", "output_angle": "rad", "rigid_torque": "N.m"})
+    log = DrivenLog.of(recording, TRUTH)
+    later = log.time > 0.5  # when the vibration of the beginning has decayed
+    predicted, _ = log.predict(TRUTH, [], np.zeros(1))
+    off = log.gear_torque(TRUTH)[later] - np.interp(log.time, run.time, run["torque"])[later]
+    assert abs(off.mean()) < 0.01  # of 5 N.m; where friction turns over, smoothing rounds the motion for a moment
+    assert predicted[0, later] == pytest.approx(log.measured[0, later], abs=2e-5)
+
+
 def test_the_whole_gear_is_told_by_two_encoders_and_the_current() -> None:
     """Eight numbers from noisy logs, started thirty percent off: right within what the fit says of itself."""
     off_by = np.array([_deviations(seed) for seed in range(3)])

@@ -1,0 +1,337 @@
+"""What a log of both encoders tells of the gear between them: spring, hysteresis, damping and kinematic error.
+
+The input is moved as it was measured, and the output that a model then has is compared with the output measured (`DrivenLog`).
+So neither motor nor friction take part. Of the output stage only ratios are told: were its inertia, gravity, stiffness, damping
+and hysteresis all twice as large, it would move in the same way. One torque must be known otherwise; the log along its motion
+tells it, as gravity or inertia of the load (`candidates.motion`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, _core, hysteresis, kinematic_error, stiffness
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.motion import CLEARLY, training_blocks
+from strainwave.identification.experiments.driven_log import DrivenLog
+from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, Needed, inertia_of
+from strainwave.identification.fitting.blocks import sigma_by_blocks
+from strainwave.identification.fitting.covariance import covariance_of
+from strainwave.identification.fitting.fit import Fit, Part, problem_of
+from strainwave.identification.fitting.loss import LOSSES
+from strainwave.identification.fitting.problem import Problem
+from strainwave.identification.fitting.unknowns import plan
+
+Array = NDArray[np.float64]
+
+STRETCH = 10.0  # s, of a log on which models are compared
+LONGEST = 40.0  # s, of a log that numbers are told from
+STEP = 1e-3  # s, of the simulation, at most
+OF_RADIAN = 0.25  # of the time in which the vibration of the output goes on by 1 rad: steps change its period by 3e-5 (RK4)
+SEEN = 3.0  # standard deviations, beyond which the twist under load is seen
+PRESLIDING = 0.5  # of the stiffness: an element of the hysteresis from which fits start (assumed)
+DAMPING = 0.05  # of critical damping: from where fits start (assumed)
+SPLIT = 0.7  # of the stiffness of an element, which the first of two takes over (assumed)
+NEAR = 1e-3  # relative, of the cost: models are compared as near to their best as that
+NEARER = 1e-4  # the same of the last fit: a step that promises a thousandth of it moves no number by a tenth of its deviation
+TRIALS = 15  # steps of a fit
+SQUARED = LOSSES["linear"]
+OUTER = 0.75  # of the largest torque: where a third segment is taken to begin, from which fits start (assumed)
+FAR = 10.0  # times the largest torque: a knee there does nothing
+SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
+WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The torque that is known, from which the torques of the output stage count.
+
+    Attributes:
+        path: `load.gravity_torque` or `load.inertia`
+        relative: its standard deviation over its value [1]
+    """
+
+    path: str
+    relative: float
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticCandidate(ComparedByFields):
+    """A model of the gear fitted to the output of a log.
+
+    Attributes:
+        name: of spring and hysteresis
+        fit: to the whole log
+        sigmas: standard deviation of each estimate, but for that of the scale: by the fit, or by how blocks of the log differ;
+            with how far models lie apart that predict as well
+        error: rms of the output's angle on data held out [rad]
+        twist: rms of what load and kinematic error turn the output by [rad]
+        reach: the largest torque that the gear transmits [N.m]
+    """
+
+    name: str
+    fit: Fit
+    sigmas: Array
+    error: float
+    twist: float
+    reach: float
+
+    @property
+    def drive(self) -> Drive:
+        """The drive that was found."""
+        model: Drive = self.fit.model
+        return model
+
+
+def fit_elastic(
+    recording: Recording, log: MotionLog, drive: Drive, scale: Scale, law: kinematic_error.Fourier
+) -> ElasticCandidate:
+    """Spring, hysteresis, damping and kinematic error between two encoders, by the simplest model that predicts as well as any.
+
+    Args:
+        recording: `input_angle` and `output_angle`, which counts in the sense of the drive's ratio
+        log: the same along its motion
+        drive: with the load that the log along its motion has told, and the gear to start from
+        scale: what of that load is taken as known
+        law: the kinematic error to start from, whose orders are looked for
+
+    Raises:
+        ValueError: noise hides the twist that the load makes, or the output does not move as any model does
+        FloatingPointError: no model could be simulated
+    """
+    stiff, reach = _seen(recording, log, drive, law)
+    start = _start(drive, stiff, reach, law)
+    best, rivals = _chosen(
+        _compared(_stretch(recording, log, drive, STRETCH), start), start, drive.gear.stiffness, scale, reach
+    )
+    whole = _compared(_stretch(recording, log, drive, LONGEST), best.drive)
+    problem, x = _solved(whole, best.drive, best.free, None, NEARER)
+    found = _fit_of(problem, x)
+    sigmas = sigma_by_blocks(problem, x, found.estimates)
+    apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in found.estimates])
+    twist = float(np.std(whole.measured[0] - whole.angle / drive.gear.kinematics.ratio))
+    reached = float(np.abs(whole.gear_torque(found.model)).max())
+    return ElasticCandidate(best.name, found, np.hypot(sigmas, apart), best.error, twist, reached)
+
+
+def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
+    """About how stiff the gear is [N.m/rad], and the largest torque along the rigid motion [N.m].
+
+    The angle between the shafts is regressed on that torque, beside orders, direction and speed, in the pass band of the log.
+
+    Raises:
+        ValueError: the twist that the torque makes is not seen
+    """
+    motion, ratio = log.motion, drive.gear.kinematics.ratio
+    torque = _torque(log, drive)
+    angles = recording.values("input_angle", "rad"), recording.values("output_angle", "rad")
+    error = np.interp(motion.time, recording.time, angles[0] / ratio - angles[1])
+    waves = [wave(order * motion.angle) for order in law.order for wave in (np.sin, np.cos)]
+    series = [torque, np.sign(motion.speed), motion.speed, np.ones_like(torque), *waves]
+    columns = motion.filtered(np.stack(series)).T
+    measured = motion.filtered(error[np.newaxis] - error.mean())[0]
+    size = np.linalg.norm(columns, axis=0)
+    weights = np.linalg.lstsq(columns / size, measured, rcond=1e-6)[0]
+    left = measured - columns / size @ weights
+    covariance, _ = covariance_of(columns / size, left[np.newaxis])
+    softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
+    reach = float(np.abs(torque[motion.known]).max())
+    if not softness > SEEN * sigma:
+        raise ValueError(
+            f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
+            f"what else moves them leave {float(np.std(left)):.2g} rad unexplained: load it more, or measure the angles better"
+        )
+    return float(1.0 / softness), reach
+
+
+def _torque(log: MotionLog, drive: Drive) -> Array:
+    """What the gear transmits were it rigid, on the grid of the motion [N.m]."""
+    ratio = drive.gear.kinematics.ratio
+    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
+    still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=1e-12))
+    return np.asarray(ratio * Needed.of(still, log.motion, log.extra).torque)
+
+
+def _compared(recording: Recording, drive: Drive) -> DrivenLog:
+    """The output of a recording, late or not, in steps as short as the output of a drive vibrates."""
+    gear: Any = drive.gear
+    stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
+    step = min(STEP, OF_RADIAN * float(np.sqrt(inertia_of(drive) / stiff)))
+    return DrivenLog.of(recording, drive, ["output_angle"], step).with_delays("output_angle")
+
+
+def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) -> Recording:
+    """The part of a log, of this length [s] if it is much longer, in which the torque varies most."""
+    time = recording.time - recording.time[0]
+    if time[-1] <= 1.5 * length:
+        return recording
+    grid, torque = log.motion.time - log.motion.time[0], _torque(log, drive)
+    begins = np.arange(0.0, time[-1] - length, 0.25 * length)
+    spreads = [float(np.std(torque[(grid >= begin) & (grid < begin + length)])) for begin in begins]
+    begin = begins[int(np.argmax(spreads))]
+    rows = (time >= begin) & (time <= begin + length)
+    return Recording(
+        {name: recording[name][rows] for name in recording.names}, {name: recording.unit(name) for name in recording.names}
+    )
+
+
+# ---- Models ----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried(ComparedByFields):
+    """A model on the stretch: its name, what is free of it, the drive found, and the error held out [rad]."""
+
+    name: str
+    free: tuple[str, ...]
+    drive: Drive
+    error: float
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """The numbers that are free."""
+        return {path: value for path, value, *_ in _core.parameters(self.drive) if path in self.free}
+
+    @property
+    def elements(self) -> int:
+        """Of the hysteresis."""
+        return sum(path.startswith(f"{MEMORY}breakaway") for path in self.free)
+
+
+def _start(drive: Drive, stiff: float, reach: float, law: kinematic_error.Fourier) -> Drive:
+    """The drive with a linear spring, one element of hysteresis, and no friction but that of the output."""
+    inertia = inertia_of(drive)
+    gear = drive.gear.replace(
+        stiffness=stiffness.Linear(k=stiff / (1.0 + PRESLIDING)),
+        hysteresis=hysteresis.MaxwellSlip(stiffness=[PRESLIDING * stiff], breakaway=[0.05 * reach]),
+        damping=2.0 * DAMPING * float(np.sqrt(stiff * inertia)),
+        friction_input=FRICTIONLESS,
+        friction_mesh=FRICTIONLESS,
+        kinematic_error=law,
+    )
+    return drive.replace(gear=gear)
+
+
+def _chosen(log: DrivenLog, start: Drive, law: Any, scale: Scale, reach: float) -> tuple[_Tried, list[_Tried]]:
+    """The model to which no further part adds, and those that predict as well.
+
+    Of parts that may be added, that which predicts best comes next: a bend of the spring and a further element of the
+    hysteresis can stand for each other, so that neither may come first.
+    """
+    best, left = _tried(log, start, scale, reach), [_bent, _with_element, _bent_twice]
+    every = [best]
+    while left:
+        reach = float(np.abs(log.gear_torque(best.drive)).max())
+        tried = {more: other for more in left if (other := _with(more, log, best, law, scale, reach)) is not None}
+        every += tried.values()
+        more = min(tried, key=lambda each: tried[each].error, default=None)
+        if more is None or tried[more].error > CLEARLY * best.error:
+            break
+        best, left = tried[more], [each for each in left if each is not more]
+    return best, [each for each in every if each is not best and CLEARLY * each.error < best.error]
+
+
+def _apart(path: str, one: _Tried, other: _Tried) -> float:
+    """How far a number of the gear lies apart in two models that predict alike; 0 where the other has no such number.
+
+    Elements of hysteresis are compared where there are as many.
+    """
+    if path.startswith(MEMORY) and one.elements != other.elements:
+        return 0.0
+    alias = {"gear.stiffness.k": "gear.stiffness.k1", "gear.stiffness.k1": "gear.stiffness.k"}
+    there = other.values.get(path, other.values.get(alias.get(path, "")))
+    return abs(one.values[path] - there) if path in one.values and there is not None else 0.0
+
+
+def _with(
+    more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _Tried, law: Any, scale: Scale, reach: float
+) -> _Tried | None:
+    """A model with one part more, from where it ended without; None where that makes none."""
+    if (grown := more(best.drive, law, reach)) is None:
+        return None
+    try:
+        return _tried(log, grown, scale, reach)
+    except (ValueError, FloatingPointError):  # out of what its law allows, from its start
+        return None
+
+
+def _tried(log: DrivenLog, drive: Drive, scale: Scale, reach: float) -> _Tried:
+    free, training = tuple(_free(drive, scale, reach)), training_blocks(log.time)
+    problem, x = _solved(log, drive, free, training, NEAR)
+    ((predicted, _),) = problem.predict(x)
+    error = float(np.sqrt(np.mean((log.measured - predicted)[0, ~training] ** 2)))
+    return _Tried(_name(drive), free, problem.records[0].model(x), error)
+
+
+def _solved(
+    log: DrivenLog, drive: Drive, free: Sequence[str], training: NDArray[np.bool_] | None, tolerance: float
+) -> tuple[Problem, Array]:
+    """The least squares of a log of one channel, whose weight then changes nothing, and the unknowns near their least."""
+    problem = problem_of(plan(drive, [""], free), [""], [drive], [log], [training])
+    return problem, problem.solve(problem.start(), problem.first_weights(), SQUARED, tolerance, trials=TRIALS)
+
+
+def _fit_of(problem: Problem, x: Array) -> Fit:
+    record = problem.records[0]
+    ((predicted, _),) = problem.predict(x)
+    estimates, covariance = problem.estimates(x, problem.weights(x, problem.first_weights(), SQUARED), SQUARED)
+    part = Part("", record.model(x), record.experiment, predicted, record.training)
+    return Fit(part.model, estimates, covariance, (part,), problem.plan, "linear", problem.evaluations)
+
+
+def _free(drive: Drive, scale: Scale, reach: float) -> Iterator[str]:
+    """Paths of what is not known of the output stage; what lies beyond the largest torque is not told."""
+    spring = drive.gear.stiffness
+    beyond = ("k3", "t2") if isinstance(spring, stiffness.ThreeSegment) and spring.t2 > reach else ()
+    kept = {f"{SPRING}{name}" for name in beyond} | {scale.path}
+    for path, *_ in _core.parameters(drive):
+        if path.startswith((SPRING, MEMORY, *WAVES, "gear.damping", "load.")) and path not in kept:
+            yield path
+
+
+def _bent(drive: Drive, law: Any, reach: float) -> Drive | None:
+    """With the law of the gear to start from, as stiff; of two segments where that is linear, or has three."""
+    stiff = drive.gear.stiffness.tangent(0.0)
+    if isinstance(law, stiffness.Linear | stiffness.ThreeSegment):
+        knee = min(getattr(law, "t1", np.inf), 0.5 * reach)
+        bent: Any = stiffness.ThreeSegment(k1=0.8 * stiff, k2=1.2 * stiff, k3=1.2 * stiff, t1=knee, t2=FAR * reach)
+        return drive.replace(gear=drive.gear.replace(stiffness=bent))
+    softer = stiff / law.tangent(0.0) if law.tangent(0.0) > 0.0 else 1.0
+    numbers = {
+        field["name"]: softer * getattr(law, field["name"]) for field in law.fields if field.get("unit", "").startswith("N.m/")
+    }
+    return drive.replace(gear=drive.gear.replace(stiffness=law.replace(**numbers)))
+
+
+def _with_element(drive: Drive, law: Any, reach: float) -> Drive | None:
+    """With the last element of hysteresis split in two, of which one slides later."""
+    elements: Any = drive.gear.hysteresis
+    *stiffs, stiff = elements.stiffness
+    *limits, limit = elements.breakaway
+    more = hysteresis.MaxwellSlip(
+        stiffness=[*stiffs, SPLIT * stiff, (1.0 - SPLIT) * stiff], breakaway=[*limits, 0.5 * limit, 0.5 * limit]
+    )
+    return drive.replace(gear=drive.gear.replace(hysteresis=more))
+
+
+def _bent_twice(drive: Drive, law: Any, reach: float) -> Drive | None:
+    """With a third segment, where the second is told, and torque goes on far beyond where it begins."""
+    spring: Any = drive.gear.stiffness
+    knee = OUTER * reach
+    if not isinstance(spring, stiffness.ThreeSegment) or spring.t1 > knee:
+        return None
+    return drive.replace(gear=drive.gear.replace(stiffness=spring.replace(t2=knee, k3=1.1 * spring.k2)))
+
+
+def _name(drive: Drive) -> str:
+    """What the model of the gear is, in words."""
+    gear: Any = drive.gear
+    spring, count = gear.stiffness, len(gear.hysteresis.stiffness)
+    return f"{spring.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"
