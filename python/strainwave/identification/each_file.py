@@ -444,7 +444,8 @@ def _of_motion(best: MotionCandidate, taken: Taken, constant: TorqueConstant | N
     """The numbers of a log; each as uncertain as the torque constant, besides."""
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
-    relative = 0.0 if constant is None or in_current else constant.relative
+    by_constant = taken.log.effort in ("current", "voltage") and not in_current  # a torque that was measured needs none
+    relative = constant.relative if constant is not None and by_constant else 0.0
     beside = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
     if taken.log.effort == "voltage":
         beside["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance

@@ -190,6 +190,22 @@ def test_a_voltage_tells_friction_without_what_the_motor_induces(tmp_path: Path,
     assert CONSTANT**2 / 0.4 > 50.0 * 3e-4  # of the voltage what the motor induces is by far the most
 
 
+def test_a_torque_that_was_measured_is_as_sure_as_itself_whatever_the_torque_constant(tmp_path: Path) -> None:
+    run = record(TRUTH, 0.05, 3)
+    kept = run.select([name for name in run.names if name != "current"])
+    log_of_torque = kept.with_column("input_torque", CONSTANT * run["current"], "N.m")
+    files = {"torque.csv": log_of_torque, "current.csv": run}
+    set_there = measured_motor()
+    unsure = sw.Entry("data sheet", uncertainty=0.02 * CONSTANT)
+    unsure_set = set_there.replace(sources={**set_there.sources, "motor.torque_constant": unsure})
+    common = {}
+    for name, recording in files.items():
+        recording.to_csv(tmp_path / name)
+        (finding,) = identify(unsure_set, [tmp_path / name]).findings
+        (common[name],) = (each.common / abs(each.value) for each in finding.told if each.path == "gear.friction_input.coulomb")
+    assert common == {"torque.csv": 0.0, "current.csv": pytest.approx(0.02)}
+
+
 def test_a_voltage_of_an_unknown_motor_is_refused_with_what_to_say(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"--constant resistance=… and --constant torque_constant=….*--column current=voltage"):
         identify("hfuc-20-80", [voltage_log(tmp_path / "log.csv")])
