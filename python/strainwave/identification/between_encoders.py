@@ -95,7 +95,7 @@ def between_encoders(
     common = relative * (1.0 if scale.path == GRAVITY else 1.0 + _rotor(drive) / drive.load.inertia)
     told = tuple(_told(found, scale, common, known, in_current))
     remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), in_current))
-    between = Between(told, remarks, curves_of_shafts(found.fit), found)
+    between = Between(told, remarks, curves_of_shafts(found.fit, found.name), found)
     return replace(between, parts=("kinematic_error",)) if in_current else between
 
 

@@ -69,18 +69,18 @@ def curves_of_orders(found: TransmissionError) -> Recording:
     return Recording(columns, units)
 
 
-def curves_of_shafts(fit: Fit) -> Recording:
+def curves_of_shafts(fit: Fit, model: str) -> Recording:
     """What a model says of the angle between the shafts in a log along the motion of its input, whose output is compared.
 
     Returns:
-        time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`
+        time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`; titled with the model
     """
     part = fit.parts[0]
     log: Any = part.experiment
     turned = log.angle / part.model.gear.kinematics.ratio
     error, modelled = turned - log.measured[0], turned - part.predicted[0]
     columns = {"time": log.time, "transmission_error": error - error.mean(), "modelled": modelled - error.mean()}
-    return Recording(columns, dict.fromkeys(columns, "rad") | {"time": "s"})
+    return Recording(columns, dict.fromkeys(columns, "rad") | {"time": "s"}, model)
 
 
 def _abscissa(experiment: Experiment) -> tuple[str, str, Array]:

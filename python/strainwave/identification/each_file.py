@@ -329,7 +329,10 @@ def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     law = best.fit.parts[0].model.gear.friction_input
     unlike = None if in_current else unlike_set(law, before.friction_input, log.motion.speed, log.effort)
     doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed), _unlike_said(taken))))
-    return Finding(file.path.name, file, best.name, tuple(told), best.error, every, doubts, curves=curves), known
+    return (
+        Finding(file.path.name, file, best.name, tuple(told), best.error, every, doubts, curves=curves, between=between.curves),
+        known,
+    )
 
 
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:

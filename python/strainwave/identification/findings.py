@@ -67,6 +67,7 @@ class Finding:
         what: what it is, where the kind of the file does not say it
         part_of: the table that it is one point of, with others; empty where it stands for itself
         curves: measured beside modelled, as `curves` of this package makes them; None where nothing was fitted
+        between: the same of the angle between the shafts, with its model as the title; None where it was not fitted
     """
 
     name: str
@@ -81,6 +82,7 @@ class Finding:
     what: str = ""
     part_of: str = ""
     curves: Recording | None = None
+    between: Recording | None = None
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from importlib import metadata
 from io import StringIO
 from operator import attrgetter
@@ -175,6 +176,15 @@ def _plates(found: Identified, anchors: dict[int, str]) -> Iterator[dict[str, An
                 "anchor": anchor,
                 "caption": _caption(finding),
                 "svg": Markup(plots.file_figure(finding, f"{anchor}-figure")),
+            }
+        if finding.between is not None:
+            shafts = replace(finding, curves=finding.between, model=finding.between.title)
+            anchor = f"{anchors[id(finding)]}-between"
+            yield {
+                "name": f"{finding.name}, between the shafts",
+                "anchor": anchor,
+                "caption": _caption(shafts),
+                "svg": Markup(plots.file_figure(shafts, f"{anchor}-figure")),
             }
 
 
