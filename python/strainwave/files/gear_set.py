@@ -436,8 +436,8 @@ def _file(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
     if path.suffix.lower() in FORMATS and path.exists():
         raise ValueError(
-            f"{unquoted(str(path))} holds measurements, where a gear is asked for: give the name of a set, as hfuc-25-100, or a "
-            "gear file, which ends in .toml"
+            f"{unquoted(str(path))} holds measurements, where a gear is asked for: give the name of a set, as hfuc-25-100, or "
+            "a gear file, which ends in .toml"
         )
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path

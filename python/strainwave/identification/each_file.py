@@ -65,8 +65,8 @@ def _without_motion(file: Recognised) -> str:
     if {"angle", "speed", *ANGLES} & {*file.recording.names, *file.constants}:
         return f"torque without motion tells orders alone: strainwave orders finds them{hint}"
     return (
-        "torque alone tells nothing of the gear: record an angle or a speed with it, or, if the shaft turned at one speed, give "
-        f"that with --constant speed='100 1/min'{hint}"
+        "torque alone tells nothing of the gear: record an angle or a speed with it, or, if the shaft turned at one speed, "
+        f"give that with --constant speed='100 1/min'{hint}"
     )
 
 
