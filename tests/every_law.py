@@ -2,8 +2,8 @@
 
 Of each truth, drawn at random, a run under a known voltage makes a log of the speed of the input, the current and the
 transmission error, each with noise of 1 % of its range. A fit of the numbers of that law, which starts up to 15 % off, must
-hold each within two standard deviations in 90 % of the cases; scatter over stated standard deviation must lie between 0.7 and 1.4.
-All else of the drive is known, as it would be from tables and loops.
+hold each within two standard deviations in 90 % of the cases; scatter over stated standard deviation must lie between 0.7 and
+1.4. All else of the drive is known, as it would be from tables and loops.
 
 Loops by themselves are `tests.loops`; tables of friction, presliding loops, breakaway and warm-ups are held to the same in
 `tests/python/identification/candidates`.
@@ -99,7 +99,7 @@ FRICTION: dict[str, tuple[object, list[str]]] = {
         sw.friction.LuGre(**FALL, bristle_stiffness=10.0, bristle_damping=5e-4), ["coulomb", "viscous", "bristle_stiffness"],
     ),
     "Maxwell slip": (
-        sw.friction.MaxwellSlipFriction(**FALL, stiffness=[6.0, 2.0], share=[0.6, 0.4], attraction=50.0),
+        sw.friction.MaxwellSlipFriction(**{**FALL, **DRY}, stiffness=[6.0, 2.0], share=[0.6, 0.4], attraction=50.0),
         ["coulomb", "viscous", "stiffness"],
     ),
 }  # fmt: skip
