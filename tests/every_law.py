@@ -31,6 +31,7 @@ OFF = 0.15  # of a number, at most: where fits start
 RATIO = 100.0
 CHANNELS = ("input_speed", "current", "transmission_error")
 DRY = {"coulomb": 0.03, "breakaway": 0.03}  # N.m
+RISE = {"coulomb": 0.03, "breakaway": 0.02, "stribeck_speed": 3.0, "viscous": 3e-4}
 FALL = {"coulomb": 0.03, "breakaway": 0.045, "stribeck_speed": 3.0, "viscous": 3e-4}
 
 
@@ -99,7 +100,7 @@ FRICTION: dict[str, tuple[object, list[str]]] = {
         sw.friction.LuGre(**FALL, bristle_stiffness=10.0, bristle_damping=5e-4), ["coulomb", "viscous", "bristle_stiffness"],
     ),
     "Maxwell slip": (
-        sw.friction.MaxwellSlipFriction(**{**FALL, **DRY}, stiffness=[6.0, 2.0], share=[0.6, 0.4], attraction=50.0),
+        sw.friction.MaxwellSlipFriction(**RISE, stiffness=[6.0, 2.0], share=[0.6, 0.4], attraction=50.0),
         ["coulomb", "viscous", "stiffness"],
     ),
 }  # fmt: skip

@@ -267,8 +267,8 @@ def log_of(file: Recognised, known: Known) -> Taken:
         )
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
-        share = f"{spoilt_rows} samples of {log.effort}, {100.0 * spoilt_rows / len(recording):.2g} %"
-        remarks.append(f"{share}, are outliers or clipped, and left out")
+        share = 100.0 * spoilt_rows / len(recording)
+        remarks.append(f"outliers or clipped samples of {log.effort} are left out: {spoilt_rows}, {share:.2g} % of all")
     said = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     return Taken(log, drive, recording, tuple(remarks), in_current, said)
 

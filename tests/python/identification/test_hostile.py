@@ -134,8 +134,8 @@ def outlying() -> np.ndarray:
 LIMIT = 0.6 * float(np.abs(CURRENT).max())
 SAID: dict[str, tuple[Make, str]] = {
     "a reversed current": (log(current=-CURRENT), "current is counted against the motion: its sign is turned round"),
-    "outliers": (log(current=outlying()), r"samples of current, [\d.]+ %, are outliers or clipped, and left out"),
-    "a clipped current": (log(current=np.clip(CURRENT, -LIMIT, LIMIT)), r"%, are outliers or clipped, and left out"),
+    "outliers": (log(current=outlying()), r"clipped samples of current are left out: \d+, [\d.]+ % of all"),
+    "a clipped current": (log(current=np.clip(CURRENT, -LIMIT, LIMIT)), "outliers or clipped samples of current are left out"),
 }
 
 
