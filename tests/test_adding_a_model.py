@@ -29,6 +29,7 @@ BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run ti
 DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 USUAL = "one of the models whose drives run in code of their own, for speed"
+REACHED = "a log reaches some of the segments that a gear has, the first of them as one line"
 SERIES = "stages become one spring, with which runs are faster"
 PRINTED = "of a gear that a printed table of four stiffnesses is made into"
 SHEET = "what a data sheet tells of a gear"
@@ -55,7 +56,12 @@ ELSEWHERE = {
         "any.hpp": BOUND_TO_ANY,
         "studies/actuator_ramp.py": SERIES,
     },
-    "Lumped": {"gear.hpp": DEFAULT, "specialised.hpp": USUAL, "studies/actuator_ramp.py": SERIES},
+    "Lumped": {
+        "gear.hpp": DEFAULT,
+        "specialised.hpp": USUAL,
+        "studies/actuator_ramp.py": SERIES,
+        "identification/between_encoders.py": "a log does not tell the springs of stages apart",
+    },
     "Constant": {"gear.hpp": DEFAULT, "structure/staged.hpp": "what its springs do where nothing else is said"},
     "Scaled": {"any.hpp": BOUND_TO_ANY},
     "Viscous": {
@@ -88,7 +94,7 @@ ELSEWHERE = {
     "MixedLubrication": {},
     "MaxwellSlipFriction": {},
     "PositionDependent": {},
-    "DC": {"specialised.hpp": USUAL},
+    "DC": {"specialised.hpp": USUAL, "identification/each_file.py": "of a log of voltage alone, less what a motor induces"},
     "OpenLoop": {
         "specialised.hpp": USUAL,
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
@@ -146,6 +152,7 @@ ELSEWHERE = {
         "specialised.hpp": USUAL,
         "studies/actuator_ramp.py": SERIES,
         "rig/virtual/printed.py": PRINTED,
+        "identification/between_encoders.py": REACHED,
     },
     "PlainRatio": {"identification/identify.py": SAID, "rig/virtual/printed.py": PRINTED},
     "Regimes": {"rig/virtual/printed.py": PRINTED},
@@ -153,6 +160,7 @@ ELSEWHERE = {
     "ThreeSegment": {
         "files/datasheet.py": SHEET,
         "specialised.hpp": USUAL,
+        "identification/between_encoders.py": REACHED,
     },
     "Cubic": {
         "specialised.hpp": USUAL,

@@ -23,6 +23,7 @@ CLOCK = re.compile(  # a time of day, or with a date as controllers and loggers 
 DAY = 86400.0  # s
 SEEN = 100  # lines that show what the rows of a table look like
 _NO_UNIT = ("", "-", "1")
+_NO_NUMBER = ("NA", "N/A")  # no newton times or per ampere, but what programs write for no value
 _LIST = re.compile(rb"""["']?(?:array\((?:'d', *)?)?[\[(](\s*(?:[-+.\d']|nan)[^\[\]()"\n]*)[\])]{1,2}["']?""")
 
 
@@ -60,6 +61,8 @@ def with_units(labels: Sequence[Label], cells: Sequence[str]) -> list[Label] | N
     units = [re.fullmatch(r"[\[(]?([^\[\]()]*)[\])]?", cell.strip(' "')) for cell in cells]
     texts = [match[1] if match else "?" for match in units]
     if len(texts) != len(labels) or not all(text in _NO_UNIT or is_unit(text) for text in texts) or set(texts) <= {*_NO_UNIT}:
+        return None
+    if any(label.unit or text in _NO_NUMBER for label, text in zip(labels, texts, strict=True) if text not in _NO_UNIT):
         return None
     return [
         label if text in _NO_UNIT else Label(f"{label.text} [{text}]", label.name, label.unit or text)

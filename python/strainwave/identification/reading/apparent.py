@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 EVEN = 0.5  # of the usual step: by which half of the steps of a time differ from it at most
 SLOPE = 0.95  # correlation of a speed and of the slope of its angle
 SEEN = 20_000  # rows that are looked at
+BEYOND = 1e30  # in any unit
 MOST = 64  # columns that are compared with each other
 FEWEST = 20  # rows of samples: fewer are a table
 ALONE = "of a record at one constant speed say it, as with --column current=1 --constant speed='20 1/min'"
@@ -39,12 +40,15 @@ def apparent(table: OpenTable) -> str:
     if len(places) < 2:
         return ALONE if len(places) == 1 else ""
     numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in places])
-    columns = {place: numbers[str(place)][:SEEN] for place in places}
+    columns = {place: values for place in places if _may_be_measured(values := numbers[str(place)][:SEEN])}
+    if not columns:
+        return ""
+    rows = len(next(iter(columns.values())))
     time = next((place for place, values in columns.items() if _rises_evenly(values)), None)
     moving = {place: values for place, values in columns.items() if place != time and np.nanstd(values) > 0.0}
-    if not moving or len(columns[places[0]]) < FEWEST:
+    if not moving or rows < FEWEST:
         return ""
-    instants = np.arange(len(columns[places[0]]), dtype=float) if time is None else columns[time]
+    instants = np.arange(rows, dtype=float) if time is None else columns[time]
     pairs = _speeds(moving, instants)
     said = ["no column rises as a time does" if time is None else f"column {time + 1} rises as a time does"]
     options = ["--constant rate=HZ" if time is None else f"--column time={time + 1}"]
@@ -62,6 +66,11 @@ def apparent(table: OpenTable) -> str:
     guess = "" if pairs else " the angle and"
     tells = [f"--column current={effort + 1}"] if effort is not None else []
     return f"{', and '.join(said)}: name{guess} what tells the torque, as with {' '.join([*options, *tells])}"
+
+
+def _may_be_measured(values: Array) -> bool:
+    """Whether a column holds numbers, of which none is beyond all that is measured."""
+    return bool(np.isfinite(values).any() and np.nanmax(np.abs(values)) < BEYOND)
 
 
 def _effort(left: Sequence[int], angle: int, speed: int | None) -> int | None:

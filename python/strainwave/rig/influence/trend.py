@@ -18,7 +18,7 @@ LEVEL = 0.05  # of significance, of all tests of a series together
 SHUFFLES = 1999
 SEED = 20240229  # of the shuffles: the same series gives the same numbers
 NEAR = 0.02  # of the span of a column: rows that differ by less are repeats
-ROUNDING = 1e-12  # of the values: residuals that are no more than that are none
+ROUNDING = 1e-12  # of the values: residuals and effects that are no more than that are none
 TOGETHER = 0.95  # share of a factor's variance that others explain, beyond which its effect is not its own
 
 
@@ -118,6 +118,7 @@ def regress(columns: Array, values: Array) -> list[Slope]:
     variance = float(residual @ residual) / (n - m)
     inverse = np.linalg.inv(triangle)
     sigmas = np.sqrt(variance * np.sum(inverse**2, axis=1)) / size
+    solution = np.where(np.abs(solution) > ROUNDING * np.linalg.norm(values), solution, 0.0)
     return [_slope(float(value), float(sigma), n - m) for value, sigma in zip(solution / size, sigmas, strict=True)]
 
 
