@@ -70,7 +70,7 @@ class Between:
 
 def between_encoders(
     recording: Recording, log: MotionLog, best: MotionCandidate, errors: TransmissionError, known: Known, *,
-    rotor_known: bool, in_current: bool, relative: float,
+    rotor: float, in_current: bool, relative: float,
 ) -> Between:  # fmt: skip
     """Spring, hysteresis, damping and kinematic error of the gear in a log of both encoders, or why they are not told.
 
@@ -80,21 +80,22 @@ def between_encoders(
         best: what that has told
         errors: orders of the kinematic error, from which the fit starts
         known: before the log
-        rotor_known: whether the inertia of the motor is known, which else the load's has inside
+        rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2]; infinite where the motor's is
+            not known, which the load's then has inside
         in_current: whether torques are in A
         relative: standard deviation of the torque constant over its value [1]
     """
     drive, estimates = best.fit.parts[0].model, {each.path: each for each in best.fit.estimates}
     try:
         _check(log, drive, errors)
-        scale = _scale(estimates, rotor_known)
+        scale = _scale(estimates, rotor)
         drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
         found = fit_elastic(_sense(recording, errors, drive), log, drive, scale, _law(errors, drive))
     except (ValueError, FloatingPointError) as error:
         return Between(remarks=(f"stiffness and hysteresis are not told: {error}",))
     common = relative * (1.0 if scale.path == GRAVITY else 1.0 + _rotor(drive) / drive.load.inertia)
     told = tuple(_told(found, scale, common, known, in_current))
-    remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), in_current))
+    remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), rotor, in_current))
     between = Between(told, remarks, curves_of_shafts(found.fit, found.name), found)
     return replace(between, parts=("kinematic_error",)) if in_current else between
 
@@ -113,20 +114,26 @@ def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
         raise ValueError(f"the angles have the ratio {used:.6g}, the initial set {ratio:.6g}; give --constant ratio={used:.6g}")
 
 
-def _scale(estimates: Mapping[str, Estimate], rotor_known: bool) -> Scale:
+def _scale(estimates: Mapping[str, Estimate], rotor: float) -> Scale:
     """What torques count from: gravity, which slow motion tells whatever the motor's inertia is, or the load's inertia.
+
+    That of the load is what is left beside the rotor's, so that a small one may be known badly.
 
     Raises:
         ValueError: the log tells neither
     """
     gravity, inertia = estimates.get(GRAVITY), estimates.get(INERTIA)
     by_gravity = gravity.sigma / gravity.value if gravity is not None and gravity.value > 0.0 else np.inf
-    by_inertia = inertia.sigma / inertia.value if inertia is not None and rotor_known and inertia.value > 0.0 else np.inf
+    by_inertia = np.hypot(inertia.sigma, rotor) / inertia.value if inertia is not None and inertia.value > 0.0 else np.inf
     path, relative = (GRAVITY, by_gravity) if by_gravity < SURER * by_inertia else (INERTIA, by_inertia)
     if not relative < UNTOLD:
-        missing = "" if rotor_known else ", and the inertia of the motor is not known: give --constant motor_inertia=…"
-        raise ValueError(f"no torque at the output is known to count from: the log tells no gravity{missing}")
-    return Scale(path, relative)
+        missing = "is not known: give --constant motor_inertia=…"
+        if np.isfinite(rotor):
+            missing = f"is not known well enough beside that of the load: ± {rotor:.2g} kg·m² at the output"
+        raise ValueError(
+            f"no torque at the output is known to count from: the log tells no gravity, and the inertia of the motor {missing}"
+        )
+    return Scale(path, float(relative))
 
 
 def _rotor(drive: Drive) -> float:
@@ -196,7 +203,7 @@ def _law_of(path: str, found: ElasticCandidate) -> str:
     return str(getattr(gear, part).name) if part in ("stiffness", "kinematic_error") else ""
 
 
-def _remarks(found: ElasticCandidate, scale: Scale, rigid: Estimate | None, in_current: bool) -> Iterator[str]:
+def _remarks(found: ElasticCandidate, scale: Scale, rigid: Estimate | None, rotor: float, in_current: bool) -> Iterator[str]:
     estimates = {each.path: (each, float(sigma)) for each, sigma in zip(found.fit.estimates, found.sigmas, strict=True)}
     torque, mass = ("A", "A·s²/rad") if in_current else ("N·m", "kg·m²")
     of = "gravity" if scale.path == GRAVITY else "inertia of the load"
@@ -212,7 +219,7 @@ def _remarks(found: ElasticCandidate, scale: Scale, rigid: Estimate | None, in_c
         )
     if scale.path == GRAVITY and rigid is not None:
         own, sigma = estimates[INERTIA]
-        if abs(own.value - rigid.value) > APART * float(np.hypot(sigma, rigid.sigma)):
+        if np.isfinite(rotor) and abs(own.value - rigid.value) > APART * float(np.linalg.norm([sigma, rigid.sigma, rotor])):
             yield (
                 f"inertia of the load: {own.value:.4g} {mass} by how it winds the gear up and vibrates, {rigid.value:.4g} by "
                 "the torque of the motor. The first is told: it needs neither inertia of the motor nor a current that is a mean"

@@ -21,7 +21,7 @@ from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.known import Known, TorqueConstant, with_torque
+from strainwave.identification.known import Known, TorqueConstant, rotor_sigma, with_torque
 from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.recognise import Recognised
@@ -313,13 +313,14 @@ def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
     log = taken.log
     priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
     best, *_ = fit_motion({file.path.name: log}, drive, priors=priors)
-    told = list(_of_motion(best, taken, TorqueConstant.of(file, known.gear_set)))
+    rotor = rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2 if not in_current else 0.0
+    told = list(_of_motion(best, taken, TorqueConstant.of(file, known.gear_set), rotor))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
     between = Between()
     if set(ANGLES) <= set(recording.names):
         errors = transmission_error(recording)
-        between = _between(file, taken, best, errors, known)
+        between = _between(file, taken, best, errors, known, rotor)
         surer = {each.path for each in between.told}
         told = [each for each in (*told, *_orders(errors)) if each.path not in surer] + list(between.told)
         remarks += [*errors.remarks, *between.remarks]
@@ -342,16 +343,19 @@ def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
     return [f"shares of the regressors in the torque at the output: {listed(said)}"] if said else []
 
 
-def _between(file: Recognised, taken: Taken, best: MotionCandidate, errors: TransmissionError, known: Known) -> Between:
+def _between(
+    file: Recognised, taken: Taken, best: MotionCandidate, errors: TransmissionError, known: Known, rotor: float
+) -> Between:
     """What both encoders tell of the gear between them."""
     constant = TorqueConstant.of(file, known.gear_set)
+    rotor_known = not taken.in_current and _rotor(file, known.gear_set) is not None
     return between_encoders(
         taken.recording,
         taken.log,
         best,
         errors,
         known,
-        rotor_known=not taken.in_current and _rotor(file, known.gear_set) is not None,
+        rotor=rotor if rotor_known else np.inf,
         in_current=taken.in_current,
         relative=0.0 if constant is None else constant.relative,
     )
@@ -443,8 +447,8 @@ def _loaded(file: Recognised) -> Recording:
     return file.recording.with_column("rigid_torque", own + file.constants["load_torque"], "N.m")
 
 
-def _of_motion(best: MotionCandidate, taken: Taken, constant: TorqueConstant | None) -> Iterator[Told]:
-    """The numbers of a log; each as uncertain as the torque constant, besides."""
+def _of_motion(best: MotionCandidate, taken: Taken, constant: TorqueConstant | None, rotor: float) -> Iterator[Told]:
+    """The numbers of a log; each as uncertain as the torque constant, besides, and inertia as that of the rotor [kg.m2]."""
     drive, in_current = taken.drive, taken.in_current
     rotating: Any = drive.motor
     by_constant = taken.log.effort in ("current", "voltage") and not in_current  # a torque that was measured needs none
@@ -461,6 +465,8 @@ def _of_motion(best: MotionCandidate, taken: Taken, constant: TorqueConstant | N
         law = "in A" if in_current and of_torque else encoder if estimate.path == "load.gravity_phase" else ""
         told = Told(estimate.path, estimate.unit, estimate.value, estimate.sigma, law)
         told = _as_uncertain(told, relative, beside.get(estimate.path, 0.0))
+        if estimate.path == "load.inertia":
+            told = replace(told, sigma=float(np.hypot(told.sigma, rotor)), common=float(np.hypot(told.common, rotor)))
         unit = told.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad") if in_current else told.unit
         yield replace(told, unit=unit, why=_untold(estimate, told.sigma, best))
 

@@ -16,6 +16,7 @@ from strainwave.identification.findings import Told
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 
+ROTOR = 0.05  # relative standard deviation of an inertia of which a data sheet says none (assumed)
 MODULATING = ("cyclic", "thermal")  # laws that vary another one
 
 
@@ -155,6 +156,23 @@ class TorqueConstant:
         entry = gear_set.sources.get("motor.torque_constant")
         relative = 0.0 if entry is None else entry.uncertainty / value if entry.uncertainty else entry.spread or 0.0
         return cls(value, float(relative))
+
+
+def rotor_sigma(file: Recognised, gear_set: GearSet) -> float:
+    """Standard deviation of the inertia that turns at the input [kg.m2]: what a log tells of a load is what is left beside it.
+
+    That of a motor is exact where a person gave it with the file.
+    """
+    motor = gear_set.motor if "motor_inertia" not in file.constants else None
+    of_motor = 0.0 if motor is None else _sigma(gear_set, "motor.inertia", motor.inertia)
+    return float(np.hypot(of_motor, _sigma(gear_set, "gear.input_inertia", gear_set.gear.input_inertia)))
+
+
+def _sigma(gear_set: GearSet, path: str, value: float) -> float:
+    entry = gear_set.sources.get(path, Entry("not given"))
+    if entry.uncertainty is not None:
+        return entry.uncertainty
+    return value * (ROTOR if entry.spread is None else entry.spread)
 
 
 def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:

@@ -229,3 +229,17 @@ def test_shares_of_regressors_are_found_beside_friction(tmp_path: Path) -> None:
     values = {name: (float(value), float(sigma)) for name, value, _, sigma in (part.split() for part in parts)}
     assert all(abs(values[name][0] - share) < 4.0 * values[name][1] < 0.1 for name, share in shares.items())
     assert not any("columns not used" in each for each in found.remarks)
+
+
+def test_a_load_is_as_uncertain_as_the_rotor_beside_it(tmp_path: Path) -> None:
+    file = log(tmp_path / "log.csv", 7)
+    known = measured_motor()
+    of_gear = {"gear.input_inertia": sw.Entry("measured", uncertainty=2e-6)}
+    inertia = [
+        next(each.told for each in identify(start, [file]).numbers if each.told.path == "load.inertia")
+        for start in (known.replace(sources={**known.sources, "gear.input_inertia": sw.Entry("x", uncertainty=0.0)}),
+                      known.replace(sources={**known.sources, **of_gear}))
+    ]  # fmt: skip
+    assert inertia[1].value == inertia[0].value
+    assert inertia[1].sigma == pytest.approx(np.hypot(inertia[0].sigma, 2e-6 * RATIO**2))
+    assert inertia[1].common == pytest.approx(2e-6 * RATIO**2)
