@@ -72,6 +72,7 @@ def start(truth: dict[str, float], seed: int) -> GearSet:
     )  # fmt: skip
     exact, constant = Entry("measured before", uncertainty=0.0), Entry("data sheet", uncertainty=SHEET * stated)
     sources = {f"motor.{field['name']}": constant if field["name"] == "torque_constant" else exact for field in motor.fields}
+    sources["gear.input_inertia"] = exact  # motor and gear together are what turns there
     return catalogue.replace(motor=motor, sources={**catalogue.sources, **sources})
 
 
