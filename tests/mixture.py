@@ -44,7 +44,7 @@ NAMES = {
     "gear.friction_input.coulomb": "Fc", "gear.friction_input.breakaway": "Fs", "gear.friction_input.stribeck_speed": "vs",
     "gear.friction_input.viscous": "viscous", "gear.friction_mesh.driving_forward": "loadloss",
     "gear.kinematic_error.amplitude of order 2": "e2", "gear.kinematic_error.amplitude of order 4": "e4",
-    "load.inertia": "Jl", "load.gravity_torque": "gravity",
+    "gear.damping": "damping", "load.inertia": "Jl", "load.gravity_torque": "gravity",
 }  # fmt: skip
 OTHER_LOADS = {"light.csv": {"Jl": 0.3, "gravity": 0.0}, "heavy.csv": {"Jl": 1.6, "gravity": 25.0}}
 
