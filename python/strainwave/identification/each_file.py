@@ -399,6 +399,11 @@ def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]
         gear = gear.replace(input_inertia=0.0)
     elif inertia is None:
         remarks.append("the inertia of the motor is not known: that of the load has it inside, times the ratio squared")
+    elif "motor_inertia" in constants:
+        remarks.append(
+            f"beside the motor's {inertia:.3g} kg·m² the set's {gear.input_inertia:.3g} kg·m² of the gear turn at the input; where "
+            "the first has the gear inside, give it without"
+        )
     motor_there = motor.CurrentSource(
         torque_constant=1.0 if constant is None else constant,
         inertia=NO_ROTOR if inertia is None or in_current else inertia,
