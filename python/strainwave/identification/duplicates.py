@@ -18,12 +18,16 @@ OF_TORQUE = 0.2  # of the same: noise and delay make as much
 
 
 def same_as(files: Sequence[Recognised]) -> dict[str, str]:
-    """Names of files that show what an earlier one shows, each with the name of that one."""
+    """Paths of files that show what another one shows, each with the path of that one: of several the one with most channels.
+
+    Where they have as many, it is the first.
+    """
     found: dict[str, str] = {}
-    for place, file in enumerate(files):
-        for earlier in files[:place]:
-            if earlier.path.name not in found and _alike(earlier, file):
-                found[str(file.path)] = str(earlier.path)
+    richest_first = sorted(files, key=lambda file: -len(file.recording.names))
+    for place, file in enumerate(richest_first):
+        for richer in richest_first[:place]:
+            if str(richer.path) not in found and _alike(richer, file):
+                found[str(file.path)] = str(richer.path)
                 break
     return found
 

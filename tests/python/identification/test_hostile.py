@@ -189,6 +189,16 @@ def test_a_run_that_rests_most_of_the_time_is_no_copy_of_another(tmp_path: Path)
         assert same_as(read) == {str(tmp_path / "again.csv"): str(tmp_path / "one.csv")}
 
 
+def test_of_files_of_one_run_the_one_with_most_channels_counts(tmp_path: Path) -> None:
+    time = np.arange(0.0, 10.0, 0.01)
+    angle, units = np.sin(1.3 * time), {"time": "s", "q": "rad", "tau": "N.m", "motor_angle": "rad"}
+    columns = {"time": time, "q": angle, "tau": np.sign(np.cos(1.3 * time)) + 0.1 * angle}
+    for name, more in (("poor.csv", {}), ("rich.csv", {"motor_angle": -100.0 * angle}), ("again.csv", {})):
+        write(tmp_path / name, columns | more, {each: units[each] for each in columns | more})
+    read = [recognise(tmp_path / name) for name in ("poor.csv", "rich.csv", "again.csv")]
+    assert same_as(read) == {str(tmp_path / name): str(tmp_path / "rich.csv") for name in ("poor.csv", "again.csv")}
+
+
 def test_a_doubted_table_is_used_if_it_is_accepted(tmp_path: Path) -> None:
     path = friction(SPEED, 1e3 * TORQUE)(tmp_path)
     found = identify(START, [path], accept=True)
