@@ -27,7 +27,7 @@ Side = Annotated[str | None, typer.Option(help="Where a table or angles were mea
 Kind = Annotated[
     str | None, typer.Option(help="What files are that may be two things: friction, torsion, log, encoders or effort.")
 ]
-Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several; identify takes all, too.")]
+Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several; with identify, all takes every one.")]
 
 
 def said_of(

@@ -12,7 +12,7 @@ import typer
 from strainwave.file_options import Columns, Constants, Gear, Joint, Kind, Mapping, Side, Units, said_of
 
 if TYPE_CHECKING:
-    from strainwave.identification.findings import Finding, Number
+    from strainwave.identification.findings import Finding
     from strainwave.identification.identify import Identified
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.report.provenance import Provenance
@@ -102,6 +102,8 @@ def _every_joint(gear: str, paths: list[Path], said: Callable[[Path], FileMappin
 
 
 def _summary(found: Identified) -> Iterator[str]:
+    from strainwave.identification.findings import lines_of
+
     points = [finding for finding in found.findings if finding.part_of]
     for finding in found.findings:
         if not finding.part_of:
@@ -112,15 +114,12 @@ def _summary(found: Identified) -> Iterator[str]:
         yield from (f"  {finding.name:{width}}  {finding.model}" for finding in points)
         yield from (f"  {remark}" for remark in dict.fromkeys(remark for finding in points for remark in finding.remarks))
     yield ""
-    width = max(len(_name(number)) for number in found.numbers)
-    for number in found.numbers:
-        told = number.told
-        yield f"  {_name(number):{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {number.taken_from}"
+    yield from lines_of(found.numbers)
     for number in found.numbers:
         for other in number.contradicts:
             best, value = number.of_file(number.source), number.others[other]
             yield (
-                f"contradiction: {_name(number)} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} in "
+                f"contradiction: {number.told.label} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} in "
                 f"{number.source}, {value.value:.4g} ± {value.sigma:.2g} in {other}"
             )
 
@@ -140,7 +139,3 @@ def _of_file(finding: Finding) -> Iterator[str]:
     yield f"  {finding.model}{held_out}"
     yield from (f"  DOUBT: {doubt}" for doubt in finding.doubts)
     yield from (f"  {remark}" for remark in finding.remarks[:MOST_REMARKS])
-
-
-def _name(number: Number) -> str:
-    return f"{number.told.path} ({number.told.law})" if number.told.law.startswith(("in ", "of ")) else number.told.path

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
+from strainwave.files.budget import RefusedFile
 from strainwave.files.units import check as check_unit
 from strainwave.messages import as_option, listed, one_line, quoted
 
@@ -159,6 +160,8 @@ def read_by_others(path: str | Path, kind: str) -> Iterator[None]:
         yield
     except ImportError:
         raise
+    except RefusedFile as error:
+        raise ValueError(one_line(f"{path}: {error}")) from None
     except Exception as error:
         cause: BaseException | None = error
         while cause is not None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, stiffness, structure
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.elastic import ElasticCandidate, Scale, fit_elastic
+from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion import MotionCandidate
 from strainwave.identification.curves import curves_of_shafts
 from strainwave.identification.evidence.verdict import numbers
@@ -22,6 +22,7 @@ from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.known import Known, is_of
 from strainwave.identification.orders.two_encoders import TransmissionError
+from strainwave.identification.prepared_log import PreparedLog
 
 Array = NDArray[np.float64]
 
@@ -68,36 +69,27 @@ class Between:
         return _with_sources_kept(known.with_parts(new, sigmas, name), known, new, sigmas, name)
 
 
-def between_encoders(
-    recording: Recording, log: MotionLog, best: MotionCandidate, errors: TransmissionError, known: Known, *,
-    rotor: float, in_current: bool, relative: float,
-) -> Between:  # fmt: skip
+def between_encoders(taken: PreparedLog, best: MotionCandidate, errors: TransmissionError, known: Known) -> Between:
     """Spring, hysteresis, damping and kinematic error of the gear in a log of both encoders, or why they are not told.
 
     Args:
-        recording: the log
-        log: the same along its motion
-        best: what that has told
+        taken: the log
+        best: what its motion has told
         errors: orders of the kinematic error, from which the fit starts
         known: before the log
-        rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2]; infinite where the motor's is
-            not known, which the load's then has inside
-        in_current: whether torques are in A
-        relative: standard deviation of the torque constant over its value [1]
     """
     drive, estimates = best.fit.parts[0].model, {each.path: each for each in best.fit.estimates}
     try:
-        _check(log, drive, errors)
-        scale = _scale(estimates, rotor)
+        _check(taken.log, drive, errors)
+        scale = _scale(estimates, taken, drive)
         drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
-        found = fit_elastic(_sense(recording, errors, drive), log, drive, scale, _law(errors, drive))
+        found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, _law(errors, drive))
     except (ValueError, FloatingPointError) as error:
         return Between(remarks=(f"stiffness and hysteresis are not told: {error}",))
-    common = relative * (1.0 if scale.path == GRAVITY else 1.0 + _rotor(drive) / drive.load.inertia)
-    told = tuple(_told(found, scale, common, known, in_current))
-    remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), rotor, in_current))
+    told = tuple(_told(found, scale, known, taken.in_current))
+    remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), taken))
     between = Between(told, remarks, curves_of_shafts(found.fit, found.name), found)
-    return replace(between, parts=("kinematic_error",)) if in_current else between
+    return replace(between, parts=("kinematic_error",)) if taken.in_current else between
 
 
 def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
@@ -114,7 +106,27 @@ def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
         raise ValueError(f"the angles have the ratio {used:.6g}, the initial set {ratio:.6g}; give --constant ratio={used:.6g}")
 
 
-def _scale(estimates: Mapping[str, Estimate], rotor: float) -> Scale:
+@dataclass(frozen=True)
+class _Scale:
+    """The torque that is known, from which those of the output stage count.
+
+    Attributes:
+        path: `load.gravity_torque` or `load.inertia`
+        own: its standard deviation over its value, by the log [1]
+        common: the part that other files share, of the torque constant and the rotor [1]
+    """
+
+    path: str
+    own: float
+    common: float
+
+    @property
+    def relative(self) -> float:
+        """Its whole standard deviation over its value [1]."""
+        return float(np.hypot(self.own, self.common))
+
+
+def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) -> _Scale:
     """What torques count from: gravity, which slow motion tells whatever the motor's inertia is, or the load's inertia.
 
     That of the load is what is left beside the rotor's, so that a small one may be known badly.
@@ -122,23 +134,22 @@ def _scale(estimates: Mapping[str, Estimate], rotor: float) -> Scale:
     Raises:
         ValueError: the log tells neither
     """
-    gravity, inertia = estimates.get(GRAVITY), estimates.get(INERTIA)
-    by_gravity = gravity.sigma / gravity.value if gravity is not None and gravity.value > 0.0 else np.inf
-    by_inertia = np.hypot(inertia.sigma, rotor) / inertia.value if inertia is not None and inertia.value > 0.0 else np.inf
-    path, relative = (GRAVITY, by_gravity) if by_gravity < SURER * by_inertia else (INERTIA, by_inertia)
-    if not relative < UNTOLD:
+    gravity, inertia = (each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY, INERTIA))
+    by_gravity = [] if gravity is None else [_Scale(GRAVITY, gravity.sigma / gravity.value, taken.relative)]
+    by_inertia = []
+    if inertia is not None and taken.motor_known:
+        rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
+        common = float(np.hypot(taken.relative * (inertia.value + rotor), taken.rotor)) / inertia.value
+        by_inertia = [_Scale(INERTIA, inertia.sigma / inertia.value, common)]
+    told = [each for each in (*by_gravity, *by_inertia) if each.relative < UNTOLD]
+    if not told:
         missing = "is not known: give --constant motor_inertia=…"
-        if np.isfinite(rotor):
-            missing = f"is not known well enough beside that of the load: ± {rotor:.2g} kg·m² at the output"
+        if taken.motor_known:
+            missing = f"is not known well enough beside that of the load: ± {taken.rotor:.2g} kg·m² at the output"
         raise ValueError(
             f"no torque at the output is known to count from: the log tells no gravity, and the inertia of the motor {missing}"
         )
-    return Scale(path, float(relative))
-
-
-def _rotor(drive: Drive) -> float:
-    """Inertia of motor and gear's input, as the output has it [kg.m2]."""
-    return float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
+    return told[0] if len(told) == 1 or told[0].relative < SURER * told[1].relative else told[1]
 
 
 def _sense(recording: Recording, errors: TransmissionError, drive: Drive) -> Recording:
@@ -158,7 +169,7 @@ def _law(errors: TransmissionError, drive: Drive) -> Any:
 # ---- What is told ----------------------------------------------------------------------------------------------------
 
 
-def _told(found: ElasticCandidate, scale: Scale, common: float, known: Known, in_current: bool) -> Iterator[Told]:
+def _told(found: ElasticCandidate, scale: _Scale, known: Known, in_current: bool) -> Iterator[Told]:
     """The numbers of the gear, each as uncertain as the torque that all count from."""
     gear: Any = found.drive.gear
     law, orders = known.gear_set.gear.stiffness, gear.kinematic_error.order
@@ -166,16 +177,13 @@ def _told(found: ElasticCandidate, scale: Scale, common: float, known: Known, in
     for estimate, sigma in zip(found.fit.estimates, found.sigmas, strict=True):
         if estimate.path in nuisances or estimate.path.startswith(("gear.kinematic_error.phase", "load.gravity")):
             continue
-        of_torque = estimate.unit.startswith(("N.m", "kg.m2"))
-        shared = common * abs(estimate.value) if of_torque and not in_current else 0.0
-        own = float(np.hypot(sigma, scale.relative * abs(estimate.value))) if of_torque else float(sigma)
-        whole = float(np.hypot(own, shared))
-        why = "its standard deviation exceeds half the value" if whole > UNTOLD * abs(estimate.value) else ""
-        path, unit = _path(estimate.path, orders, found, law), estimate.unit
-        of_law = _law_of(path, found)
-        if in_current and of_torque:
-            unit, of_law = unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad"), "in A"
-        yield Told(path, unit, estimate.value, whole, of_law, why, shared)
+        path = _path(estimate.path, orders, found, law)
+        told = Told(path, estimate.unit, estimate.value, float(sigma), _law_of(path, found))
+        if told.is_of_torque:
+            told = replace(told, sigma=float(np.hypot(sigma, scale.own * told.value))).resting_on(scale.common)
+        why = "its standard deviation exceeds half the value" if told.sigma > UNTOLD * abs(told.value) else ""
+        told = replace(told, why=why)
+        yield told.in_current() if in_current else told
 
 
 def _path(path: str, orders: Any, found: ElasticCandidate, law: Any) -> str:
@@ -203,9 +211,9 @@ def _law_of(path: str, found: ElasticCandidate) -> str:
     return str(getattr(gear, part).name) if part in ("stiffness", "kinematic_error") else ""
 
 
-def _remarks(found: ElasticCandidate, scale: Scale, rigid: Estimate | None, rotor: float, in_current: bool) -> Iterator[str]:
+def _remarks(found: ElasticCandidate, scale: _Scale, rigid: Estimate | None, taken: PreparedLog) -> Iterator[str]:
     estimates = {each.path: (each, float(sigma)) for each, sigma in zip(found.fit.estimates, found.sigmas, strict=True)}
-    torque, mass = ("A", "A·s²/rad") if in_current else ("N·m", "kg·m²")
+    torque, mass = ("A", "A·s²/rad") if taken.in_current else ("N·m", "kg·m²")
     of = "gravity" if scale.path == GRAVITY else "inertia of the load"
     yield (
         f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
@@ -217,9 +225,9 @@ def _remarks(found: ElasticCandidate, scale: Scale, rigid: Estimate | None, roto
             f"what is left between the encoders hangs together over {together:.0f} samples: the gear or its load has something "
             "that the model lacks, and its numbers may be off by more than they say"
         )
-    if scale.path == GRAVITY and rigid is not None:
+    if scale.path == GRAVITY and rigid is not None and taken.motor_known:
         own, sigma = estimates[INERTIA]
-        if np.isfinite(rotor) and abs(own.value - rigid.value) > APART * float(np.linalg.norm([sigma, rigid.sigma, rotor])):
+        if abs(own.value - rigid.value) > APART * float(np.linalg.norm([sigma, rigid.sigma, taken.rotor])):
             yield (
                 f"inertia of the load: {own.value:.4g} {mass} by how it winds the gear up and vibrates, {rigid.value:.4g} by "
                 "the torque of the motor. The first is told: it needs neither inertia of the motor nor a current that is a mean"

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
+from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.motion_log import EFFORTS
 from strainwave.identification.reading.recognise import Recognised
 
@@ -84,5 +85,5 @@ def _proportional(one: Array, other: Array, allowed: float) -> bool:
 
 
 def _angle(recording: Recording) -> Array | None:
-    names = [name for name in ("input_angle", "output_angle") if name in recording]
+    names = [name for name in ENCODERS if name in recording]
     return recording[names[0]] if names and "time" in recording else None

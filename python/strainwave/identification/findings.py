@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -28,7 +28,7 @@ class Told:
         sigma: its standard deviation
         law: the law that it belongs to; numbers of different laws are not compared
         why: what speaks against it; empty where the file tells it
-        common: the part of `sigma` that all files share that rest on the torque constant of the motor
+        common: the part of `sigma` that files share: of the torque constant, and of the inertia of the rotor
     """
 
     path: str
@@ -43,6 +43,36 @@ class Told:
     def own(self) -> float:
         """The part of the standard deviation that no other file shares."""
         return float(np.sqrt(max(self.sigma**2 - self.common**2, 0.0)))
+
+    def resting_on(self, relative: float, beside: float = 0.0) -> Told:
+        """The same, as uncertain as the torque constant that it rests on, besides; what is no torque rests on none.
+
+        Args:
+            relative: standard deviation of the torque constant over its value [1]
+            beside: what is taken off a number that grows with the constant, as the inertia of the motor, or what a motor whose
+                voltage was measured induces
+        """
+        return self.sharing(relative * (abs(self.value) + beside)) if self.is_of_torque else self
+
+    def sharing(self, common: float) -> Told:
+        """The same, with more of its standard deviation in common with other files."""
+        return replace(self, sigma=float(np.hypot(self.sigma, common)), common=float(np.hypot(self.common, common)))
+
+    def in_current(self) -> Told:
+        """The same, where the torque constant is not known and torques are told in A."""
+        if not self.is_of_torque:
+            return self
+        return replace(self, unit=self.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad"), law="in A")
+
+    @property
+    def label(self) -> str:
+        """Its path, and what else tells it from others of that path."""
+        return f"{self.path} ({self.law})" if self.law.startswith(("in ", "of ")) else self.path
+
+    @property
+    def is_of_torque(self) -> bool:
+        """Whether it is twice as large where all torques are."""
+        return self.unit.startswith(("N.m", "kg.m2"))
 
     @property
     def is_phase(self) -> bool:
@@ -117,6 +147,14 @@ class Number:
     def of_file(self, name: str) -> Told:
         """As one file tells it."""
         return (self.best or self.told) if name == self.source else self.others[name]
+
+
+def lines_of(numbers: Sequence[Number]) -> Iterator[str]:
+    """A line for each number, to print."""
+    width = max((len(each.told.label) for each in numbers), default=0)
+    for each in numbers:
+        told = each.told
+        yield f"  {told.label:{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {each.taken_from}"
 
 
 def numbers_of(findings: Sequence[Finding]) -> tuple[Number, ...]:

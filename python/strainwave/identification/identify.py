@@ -88,7 +88,7 @@ def identify(
     >>> found.findings[0].recognised.kind, round(found.gear_set.gear.friction_input.coulomb, 2)
     ('friction', 0.05)
     """
-    _check_arguments(files, mapping)
+    check_arguments(files, mapping)
     paths = [file for path in files for file in files_of(Path(path))]
     each_read = {path: _recognised(path, mapping) for path in paths}
     recognised = joined([each for each in each_read.values() if isinstance(each, Recognised)])
@@ -115,7 +115,8 @@ def identify(
     return Identified(start, findings, numbers, with_means(found.known, numbers))
 
 
-def _check_arguments(files: object, mapping: object) -> None:
+def check_arguments(files: object, mapping: object) -> None:
+    """Refuses what are no files, and no function that says something of them."""
     if not isinstance(files, list | tuple) or not all(isinstance(each, str | Path) for each in files):
         raise TypeError(f"files must be a list of paths, not {shortened(files)}")
     if mapping is not None and not callable(mapping):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.identify import Identified, identify
+from strainwave.identification.identify import Identified, check_arguments, files_of, identify
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
 
@@ -21,10 +21,12 @@ class Joints:
     Attributes:
         found: what they tell of each joint, by its name
         refused: why nothing was found of a joint, by its name
+        left_out: why a file was not used of any joint, by its name
     """
 
     found: Mapping[str, Identified]
     refused: Mapping[str, str]
+    left_out: Mapping[str, str]
 
 
 def identify_joints(
@@ -39,20 +41,30 @@ def identify_joints(
 
     Args:
         start: the set to start from, for each joint
-        files: logs of an arm
+        files: logs of an arm; of a folder all files that may be such
         mapping, accept: as of `identify`
         progress: called with the name of each joint as its turn comes
 
     Raises:
+        TypeError: as `identify`
         ValueError: no joint moves in any file, or nothing is found of any; says why of each
     """
+    check_arguments(files, mapping)
     said = mapping or (lambda path: FileMapping())
-    by_joint: dict[str, list[Path]] = {}
-    for path in map(Path, files):
-        for joint in joints_of(path, replace(said(path), joint=None)):
+    by_joint, left_out = dict[str, list[Path]](), dict[str, str]()
+    for path in (file for each in files for file in files_of(Path(each))):
+        try:
+            joints = joints_of(path, replace(said(path), joint=None))
+        except ValueError as error:
+            left_out[path.name] = str(error)
+            continue
+        if not joints:
+            left_out[path.name] = "it has not the angles of several joints by their names, and one that moves; name its joint"
+        for joint in joints:
             by_joint.setdefault(joint, []).append(path)
     if not by_joint:
-        raise ValueError("no file has the angles of several joints by their names, and one that moves; leave --joint away")
+        why = "; ".join(f"{name}: {each}" for name, each in left_out.items())
+        raise ValueError(f"no file tells several joints apart, leave --joint away or name one: {why}")
     found, refused = dict[str, Identified](), dict[str, str]()
     for joint, paths in by_joint.items():
         progress(f"joint {joint}")
@@ -62,7 +74,7 @@ def identify_joints(
             refused[joint] = str(error)
     if not found:
         raise ValueError("; ".join(f"joint {joint}: {why}" for joint, why in refused.items()))
-    return Joints(found, refused)
+    return Joints(found, refused, left_out)
 
 
 def _of_joint(said: Callable[[Path], FileMapping], joint: str) -> Callable[[Path], FileMapping]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
+from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.messages import listed
 
@@ -16,7 +17,6 @@ Array = NDArray[np.float64]
 
 NEXT = (0.2, 3.0)  # steps of the clock from the last row of one file to the first of the next
 FURTHER = 3.0  # of the largest step, by which an angle may move from the one to the other
-ANGLES = ("input_angle", "output_angle")
 
 
 def joined(files: Sequence[Recognised]) -> list[Recognised]:
@@ -65,7 +65,7 @@ def _goes_on(one: Recognised, other: Recognised) -> bool:
     step = float(np.median(np.diff(before.time)))
     apart = (other.began + float(after.time[0])) - (one.began + float(before.time[-1]))
     return NEXT[0] * step < apart < NEXT[1] * step and all(
-        _near(before[name], after[name]) for name in ANGLES if name in before
+        _near(before[name], after[name]) for name in ENCODERS if name in before
     )
 
 

@@ -13,12 +13,12 @@ from strainwave.identification.candidates.motion import MotionCandidate, fit_mot
 from strainwave.identification.candidates.presliding import fit_presliding
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.contact import at_input
-from strainwave.identification.each_file import log_of
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.covariance import correlation_length
 from strainwave.identification.known import Known, with_torque
+from strainwave.identification.prepared_log import log_of
 from strainwave.identification.reading.recognise import Recognised
 
 

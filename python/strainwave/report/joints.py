@@ -10,7 +10,7 @@ from io import StringIO
 from math import isfinite
 from typing import Any
 
-from strainwave.identification.findings import Finding, Number
+from strainwave.identification.findings import Finding, lines_of
 from strainwave.identification.identify import Identified
 from strainwave.identification.joints import Joints
 from strainwave.report import figures
@@ -29,6 +29,7 @@ def joints_report(joints: Joints, provenance: Provenance | None = None) -> str:
         {
             "joints": [_joint(name, found) for name, found in joints.found.items()],
             "refused": list(joints.refused.items()),
+            "left_out": list(joints.left_out.items()),
             "numbers": list(_rows(joints)),
             "provenance": provenance or Provenance(),
             "version": metadata.version("strainwave"),
@@ -52,11 +53,9 @@ def joints_summary(joints: Joints) -> Iterator[str]:
     for name, found in joints.found.items():
         yield f"joint {name}: {'; '.join(_of_files(found))}"
         yield from (f"  DOUBT: {doubt}" for finding in found.findings for doubt in finding.doubts)
-        width = max(len(_path(each)) for each in found.numbers)
-        for each in found.numbers:
-            told = each.told
-            yield f"  {_path(each):{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {each.taken_from}"
+        yield from lines_of(found.numbers)
     yield from (f"joint {name}: NOT USED: {why}" for name, why in joints.refused.items())
+    yield from (f"{name}: NOT USED: {why}" for name, why in joints.left_out.items())
 
 
 def joints_csv(joints: Joints) -> str:
@@ -89,11 +88,6 @@ def _joint(name: str, found: Identified) -> dict[str, Any]:
         "files": [{"name": each.name, "model": each.refused or each.model, "error": _error(each)} for each in found.findings],
         "doubts": [doubt for each in found.findings for doubt in each.doubts],
     }
-
-
-def _path(each: Number) -> str:
-    law = each.told.law
-    return f"{each.told.path} ({law})" if law.startswith(("in ", "of ")) else each.told.path
 
 
 def _rows(joints: Joints) -> Iterator[dict[str, Any]]:

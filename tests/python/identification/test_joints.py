@@ -13,6 +13,7 @@ from strainwave.identification.identify import identify
 from strainwave.identification.joints import identify_joints
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
+from strainwave.report.joints import joints_report, joints_summary
 
 from tests import arms
 from tests.python.command import strainwave
@@ -55,5 +56,16 @@ def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Pa
 def test_a_file_of_one_joint_has_no_others(tmp_path: Path, log: Path) -> None:
     rows = np.loadtxt(log, delimiter=",", skiprows=1)[:, [0, 2, 5, 8]]
     np.savetxt(tmp_path / "one.csv", rows, "%.6f", ",", header="time,q,dq,tau", comments="")
-    with pytest.raises(ValueError, match=r"no file has the angles of several joints by their names, .*leave --joint away"):
+    with pytest.raises(ValueError, match=r"leave --joint away or name one: one.csv: it has not the angles of several joints"):
         identify_joints("hfuc-25-100", [tmp_path / "one.csv"])
+
+
+def test_files_that_tell_no_joints_apart_are_named(tmp_path: Path, log: Path) -> None:
+    (tmp_path / "arm.csv").write_bytes(log.read_bytes())
+    (tmp_path / "table.csv").write_text("speed [rad/s],torque [N.m]\n" + "".join(f"{v},{0.05 + v}\n" for v in range(1, 9)))
+    (tmp_path / "text.csv").write_text("nothing\n")
+    joints = identify_joints("hfuc-25-100", [tmp_path])
+    assert joints.found.keys() == {"1", "2"}
+    assert joints.left_out.keys() == {"table.csv", "text.csv"}
+    assert any(line.startswith("table.csv: NOT USED: ") for line in joints_summary(joints))
+    assert "table.csv is not used" in joints_report(joints)

@@ -49,19 +49,6 @@ SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
 WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 
 
-@dataclass(frozen=True)
-class Scale:
-    """The torque that is known, from which the torques of the output stage count.
-
-    Attributes:
-        path: `load.gravity_torque` or `load.inertia`
-        relative: its standard deviation over its value [1]
-    """
-
-    path: str
-    relative: float
-
-
 @dataclass(frozen=True, eq=False)
 class ElasticCandidate(ComparedByFields):
     """A model of the gear fitted to the output of a log.
@@ -69,8 +56,8 @@ class ElasticCandidate(ComparedByFields):
     Attributes:
         name: of spring and hysteresis
         fit: to the whole log
-        sigmas: standard deviation of each estimate, but for that of the scale: by the fit, or by how blocks of the log differ;
-            with how far models lie apart that predict as well
+        sigmas: standard deviation of each estimate, with what is taken as known held exact: by the fit, or by how blocks of
+            the log differ; with how far models lie apart that predict as well
         error: rms of the output's angle on data held out [rad]
         twist: rms of what load and kinematic error turn the output by [rad]
         reach: the largest torque that the gear transmits [N.m]
@@ -91,7 +78,7 @@ class ElasticCandidate(ComparedByFields):
 
 
 def fit_elastic(
-    recording: Recording, log: MotionLog, drive: Drive, scale: Scale, law: kinematic_error.Fourier
+    recording: Recording, log: MotionLog, drive: Drive, scale: str, law: kinematic_error.Fourier
 ) -> ElasticCandidate:
     """Spring, hysteresis, damping and kinematic error between two encoders, by the simplest model that predicts as well as any.
 
@@ -99,7 +86,7 @@ def fit_elastic(
         recording: `input_angle` and `output_angle`, which counts in the sense of the drive's ratio
         log: the same along its motion
         drive: with the load that the log along its motion has told, and the gear to start from
-        scale: what of that load is taken as known
+        scale: the path of what of that load is taken as known, `load.gravity_torque` or `load.inertia`
         law: the kinematic error to start from, whose orders are looked for
 
     Raises:
@@ -219,7 +206,7 @@ def _start(drive: Drive, stiff: float, reach: float, law: kinematic_error.Fourie
     return drive.replace(gear=gear)
 
 
-def _chosen(log: DrivenLog, start: Drive, law: Any, scale: Scale, reach: float) -> tuple[_Tried, list[_Tried]]:
+def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) -> tuple[_Tried, list[_Tried]]:
     """The model to which no further part adds, and those that predict as well.
 
     Of parts that may be added, that which predicts best comes next: a bend of the spring and a further element of the
@@ -251,7 +238,7 @@ def _apart(path: str, one: _Tried, other: _Tried) -> float:
 
 
 def _with(
-    more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _Tried, law: Any, scale: Scale, reach: float
+    more: Callable[[Drive, Any, float], Drive | None], log: DrivenLog, best: _Tried, law: Any, scale: str, reach: float
 ) -> _Tried | None:
     """A model with one part more, from where it ended without; None where that makes none."""
     if (grown := more(best.drive, law, reach)) is None:
@@ -262,7 +249,7 @@ def _with(
         return None
 
 
-def _tried(log: DrivenLog, drive: Drive, scale: Scale, reach: float) -> _Tried:
+def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _Tried:
     free, training = tuple(_free(drive, scale, reach)), training_blocks(log.time)
     problem, x = _solved(log, drive, free, training, NEAR)
     ((predicted, _),) = problem.predict(x)
@@ -286,11 +273,11 @@ def _fit_of(problem: Problem, x: Array) -> Fit:
     return Fit(part.model, estimates, covariance, (part,), problem.plan, "linear", problem.evaluations)
 
 
-def _free(drive: Drive, scale: Scale, reach: float) -> Iterator[str]:
+def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
     """Paths of what is not known of the output stage; what lies beyond the largest torque is not told."""
     spring = drive.gear.stiffness
     beyond = ("k3", "t2") if isinstance(spring, stiffness.ThreeSegment) and spring.t2 > reach else ()
-    kept = {f"{SPRING}{name}" for name in beyond} | {scale.path}
+    kept = {f"{SPRING}{name}" for name in beyond} | {scale}
     for path, *_ in _core.parameters(drive):
         if path.startswith((SPRING, MEMORY, *WAVES, "gear.damping", "load.")) and path not in kept:
             yield path

@@ -229,7 +229,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         raise ValueError(one_line(f"{table.file} {error}")) from None
     known = _as_the_joint(known, assumed)
     if assumed:
-        taken = ", ".join(f"{c.name} in {' '.join(assumed[c.position][:2]).strip()}" for c in known if c.position in assumed)
+        taken = ", ".join(f"{c.name} in {assumed[c.position].told}" for c in known if c.position in assumed)
         told.append(f"no unit is stated: {taken}; --unit NAME=UNIT says another one")
     found = []
     for column in known:

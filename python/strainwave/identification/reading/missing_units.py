@@ -36,6 +36,10 @@ class Assumed(NamedTuple):
     why: str
     sure: bool = False
 
+    @property
+    def told(self) -> str:
+        return f"{self.unit} {self.why}".strip()
+
 
 def missing_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[int, Assumed]:
     """The units of the columns that state none, by their places.

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.candidates.elastic import ElasticCandidate, Scale, fit_elastic
+from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
 from strainwave.identification.experiments.motion_log import MotionLog
 
 LAW = sw.kinematic_error.Fourier(amplitude=[1e-4], order=[2], phase=[0.7])
@@ -47,7 +47,7 @@ def found(noise: float) -> ElasticCandidate:
     }
     recording = sw.Recording(columns, {"time": "s", "input_angle": "rad", "output_angle": "rad", "current": "A"})
     drive = TRUTH.replace(gear=TRUTH.gear.replace(stiffness=sw.stiffness.Linear(k=1.2e4)))
-    return fit_elastic(recording, MotionLog.of(recording, drive), drive, Scale("load.gravity_torque", 1e-3), LAW)
+    return fit_elastic(recording, MotionLog.of(recording, drive), drive, "load.gravity_torque", LAW)
 
 
 def test_spring_hysteresis_inertia_and_delay_are_found_as_surely_as_is_said() -> None:

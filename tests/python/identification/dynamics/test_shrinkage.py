@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from strainwave.identification.dynamics.shrinkage import Shrunk, shares_of
+from strainwave.identification.identify import identify
+from strainwave.identification.reading.mapping import FileMapping
 
 from tests import arms
 
@@ -52,16 +56,11 @@ def test_without_noise_and_terms_the_base_is_what_it_was() -> None:
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_twenty_seconds_of_an_arm_are_predicted_better_than_with_a_model_of_it(seed: int, tmp_path: object) -> None:
-    from pathlib import Path
-
-    from strainwave.identification.identify import identify
-    from strainwave.identification.reading.mapping import FileMapping
-
+def test_twenty_seconds_of_an_arm_are_predicted_better_than_with_a_model_of_it(seed: int, tmp_path: Path) -> None:
     joint = arms.Joint(ripple={2.0: 0.006, 4.0: 0.002})
     recorder = arms.Recorder(rate=95.0, jitter=1e-3, step=1e-4, seed=seed)
     seen = recorder(arms.run((joint,) * 3, arms.fourier(20.0, (0, 1, 2), seed)))
-    path = Path(str(tmp_path), "arm.csv")
+    path = tmp_path / "arm.csv"
     arms.rtde(path, seen)
     (finding,) = identify("hfuc-25-100", [path], mapping=lambda _: FileMapping(joint="1")).findings
     specialist = arms.least_squares(seen, 1, "current", links=True)
