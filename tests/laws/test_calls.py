@@ -17,6 +17,7 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 
+from tests.each import each
 from tests.strategies import made
 
 LAWS = [made(kind) for family in _core.families.values() for kind in family.values()]
@@ -27,8 +28,8 @@ VERBS = [
     for name in dir(law)
     if not name.startswith("_") and name not in ("replace", "State", "from_datasheet") and callable(getattr(law, name))
 ]
-every_whole = pytest.mark.parametrize("whole", WHOLE, ids=lambda whole: whole.name)
-every_verb = pytest.mark.parametrize("verb", VERBS)
+every_whole = each("whole", WHOLE, ids=lambda whole: whole.name)
+every_verb = each("verb", VERBS)
 
 
 def one_line(call: Callable[[], Any]) -> str:
@@ -66,7 +67,7 @@ def test_text_is_no_argument(verb: Any) -> None:
     one_line(lambda: verb("sideways"))
 
 
-@pytest.mark.parametrize("law", [law for law in LAWS if hasattr(law, "State")], ids=lambda law: law.name)
+@each("law", [law for law in LAWS if hasattr(law, "State")], ids=lambda law: law.name)
 def test_a_state_of_another_kind_is_refused(law: Any) -> None:
     time = {"speed": [0.0, 1.0]} if "speed" in law.trace.__doc__ else {}
     for wrong in (3, None, sw.Drive().rest(), law.State.__new__(law.State)):
@@ -81,12 +82,12 @@ def test_an_argument_that_is_missing_or_given_twice_is_named() -> None:
     assert one_line(lambda: law.trace([0.0])) == "coulomb.trace needs speed; it takes time, speed, angle, load, temperature"
 
 
-@pytest.mark.parametrize("highest", [2.5, "8", None, True])
+@each("highest", [2.5, "8", None, True])
 def test_harmonics_are_whole_in_number(highest: Any) -> None:
     assert "fourier.harmonics: highest must be a " in one_line(lambda: sw.kinematic_error.Fourier().harmonics(highest))
 
 
-@pytest.mark.parametrize("highest", [0, -3, 17, 10**9, 10**30, 1e300])
+@each("highest", [0, -3, 17, 10**9, 10**30, 1e300])
 def test_harmonics_are_not_more_than_there_is_room_for(highest: Any) -> None:
     with pytest.raises(ValueError, match=r"highest = -?\d+ must lie in \[1, 16\]"):
         sw.kinematic_error.Fourier().harmonics(highest)
@@ -121,8 +122,8 @@ NUMBER_VERBS = [
 PATHS = {"time": [0.0, 1.0], "displacement": [0.0, 1.0]}
 
 
-@pytest.mark.parametrize(("verb", "argument"), NUMBER_VERBS)
-@pytest.mark.parametrize("value", EXTREMES)
+@each(("verb", "argument"), NUMBER_VERBS)
+@each("value", EXTREMES)
 def test_a_number_at_the_end_of_all_is_answered_with_a_number_or_refused(verb: Any, argument: str, value: float) -> None:
     takes = verb.__doc__.splitlines()
     first = next(name for line in takes if "(self, " in line for name in [line.partition("(self, ")[2].partition(":")[0]])
@@ -139,8 +140,8 @@ def test_a_number_at_the_end_of_all_is_answered_with_a_number_or_refused(verb: A
         assert not np.isnan(answer).any()
 
 
-@pytest.mark.parametrize("hysteresis", [law for law in LAWS if hasattr(law, "work")], ids=lambda law: law.name)
-@pytest.mark.parametrize("torque", [1e-300, 5e-324, -1e-300, 1e300, -1e308])
+@each("hysteresis", [law for law in LAWS if hasattr(law, "work")], ids=lambda law: law.name)
+@each("torque", [1e-300, 5e-324, -1e-300, 1e300, -1e308])
 def test_a_gear_turns_any_torque_into_a_twist_or_refuses_it(hysteresis: Any, torque: float) -> None:
     gear = sw.Gear(hysteresis=hysteresis)
     (twist,) = gear.twist([torque])
@@ -193,7 +194,7 @@ LASTING: dict[str, Callable[[], Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", LASTING)
+@each("name", LASTING)
 def test_a_long_call_ends_soon_after_ctrl_c(name: str) -> None:
     began = time.monotonic()
     with interrupted_after(0.06), pytest.raises(AlarmError):

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from strainwave import _core
 from strainwave.files import units
 
+from tests.each import each
 from tests.strategies import Field, drives, fitting, gears, models, usual
 
 LISTED = [model for family in _core.families.values() for model in family.values()]
@@ -36,7 +37,7 @@ any_numbers = st.one_of(
     + [gears, drives]
 )
 any_value = st.one_of([models(family) for family in _core.families] + [gears, drives])
-every_model = pytest.mark.parametrize("model", EVERY_MODEL, ids=lambda model: model.name)
+every_model = each("model", EVERY_MODEL, ids=lambda model: model.name)
 
 
 def shown(model: type, field: Field, value: float) -> str:
@@ -79,7 +80,7 @@ def test_the_documentation_has_its_equation_and_every_symbol_of_its_fields(model
         assert f"\n{field['name']}: {field['doc']}" in "\n" + parameters
 
 
-@pytest.mark.parametrize(("model", "field"), EVERY_FIELD)
+@each(("model", "field"), EVERY_FIELD)
 def test_a_field_has_a_name_a_text_and_a_unit_in_standard_spelling(model: type, field: Field) -> None:
     assert field["name"].isidentifier()
     assert re.match(r"[A-Z\d]", field["doc"])
@@ -94,8 +95,8 @@ def test_no_two_models_of_a_family_share_a_name() -> None:
 # Checked
 
 
-@pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
-@pytest.mark.parametrize("sense", [-1.0, 1.0])
+@each(("model", "field"), EVERY_NUMBER)
+@each("sense", [-1.0, 1.0])
 def test_a_number_out_of_its_range_is_refused_with_its_limits(model: type, field: Field, sense: float) -> None:
     limit = field["min"] if sense < 0.0 else field["max"]
     beyond = sense * math.inf if limit is None else limit + sense
@@ -107,27 +108,27 @@ def test_a_number_out_of_its_range_is_refused_with_its_limits(model: type, field
     assert high == (math.inf if field["max"] is None else field["max"])
 
 
-@pytest.mark.parametrize(("model", "field"), [case for case in EVERY_NUMBER if case.values[1]["min"] is not None])
+@each(("model", "field"), [case for case in EVERY_NUMBER if case.values[1]["min"] is not None])
 def test_a_lower_limit_is_taken_just_if_its_bracket_says_so(model: type, field: Field) -> None:
     closed = "must lie in [" in refusal(model, field, field["min"] - 1.0)
     assert ("must lie in" not in refusal(model, field, field["min"])) == closed
     assert closed != field["open"]
 
 
-@pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
+@each(("model", "field"), EVERY_NUMBER)
 def test_not_a_number_is_refused(model: type, field: Field) -> None:
     assert shown(model, field, math.nan) in refusal(model, field, math.nan)
 
 
-@pytest.mark.parametrize(("model", "field"), EVERY_NUMBER)
-@pytest.mark.parametrize("value", [None, True, "1", 1j, object, np.complex128(1j), np.ma.masked, np.array(1j), np.array(True)])
+@each(("model", "field"), EVERY_NUMBER)
+@each("value", [None, True, "1", 1j, object, np.complex128(1j), np.ma.masked, np.array(1j), np.array(True)])
 def test_what_is_no_number_is_refused(model: type, field: Field, value: object) -> None:
     given = [value] if field["kind"] == "sequence" else value
     with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be a number, not "):
         model(**(usual(model) | {field["name"]: given}))
 
 
-@pytest.mark.parametrize(("model", "field"), EVERY_CHOICE)
+@each(("model", "field"), EVERY_CHOICE)
 def test_a_choice_is_one_of_its_options(model: type, field: Field) -> None:
     assert len(field["options"]) > 1
     for option in field["options"]:
@@ -135,8 +136,8 @@ def test_a_choice_is_one_of_its_options(model: type, field: Field) -> None:
     assert refusal(model, field, "neither").endswith("not 'neither'")
 
 
-@pytest.mark.parametrize(("model", "field"), EVERY_PART)
-@pytest.mark.parametrize("value", [None, 1.0, "lugre"])
+@each(("model", "field"), EVERY_PART)
+@each("value", [None, 1.0, "lugre"])
 def test_a_part_is_a_model_of_its_family(model: type, field: Field, value: object) -> None:
     with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be "):
         model(**(usual(model) | {field["name"]: value}))
@@ -181,7 +182,7 @@ def test_what_is_required_is_named_where_it_is_missing_and_nothing_else(model: A
             model(**{other: value for other, value in usual(model).items() if other != name})
 
 
-@pytest.mark.parametrize(("model", "field"), [case for case in EVERY_FIELD if case.values[1]["follows"]])
+@each(("model", "field"), [case for case in EVERY_FIELD if case.values[1]["follows"]])
 def test_what_follows_is_as_large_as_its_leader_unless_it_is_given(model: Any, field: Field) -> None:
     names = [each["name"] for each in model.fields]
     leader = model.fields[names.index(field["follows"])]

@@ -21,6 +21,7 @@ from strainwave.equality import ComparedByFields, equal
 from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.simulation.excitation import Excitation
 
+from tests.each import each
 from tests.strategies import made as usual
 
 DRIVE = sw.Drive(
@@ -46,7 +47,7 @@ MAKERS: dict[str, Callable[[], Any]] = {
 } | {name: partial(usual, kind) for family in _core.families.values() for name, kind in family.items()}
 
 made = cache(lambda name: MAKERS[name]())
-every_value = pytest.mark.parametrize("name", MAKERS)
+every_value = each("name", MAKERS)
 
 
 @every_value
@@ -64,7 +65,7 @@ def test_a_value_survives_a_pickle(name: str) -> None:
         assert pickle.loads(pickle.dumps(value, protocol)) == value
 
 
-@pytest.mark.parametrize("name", [name for name in MAKERS if isinstance(made(name), ComparedByFields)])
+@each("name", [name for name in MAKERS if isinstance(made(name), ComparedByFields)])
 def test_a_value_differs_where_one_number_does(name: str) -> None:
     value = made(name)
     for field in fields(value):

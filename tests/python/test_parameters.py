@@ -9,12 +9,13 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 
+from tests.each import each
 from tests.reference_drive import DRIVE
 
 PATHS = [path for path, *_ in _core.parameters(DRIVE) if ".order" not in path and ".reduction" not in path]
 
 
-@pytest.mark.parametrize("path", PATHS)
+@each("path", PATHS)
 def test_a_number_replaced_by_its_path_is_that_number_and_no_other(path: str) -> None:
     before = {path: value for path, value, *_ in _core.parameters(DRIVE)}
     with warnings.catch_warnings(action="ignore"):  # bristles that can create energy
@@ -30,7 +31,7 @@ def test_parts_whole_numbers_and_names_are_replaced_by_their_paths_too() -> None
     assert (changed.stiffness.a3, changed.kinematics.flexspline_teeth, changed.damping) == (2e9, 100, 3.0)
 
 
-@pytest.mark.parametrize(
+@each(
     ("changes", "message"),
     [
         ({"gear.stiffnes.k1": 2e4}, "the model has no parameter"),

@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+from tests.each import each
+
 ROOT = Path(__file__).resolve().parents[3]
 TRANSCRIPTIONS = Path(os.environ.get("STRAINWAVE_DATA", ROOT.parent / "shared" / "data")) / "catalogue"
 FILES = sorted((ROOT / "python" / "strainwave" / "catalogue").glob("*.toml"))
@@ -40,8 +42,8 @@ def column(name: str) -> str:
 
 
 RATED = [name for name in SETS if "rated_torque" in SETS[name].get("ratings", {})]
-every_set = pytest.mark.parametrize("name", SETS)
-every_rated_set = pytest.mark.parametrize("name", RATED)
+every_set = each("name", SETS)
+every_rated_set = each("name", RATED)
 with_transcriptions = pytest.mark.skipif(
     not TRANSCRIPTIONS.is_dir(), reason=f"no catalogue transcriptions in {TRANSCRIPTIONS} (set STRAINWAVE_DATA)"
 )

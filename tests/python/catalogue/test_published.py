@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.each import each
 from tests.python.catalogue.makers import (
     BUCKLING,
     CSG_100,
@@ -165,7 +166,7 @@ def test_the_sets_are_those_of_the_ratings_table_and_hfuc_at_the_ratios_of_csg()
     assert {identity(name) for name in SETS} == listed | {("HFUC", *key[1:]) for key in listed if key[0] == "CSG"}
 
 
-@pytest.mark.parametrize("name", [name for name in SETS if identity(name)[1] in KNEES])
+@each("name", [name for name in SETS if identity(name)[1] in KNEES])
 def test_stiffness_is_that_of_the_makers_table(name: str) -> None:
     size = identity(name)[1]
     torsion = Torsion.of(name)
@@ -210,7 +211,7 @@ def test_ratings_are_those_of_the_transcription_but_for_the_low_speeds(name: str
     assert figures(name, "ratings", *RATINGS) == tuple(transcribed.values())
 
 
-@pytest.mark.parametrize("size", CSG_100)
+@each("size", CSG_100)
 def test_csg_ratings_at_ratio_100_are_those_of_the_maker(size: int) -> None:
     assert figures(f"csg-{size}-100", "ratings", *TORQUES) == CSG_100[size]
 
@@ -228,13 +229,13 @@ def test_ratcheting_and_buckling_torques_of_hfuc_are_those_published_for_csf() -
         assert peak / 1.3 < ratcheting < buckling
 
 
-@pytest.mark.parametrize("size", SIZES)
+@each("size", SIZES)
 def test_shg_exists_at_the_ratios_and_rated_torques_of_the_makers_own_table(size: int) -> None:
     found = {identity(name)[2]: name for name in SETS if identity(name)[:2] == ("SHG", size)}
     assert {ratio: figures(name, "ratings", "rated_torque")[0] for ratio, name in found.items()} == SHG_RATED[size]
 
 
-@pytest.mark.parametrize("name", [name for name in SETS if identity(name)[0] != "SHG" and identity(name)[1] in INERTIA])
+@each("name", [name for name in SETS if identity(name)[0] != "SHG" and identity(name)[1] in INERTIA])
 def test_wave_generator_inertia_is_that_of_the_maker(name: str) -> None:
     (inertia,) = figures(name, "gear", "input_inertia")
     assert inertia == pytest.approx(1e-4 * INERTIA[identity(name)[1]], rel=EXACT)
@@ -297,7 +298,7 @@ def test_the_ratings_of_cup_and_hat_gears_differ_only_as_listed() -> None:
 
 
 @with_transcriptions
-@pytest.mark.parametrize("size", SIZES)
+@each("size", SIZES)
 def test_shg_has_the_average_speed_of_csg_at_one_ratio_at_least(size: int) -> None:
     heading, table = RATINGS["average_input_speed"], ratings()
     csg, shg = ({row[heading] for key, row in table.items() if key[:2] == (series, size)} for series in ("CSG", "SHG"))
@@ -318,7 +319,7 @@ def lines(axis: int, table: str, key: str) -> list[list[float]]:
     return [[line[step] for step in sorted(line)] for line in found.values()]
 
 
-@pytest.mark.parametrize(
+@each(
     ("table", "key"),
     [("stiffness", key) for key in UNITS["stiffness"]]
     + [("ratings", key) for key in TORQUES]
@@ -328,18 +329,18 @@ def test_a_larger_gear_is_stiffer_stronger_and_heavier(table: str, key: str) -> 
     assert all(np.all(np.diff(line) > 0.0) for line in lines(1, table, key))
 
 
-@pytest.mark.parametrize("key", ["maximum_input_speed", "average_input_speed"])
+@each("key", ["maximum_input_speed", "average_input_speed"])
 def test_a_larger_gear_is_not_faster_and_the_ratio_does_not_matter(key: str) -> None:
     assert all(np.all(np.diff(line) <= 0.0) for line in lines(1, "ratings", key))
     assert all(len(set(line)) == 1 for line in lines(2, "ratings", key))
 
 
-@pytest.mark.parametrize("key", ["k1", "k2", "k3"])
+@each("key", ["k1", "k2", "k3"])
 def test_a_higher_ratio_is_not_softer(key: str) -> None:
     assert all(np.all(np.diff(line) >= 0.0) for line in lines(2, "stiffness", key))
 
 
-@pytest.mark.parametrize("key", TORQUES)
+@each("key", TORQUES)
 def test_a_higher_ratio_is_not_weaker_but_for_one_published_exception(key: str) -> None:
     falling = [line for line in lines(2, "ratings", key) if np.any(np.diff(line) < 0.0)]
     assert falling == ([[91.0, 113.0, 143.0, 112.0]] if key == "momentary_torque" else [])  # SHG-17, 50 to 120
@@ -357,7 +358,7 @@ def test_the_spring_stiffens_with_torque(name: str) -> None:
     assert np.all(np.diff((0.0, *figures(name, "stiffness", "t1", "t2"))) > 0.0)
 
 
-@pytest.mark.parametrize(("ratio", "tolerance"), [(30, 0.2), (50, 0.15), (80, 0.1)])
+@each(("ratio", "tolerance"), [(30, 0.2), (50, 0.15), (80, 0.1)])
 def test_twist_at_the_first_knee_hardly_depends_on_size(ratio: int, tolerance: float) -> None:
     """Geometric similarity: torque and stiffness both grow with the cube of the size."""
     knees = [figures(name, "stiffness", "t1", "k1") for name in SETS if identity(name)[2] == ratio]
@@ -365,15 +366,15 @@ def test_twist_at_the_first_knee_hardly_depends_on_size(ratio: int, tolerance: f
     assert twist == pytest.approx([median(twist)] * len(twist), rel=tolerance)
 
 
-@pytest.mark.parametrize("ratio", [30, 50, 80])
-@pytest.mark.parametrize("key", ["k1", "k2", "k3"])
+@each("ratio", [30, 50, 80])
+@each("key", ["k1", "k2", "k3"])
 def test_stiffness_grows_with_the_cube_of_size_within_the_spread_of_units(ratio: int, key: str) -> None:
     names = [name for name in SETS if identity(name)[2] == ratio]
     scaled = [figures(name, "stiffness", key)[0] / identity(name)[1] ** 3 for name in names]
     assert scaled == pytest.approx([median(scaled)] * len(scaled), rel=0.3)
 
 
-@pytest.mark.parametrize("name", [name for name in SETS if name.startswith("shg")])
+@each("name", [name for name in SETS if name.startswith("shg")])
 def test_shg_has_the_stiffness_and_a_heavier_input_than_csg(name: str) -> None:
     csg = name.replace("shg", "csg")
     assert figures(name, "stiffness", *UNITS["stiffness"]) == figures(csg, "stiffness", *UNITS["stiffness"])

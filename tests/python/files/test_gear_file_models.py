@@ -16,6 +16,7 @@ from strainwave import _core
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet, load
 
+from tests.each import each
 from tests.python.files.gear_file_texts import BASE, GRID, THERMAL, VISCOUS
 from tests.strategies import fitting, made
 
@@ -57,7 +58,7 @@ def every_model() -> Iterator[tuple[tuple[str, ...], Any, dict[str, Any]]]:
 MODELS = [pytest.param(keys, model, part, id=f"{'.'.join(keys)}-{model.name}") for keys, model, part in every_model()]
 
 
-@pytest.mark.parametrize(("keys", "model", "part"), MODELS)
+@each(("keys", "model", "part"), MODELS)
 def test_no_parameter_of_any_model_may_be_left_out(
     folder: Path, keys: tuple[str, ...], model: Any, part: dict[str, Any]
 ) -> None:
@@ -77,7 +78,7 @@ def test_no_parameter_of_any_model_may_be_left_out(
             load("my.toml")
 
 
-@pytest.mark.parametrize(("keys", "model", "part"), MODELS)
+@each(("keys", "model", "part"), MODELS)
 def test_every_model_is_written_and_read_in_every_table(
     folder: Path, keys: tuple[str, ...], model: Any, part: dict[str, Any]
 ) -> None:
