@@ -11,11 +11,16 @@ import numpy as np
 from numpy.random import Generator
 
 from tests.fuzz.calls import calls_case, scalars_case
+from tests.fuzz.claims import claims_case
+from tests.fuzz.datasheets import datasheets_case
 from tests.fuzz.drives import drives_case
 from tests.fuzz.formats import formats_case, recognised_case
 from tests.fuzz.gear_files import name_case, toml_case
+from tests.fuzz.images import images_case
 from tests.fuzz.laws import Case
+from tests.fuzz.mappings import mappings_case
 from tests.fuzz.measurements import measurements_case
+from tests.fuzz.rigs import rigs_case
 from tests.fuzz.scenario_files import scenarios_case
 from tests.fuzz.tables import csv_case, parquet_case
 from tests.fuzz.unit_texts import units_case
@@ -30,11 +35,13 @@ class Kind:
         make: draws a case, with files in the folder
         share: how many of it among all cases, relative to the others
         slowest: how long a case may take the processor [s]
+        memory: how much address space a case may take [bytes]
     """
 
     make: Callable[[Generator, Path], Case]
     share: int
     slowest: float
+    memory: int = 4 << 30
 
 
 KINDS = {
@@ -45,6 +52,11 @@ KINDS = {
     "parquet": Kind(parquet_case, 4, 2.0),
     "recognised": Kind(recognised_case, 5, 2.0),
     "formats": Kind(formats_case, 2, 5.0),
+    "claims": Kind(claims_case, 4, 10.0, 2 << 30),
+    "images": Kind(images_case, 2, 5.0, 2 << 30),
+    "mappings": Kind(mappings_case, 2, 2.0),
+    "rigs": Kind(rigs_case, 2, 5.0, 2 << 30),
+    "datasheets": Kind(datasheets_case, 2, 2.0),
     "units": Kind(units_case, 4, 0.5),
     "calls": Kind(calls_case, 12, 10.0),
     # The slowest of what runs drives is what all steps take that an adaptive run may take.

@@ -141,6 +141,18 @@ def _warning_fault(warned: warnings.WarningMessage) -> str:
     return f"{fault}, in a warning from {warned.filename.removeprefix(PACKAGE)} line {warned.lineno}" if fault else ""
 
 
+def within_memory(attempt: Callable[[], Any]) -> Callable[[], Any]:
+    """The same attempt, where running out of memory breaks a law: a file must be refused before it takes so much."""
+
+    def within() -> Any:
+        try:
+            return attempt()
+        except MemoryError:
+            raise AssertionError("a file takes more memory than it may") from None
+
+    return within
+
+
 def finite(value: Any) -> bool:
     """Whether all numbers of a result are; of values of classes, as far as they are compared."""
     if isinstance(value, float | complex | np.number):

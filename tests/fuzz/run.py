@@ -19,8 +19,8 @@ from tests.fuzz.laws import Outcome, judged
 from tests.workers import answers
 
 LIMIT = 60.0  # s, for one case, and for what it needs once in a process
+LARGEST = 4 << 30  # bytes, for what makes a case
 PATIENCE = 20.0  # times what a case may take: after that it hangs, though the machine has other work too
-MEMORY = 4 << 30  # bytes of address space: what asks for more must say so
 
 
 class Task(NamedTuple):
@@ -49,8 +49,10 @@ def in_process(folder: Path, task: Task) -> Outcome:
     terminal.seek(0)
     terminal.truncate()
     with warnings.catch_warnings(action="ignore"):
+        _limit_memory(LARGEST)
         case = drawn(*task, place)
     slowest = KINDS[task.kind].slowest
+    _limit_memory(KINDS[task.kind].memory)
     signal.setitimer(signal.ITIMER_REAL, min(LIMIT, PATIENCE * slowest))
     outcome = judged(case, slowest)
     _emptied(place)
@@ -68,9 +70,15 @@ def _prepared(folder: Path) -> tuple[IO[bytes], Path]:
     terminal = tempfile.TemporaryFile(dir=folder, buffering=0)  # noqa: SIM115
     for stream in (1, 2):
         os.dup2(terminal.fileno(), stream)
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     return terminal, place
+
+
+def _limit_memory(more: int) -> None:
+    """Let this process take so much address space [bytes] more than it has: what asks for more must say so."""
+    has = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (has + more, hard))
 
 
 def _emptied(place: Path) -> None:
