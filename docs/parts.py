@@ -48,6 +48,21 @@ def of(family: str, *but: str) -> Callable[[Callable[[Any], list[Draw]]], Callab
     return only
 
 
+# ---- Kinematic error -------------------------------------------------------------------------------------------------
+
+
+def error_under_load(law: Any, angle: Array, torque: float) -> Array:
+    """Return the kinematic error [rad] at input angles [rad] of a gear that turns at 10 rad/s under a torque [N.m]."""
+    speed, stiffness = 10.0, 1e3
+    gear = GEAR.replace(kinematic_error=law, stiffness=sw.stiffness.Linear(k=stiffness))
+    drive = sw.Drive(gear=gear, motor=sw.motor.AccelerationSource(), load=sw.loads.Inertia(inertia=0.01))
+    twist, ratio = torque / stiffness, gear.kinematics.ratio
+    start = {"input_speed": speed, "output_speed": speed / ratio, "output_angle": -twist, "twist": twist}
+    turning = sw.scenario.constant(0.0, duration=angle[-1] / speed)
+    run = sw.simulate(drive, turning, dt=1e-3, load_torque=torque, initial=start)
+    return np.interp(angle, run["input_angle"], run["kinematic_error"])
+
+
 # ---- Motors ----------------------------------------------------------------------------------------------------------
 
 

@@ -27,36 +27,49 @@ WORKS = Path(__file__).with_name("references.md")
 KEY = r"[A-Z][A-Za-z]+(?:1[6-9]|20)\d\d"  # of a work: its authors and its year
 LINE = 66  # characters of a formula that fit on a line
 SPACE = 5  # characters between its parts
+LOAD = 10.0  # N.m, transmitted where a figure shows an error or a friction that depends on it
 
 
 def write(folder: Path) -> None:
-    """One page a module of models, one for gear and drive, with their figures."""
+    """Write one page for each module of models, one for gear and drive, and their figures."""
     folder.mkdir()
+    for name, (about, models) in pages().items():
+        title = name.replace("_", " ").capitalize()
+        sections = [saved_section(folder, model) for model in models]
+        (folder / f"{name}.md").write_text("\n\n".join([f"# {title}", escaped(about), *sections]) + "\n", encoding="utf-8")
+
+
+def pages() -> dict[str, tuple[str, list[Model]]]:
+    """Return what each page is about and its models, by the name of the page."""
     every = [(module_of(model), family, model) for family, models in _core.families.items() for model in models.values()]
-    every.sort(key=lambda entry: (entry[0], entry[0] != entry[1]))  # of its own family first, then what stands beside it
-    for name, entries in groupby(every, key=lambda entry: entry[0]):
-        page(folder, name, getattr(sw, name).__doc__, [model for _, _, model in entries])
-    page(folder, "gear_and_drive", "How the parts go together.", [sw.Gear, sw.Drive, sw.Sensors])
+    every.sort(key=lambda entry: (entry[0], entry[0] != entry[1]))  # the family with the name of the module first
+    found = {
+        name: (str(getattr(sw, name).__doc__), [model for _, _, model in entries])
+        for name, entries in groupby(every, key=lambda entry: entry[0])
+    }
+    return found | {"gear_and_drive": ("How the parts go together.", [sw.Gear, sw.Drive, sw.Sensors])}
 
 
 def module_of(model: Model) -> str:
     return str(model.__module__).rpartition(".")[2]
 
 
-def page(folder: Path, name: str, about: str, models: list[Model]) -> None:
-    title = name.replace("_", " ").capitalize()
-    sections = [section(folder, model) for model in models]
-    (folder / f"{name}.md").write_text("\n\n".join([f"# {title}", escaped(about), *sections]) + "\n")
+def saved_section(folder: Path, model: Model) -> str:
+    text, figure = section(model)
+    if figure:
+        figure.savefig(folder / f"{model.name}.svg")
+    return text
 
 
-def section(folder: Path, model: Model) -> str:
+def section(model: Model) -> tuple[str, Figure | None]:
+    """Return the section of a model on its page, and the figure that it shows."""
     words, _, _ = (model.__doc__ or "").partition("\n\nParameters\n---")
     written = [f"## {model.__name__}", markdown(words), parameters(model), f"*Source:* {linked(model.source)}"]
     shown = SHOWN.get(model.name) or parts.SUITED.get(model.name) or {"": constructed(model, words)}
-    if figure := drawn(shown):
-        figure.savefig(folder / f"{model.name}.svg")
+    figure = drawn(shown)
+    if figure:
         written.append(f"![what {model.__name__} does]({model.name}.svg)\n\n*Shown:* {caption(shown)}")
-    return "\n\n".join(written)
+    return "\n\n".join(written), figure
 
 
 def caption(shown: dict[str, Any]) -> str:
@@ -331,9 +344,16 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
+def under_load(model: Any) -> Array:
+    """Return the kinematic error [rad] over a turn under `LOAD`. Only the random one is a function of the torque alone."""
+    if isinstance(model, sw.kinematic_error.Stochastic):
+        return model.error(TURN, torque=LOAD)
+    return parts.error_under_load(model, TURN, LOAD)
+
+
 @having("error", "slope")
 def error(models: Shown) -> list[Draw]:
-    """Over a turn, under no load and some; those of very different size in panels of their own."""
+    """Over a turn, without load and under load; errors of very different size in panels of their own."""
     size = {label: float(np.ptp(model.error(TURN))) for label, model in models}
     large = [(label, model) for label, model in models if size[label] > 1e-2 * max(size.values())]
     small = [(label, model) for label, model in models if size[label] <= 1e-2 * max(size.values())]
@@ -345,7 +365,7 @@ def error(models: Shown) -> list[Draw]:
                 sensitive = getattr(model, "load_sensitivity", 0.0) > 0.0
                 axes.plot(np.degrees(TURN), factor * model.error(TURN), label=label or ("without load" if sensitive else None))
                 if sensitive:
-                    axes.plot(np.degrees(TURN), factor * model.error(TURN, torque=10.0), label="under 10 N.m")
+                    axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD:g} N.m")
             axes.set(xlabel="input angle [deg]", ylabel=f"error at the output [{unit}]", xticks=np.arange(0, 361, 60))
 
         return draw
@@ -371,7 +391,6 @@ def spectrum(models: Shown) -> list[Draw]:
 
 # ---- Friction --------------------------------------------------------------------------------------------------------
 
-LOAD = 10.0  # N.m, under which friction is drawn that depends on it
 SLOW = 1.0  # rad/s, at which friction is drawn over something else
 
 

@@ -1,0 +1,41 @@
+"""The section of every model on the theory pages can be generated; `dev.py docs` then makes the pages of them."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+import strainwave as sw
+from strainwave import _core
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+MODELS = [*(model for family in _core.families.values() for model in family.values()), sw.Gear, sw.Drive, sw.Sensors]
+
+
+@pytest.fixture(scope="module")
+def theory() -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(DOCS)
+        yield importlib.import_module("theory")
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+def test_the_section_of_a_model_can_be_generated(model: Any, theory: ModuleType) -> None:
+    text, figure = theory.section(model)
+    assert text.startswith(f"## {model.__name__}\n")
+    assert (f"({model.name}.svg)" in text) == (figure is not None)
+
+
+def test_every_model_is_on_one_page(theory: ModuleType) -> None:
+    shown = [model for _, models in theory.pages().values() for model in models]
+    assert sorted(model.__name__ for model in shown) == sorted(model.__name__ for model in MODELS)
+    assert len({model.name for model in shown}) == len(shown)  # else one figure replaces another
+
+
+def test_an_error_under_load_is_that_of_the_model_divided_by_the_load(theory: ModuleType) -> None:
+    law = sw.kinematic_error.Fourier(order=[2], amplitude=[3e-4], phase=[0.0])
+    loaded = theory.under_load(sw.kinematic_error.Scaled(law=law, load_sensitivity=0.1))
+    assert loaded == pytest.approx(law.error(theory.TURN) / (1.0 + 0.1 * theory.LOAD), abs=1e-6)
