@@ -25,6 +25,11 @@ Draw = Callable[[Axes], None]
 ERRATA = Path(__file__).with_name("errata.md")
 WORKS = Path(__file__).with_name("references.md")
 KEY = r"[A-Z][A-Za-z]+(?:1[6-9]|20)\d\d"  # of a work: its authors and its year
+GREEK = (
+    "[Aa]lpha|[Bb]eta|[Gg]amma|[Dd]elta|[Ee]psilon|[Zz]eta|[Ee]ta|[Tt]heta|[Kk]appa|[Ll]ambda|[Mm]u|[Nn]u|[Xx]i|[Pp]i|[Rr]ho|"
+    "[Ss]igma|[Tt]au|[Pp]hi|[Cc]hi|[Pp]si|[Oo]mega"
+)
+SYMBOL = rf"\b(?:(?:{GREEK}|[A-Za-z])_[A-Za-z0-9]+|(?:{GREEK}))(?:\^\d)?\b"  # of a formula, within words
 LINE = 66  # characters of a formula that fit on a line
 SPACE = 5  # characters between its parts
 LOAD = 10.0  # N.m, transmitted where a figure shows an error or a friction that depends on it
@@ -35,8 +40,8 @@ def write(folder: Path) -> None:
     folder.mkdir()
     for name, (about, models) in pages().items():
         title = name.replace("_", " ").capitalize()
-        sections = [saved_section(folder, model) for model in models]
-        (folder / f"{name}.md").write_text("\n\n".join([f"# {title}", escaped(about), *sections]) + "\n", encoding="utf-8")
+        text = "\n\n".join([f"# {title}", escaped(about), *(saved_section(folder, model) for model in models)])
+        (folder / f"{name}.md").write_text(titled(text) + "\n", encoding="utf-8")
 
 
 def pages() -> dict[str, tuple[str, list[Model]]]:
@@ -113,9 +118,14 @@ def block(text: str) -> str:
 
 
 def lines(formula: str) -> list[str]:
-    """A formula, broken where it says so, and after commas where it is wide; subscripts that are words stand upright."""
-    upright = re.sub(r"_\{([a-z]{2,})\}", r"_{\\mathrm{\1}}", formula)
-    return [line for part in re.split(r"\\\\\s+", upright) for line in filled(part)]
+    """Return the lines of a formula: broken where it is marked, and after commas where it is too wide."""
+    return [line for part in re.split(r"\\\\\s+", uniform(formula)) for line in filled(part)]
+
+
+def uniform(formula: str) -> str:
+    """Return a formula in which subscripts that are words stand upright, and phi and epsilon have one form each."""
+    words = re.sub(r"_\{(?!ij)([a-z]{2,})\}", r"_{\\mathrm{\1}}", formula)
+    return words.replace(r"\phi", r"\varphi").replace(r"\varepsilon", r"\epsilon")
 
 
 def filled(formula: str) -> list[str]:
@@ -136,15 +146,34 @@ def width(formula: str) -> int:
 
 
 def escaped(text: str) -> str:
-    """Plain words as Markdown shows them; what stands in backticks stays code."""
-    return re.sub(r"(``.*?``|`[^`]+`)|([\\`*_\[\]<>#|$])", lambda found: found[1] or "\\" + found[2], text)
+    """Return plain words as Markdown: code in backticks stays, symbols become formulas, other characters are escaped."""
+    return re.sub(rf"(``.*?``|`[^`]+`)|({SYMBOL})|([\\`*_\[\]<>#|$])", markup, text)
+
+
+def markup(found: re.Match[str]) -> str:
+    code, written, character = found.groups()
+    return code or (f"${symbol(written)}$" if written else f"\\{character}")
+
+
+def symbol(written: str) -> str:
+    """Return a symbol, as theta_in, in the language of formulas."""
+    return uniform(re.sub(r"_(\w+)", r"_{\1}", re.sub(rf"^(?={GREEK})", r"\\", written)))
 
 
 def linked(text: str) -> str:
-    """The same, with errata, documents and works as links; one that leads nowhere is a KeyError."""
+    """Return the same with errata, documents and works as links; raises KeyError for one that is not described."""
     return re.sub(
-        rf"\b(?:E-[RPAT]\d+|document [RPAT]|{KEY})\b", lambda found: f"[{found[0]}](../{TARGETS[found[0]]})", escaped(text)
+        rf"\b(?:E-[RPAT]\d+|[Dd]ocument [RPAT]|{KEY})\b",
+        lambda found: f"[{found[0]}](../{TARGETS[found[0]]})",
+        escaped(text),
     )
+
+
+def titled(page: str) -> str:
+    """Return a page on which the first link to each document is followed by its title."""
+    for letter, title in TITLES.items():
+        page = re.sub(rf"(\[[Dd]ocument {letter}\]\([^)]*\)(?:'s)?)", rf"\1 (*{title}*)", page, count=1)
+    return page
 
 
 def anchors() -> dict[str, str]:
@@ -161,7 +190,17 @@ def references() -> dict[str, str]:
     return {key: f"references.md#{key.lower()}" for key in keys}
 
 
-TARGETS = anchors() | references() | {f"document {letter}": "errata.md" for letter in "RPAT"}
+def titles() -> dict[str, str]:
+    """Return the title of each document, by its letter."""
+    found = re.findall(r"^### Document ([RPAT])\n\n\*([^*]+)\*", WORKS.read_text(encoding="utf-8"), re.MULTILINE)
+    return {letter: " ".join(title.split()) for letter, title in found}
+
+
+TITLES = titles()
+DOCUMENTS = {
+    f"{word} {letter}": f"references.md#document-{letter.lower()}" for word in ("Document", "document") for letter in TITLES
+}
+TARGETS = anchors() | references() | DOCUMENTS
 
 # ---- Parameters ------------------------------------------------------------------------------------------------------
 

@@ -39,3 +39,14 @@ def test_an_error_under_load_is_that_of_the_model_divided_by_the_load(theory: Mo
     law = sw.kinematic_error.Fourier(order=[2], amplitude=[3e-4], phase=[0.0])
     loaded = theory.under_load(sw.kinematic_error.Scaled(law=law, load_sensitivity=0.1))
     assert loaded == pytest.approx(law.error(theory.TURN) / (1.0 + 0.1 * theory.LOAD), abs=1e-6)
+
+
+def test_symbols_within_words_become_formulas_and_code_stays(theory: ModuleType) -> None:
+    words = theory.escaped("theta_in of ``pitch_radius``, phi, k_i and bearing_stiffness")
+    assert words == r"$\theta_{\mathrm{in}}$ of ``pitch_radius``, $\varphi$, $k_{i}$ and bearing\_stiffness"
+
+
+def test_a_page_names_each_document_once(theory: ModuleType) -> None:
+    page = theory.titled(theory.linked("Document P's K_s; document P, document T"))
+    assert page.count(f"(*{theory.TITLES['P']}*)") == page.count(f"(*{theory.TITLES['T']}*)") == 1
+    assert page.startswith(f"[Document P](../references.md#document-p)'s (*{theory.TITLES['P']}*) $K_")
