@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -10,10 +9,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.files.budget import RefusedFile, read_regular
+from strainwave.messages import one_line
 from strainwave.rig.virtual.render import Scene, render
+from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES
+from strainwave.rig.vision.image import pictures_in
 
 Array = NDArray[np.float64]
-PICTURES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp")
 
 
 class Source(Protocol):
@@ -56,7 +58,7 @@ class Device:
 
 @dataclass
 class Filled:
-    """A folder that another program fills; pictures that lie there already are left aside.
+    """A folder that another program fills; pictures that lie there already are left aside, and symbolic links.
 
     Raises:
         FileNotFoundError: there is no such folder
@@ -77,11 +79,15 @@ class Filled:
         self.seen |= {self._mark(path) for path in new}
         if not new:
             return None
-        return Path(shutil.copyfile(new[-1], folder / f"picture{new[-1].suffix.lower()}"))
+        copy = folder / f"picture{new[-1].suffix.lower()}"
+        try:
+            copy.write_bytes(read_regular(new[-1], MAX_PICTURE_BYTES))
+        except RefusedFile as error:
+            raise ValueError(one_line(f"--camera {new[-1]} {error}")) from None
+        return copy
 
     def _pictures(self) -> list[Path]:
-        found = [path for path in self.folder.iterdir() if path.suffix.lower() in PICTURES and not path.name.startswith(".")]
-        return sorted(found, key=lambda path: (path.stat().st_mtime_ns, path.name))
+        return sorted(pictures_in(self.folder), key=lambda path: (path.stat().st_mtime_ns, path.name))
 
     def _complete(self, path: Path) -> bool:
         size, before = path.stat().st_size, self.sizes.get(path.name)

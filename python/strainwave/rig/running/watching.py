@@ -14,7 +14,7 @@ from strainwave.rig.bench.steps import Step
 from strainwave.rig.bench.steps_file import FILE, read_steps
 from strainwave.rig.running.guide import Look
 from strainwave.rig.vision.angle import Frame, follow, look
-from strainwave.rig.vision.image import PICTURES, by_number
+from strainwave.rig.vision.image import by_number, pictures_in
 
 
 class Watched(NamedTuple):
@@ -73,10 +73,7 @@ class Watch:
         return [self._watched(name, recorded, camera) for name in names]
 
     def _pictures(self) -> list[str]:
-        found = [
-            each.name for each in self.folder.iterdir() if each.suffix.lower() in PICTURES and not each.name.startswith(".")
-        ]
-        return sorted(found, key=by_number)
+        return sorted((each.name for each in pictures_in(self.folder)), key=by_number)
 
     def _complete(self, name: str) -> bool:
         size, before = (self.folder / name).stat().st_size, self.sizes.get(name)

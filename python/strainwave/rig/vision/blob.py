@@ -12,6 +12,12 @@ Grey = NDArray[np.float32]
 _BLOCK = 4  # cells of a block, each way, of which the local brightness is taken
 _LEAST = 0.15  # contrast of a spot, of the contrast of the picture
 _NOISE = 4.0  # contrast of a spot, of the noise of a cell
+MAX_SPOTS = 1000  # whose edges are looked at, which takes a few milliseconds each; a target has two
+MAX_AREAS = 50_000  # connected cells of the size of a spot, of any shape
+
+
+class TooManySpots(ValueError):  # noqa: N818 - its message is why a picture is of no use
+    """A picture has more spots that may be markers than can be looked at."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +44,9 @@ def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
     """Spots whose radius lies between `low` and `high` [px] and whose box and area are not those of anything but a disc.
 
     A cell is dark if it lies below the middle between the darkest and the brightest block around it, within half the picture.
+
+    Raises:
+        TooManySpots: there are more than `MAX_SPOTS`
     """
     side = int(np.clip(low / 2.0, 1.0, 8.0))
     cells = averaged(grey, side)
@@ -46,7 +55,13 @@ def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
     for dark in (True, False):
         mask = (cells < middle) if dark else (cells > middle)
         found += list(_spots(mask & clear, contrast, side, dark, low, high))
+    if len(found) > MAX_SPOTS:
+        raise TooManySpots(_too_many(len(found), MAX_SPOTS))
     return found
+
+
+def _too_many(count: int, most: int) -> str:
+    return f"{count} spots may be markers, and {most} can be looked at; say which by radius=(least, most) in px"
 
 
 def averaged(grey: Grey, side: int) -> Grey:
@@ -100,11 +115,12 @@ def _spots(mask: NDArray[np.bool_], contrast: Grey, side: int, dark: bool, low: 
     areas = np.bincount(labels.ravel(), minlength=count + 1)[1:] * side**2
     rows, columns = mask.shape
     large = (areas >= 1.2 * low**2) & (areas <= 4.0 * high**2)
-    if not large.any():
-        return
-    boxes = find_objects(labels)
-    for i in np.flatnonzero(large):
-        down, right = boxes[i]
+    places = np.flatnonzero(large)
+    if len(places) > MAX_AREAS:
+        raise TooManySpots(_too_many(len(places), MAX_AREAS))
+    numbers = np.zeros(count + 1, np.int32)  # of the large ones alone, since the others may be millions
+    numbers[places + 1] = np.arange(1, len(places) + 1)
+    for i, (down, right) in zip(places, find_objects(numbers[labels]), strict=True):
         height, width = side * (down.stop - down.start), side * (right.stop - right.start)
         radius, share = np.sqrt(height * width) / 2.0, areas[i] / (height * width)
         whole = down.start > 0 and right.start > 0 and down.stop < rows and right.stop < columns

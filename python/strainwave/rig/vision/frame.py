@@ -11,10 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from strainwave.files.budget import RefusedFile, read_regular
 from strainwave.messages import one_line
 from strainwave.rig.bench.setup import Camera
+from strainwave.rig.vision.blob import TooManySpots
 from strainwave.rig.vision.camera import PERFECT
-from strainwave.rig.vision.image import Grey, Image, read_image
+from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES, Grey
+from strainwave.rig.vision.image import Image, read_image
 from strainwave.rig.vision.marker import Marker, found_and_partial
 
 _WHOLE = 0.9  # share of an edge below which it is said how much was seen
@@ -75,7 +78,11 @@ def look(
         except (OSError, ValueError) as error:
             reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
             return Frame(path.name, _digest(path), None, one_line(f"cannot be read: {reason}"))
-    found, partial = found_and_partial(image.grey, radius, dark, camera)
+    size = (image.grey.shape[1], image.grey.shape[0])
+    try:
+        found, partial = found_and_partial(image.grey, radius, dark, camera)
+    except TooManySpots as error:
+        return Frame(image.name, image.sha256, None, str(error), (), size, image.taken)
     pair, fault = _pair(found, partial)
     if not found:
         fault = _nothing(image.grey, partial)
@@ -85,15 +92,14 @@ def look(
             None,
             f"too blurred: an edge is spread by {blurred[0].blur:.1f} px, at a radius of {blurred[0].radius:.1f} px",
         )
-    size = (image.grey.shape[1], image.grey.shape[0])
     warnings = tuple(text for i, each in enumerate(pair or (), 1) for text in _doubts(i, each))
     return Frame(image.name, image.sha256, pair, fault, warnings, size, image.taken)
 
 
 def _digest(path: Path) -> str:
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError:
+        return hashlib.sha256(read_regular(path, MAX_PICTURE_BYTES)).hexdigest()
+    except (OSError, RefusedFile):
         return ""
 
 

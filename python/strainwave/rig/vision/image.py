@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.files.budget import RefusedFile, open_regular, read_regular
 from strainwave.messages import one_line, quoted
+from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES, Grey, check_size, decoded, grey_of
 
-if TYPE_CHECKING:
-    from PIL.Image import Image as Picture
-
-Grey = NDArray[np.float32]
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm")
 VIDEOS = (".mp4", ".avi", ".mov", ".mkv", ".m4v")
-SMALLEST = 16  # px: less shows no two markers
-_TAKEN = (36867, 306)  # EXIF: DateTimeOriginal, DateTime
-_EXIF = 34665
+# What a container begins with; playlists and other texts, which name further files to be opened, begin otherwise.
+CONTAINERS = re.compile(rb"\0...(ftyp|moov|mdat|wide|free|skip)|RIFF....AVI LIST|\x1a\x45\xdf\xa3", re.DOTALL)
+# What FFmpeg may open: these containers, and files alone.
+CAPTURE_OPTIONS = "format_whitelist;mov,avi,matroska|protocol_whitelist;file"
+MAX_FRAMES = 100_000  # of a video: an hour at 25 a second
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,16 +50,22 @@ def read_image(path: str | Path) -> Image:
 
     Colours become grey as ITU-R BT.601 weighs them; what is transparent is taken as if it were not.
 
+    The bytes determine the format, not the name. The memory it takes stays below 1 GB.
+
     Raises:
         OSError: there is no such file, or it cannot be read
-        ValueError: it holds no picture, a damaged one, or one of less than 16 pixels
+        ValueError: it is no regular file, contains no picture, a damaged one, one of less than 16 pixels a side or of more
+            than 67 million in all
     """
     path = Path(path)
-    data = path.read_bytes()
-    if not data:
-        raise ValueError(f"{_shown(path)} is empty")
-    picture, taken = _decoded(path, data)
-    return Image(path.name, _grey(path, picture), hashlib.sha256(data).hexdigest(), taken)
+    try:
+        data = read_regular(path, MAX_PICTURE_BYTES)
+        if not data:
+            raise RefusedFile("is empty")
+        grey, taken = decoded(data)
+    except RefusedFile as error:
+        raise ValueError(one_line(f"{_shown(path)} {error}")) from None
+    return Image(path.name, grey, hashlib.sha256(data).hexdigest(), taken)
 
 
 def picture_files(folder: str | Path) -> list[Path]:
@@ -69,10 +76,24 @@ def picture_files(folder: str | Path) -> list[Path]:
         ValueError: it holds no photograph
     """
     folder = Path(folder)
-    found = [each for each in folder.iterdir() if each.suffix.lower() in PICTURES and not each.name.startswith(".")]
+    found = sorted(pictures_in(folder), key=lambda each: by_number(each.name))
     if not found:
-        raise ValueError(f"{_shown(folder)} holds no photograph; looked for files named *{', *'.join(PICTURES)}")
-    return sorted(found, key=lambda each: by_number(each.name))
+        raise ValueError(
+            f"{_shown(folder)} holds no photograph; looked for files named *{', *'.join(PICTURES)}; links are not followed"
+        )
+    return found
+
+
+def pictures_in(folder: Path) -> list[Path]:
+    """The files of a folder whose name is that of a picture, without hidden ones and symbolic links."""
+    with os.scandir(folder) as entries:
+        return [
+            Path(entry)
+            for entry in entries
+            if Path(entry).suffix.lower() in PICTURES
+            and not entry.name.startswith(".")
+            and entry.is_file(follow_symlinks=False)
+        ]
 
 
 def by_number(name: str) -> tuple[tuple[int, int, str], ...]:
@@ -91,25 +112,46 @@ def video_images(path: str | Path) -> Iterator[Image]:
     Raises:
         ImportError: opencv is not installed
         OSError: there is no such file
-        ValueError: it holds no video
+        ValueError: it contains no video, or one whose frames are too small, too large or too many
     """
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"{_shown(path)} is not a file")
+    with open_regular(path) as file:
+        if CONTAINERS.match(file.read(16)) is None:
+            raise ValueError(f"{_shown(path)} is not a video that can be read; MP4, MOV, AVI and Matroska can")
     try:
         import cv2
     except ImportError:
         raise ImportError(f"{path.name}: videos are read by opencv: pip install strainwave[video]") from None
-    capture, count = cv2.VideoCapture(str(path)), 0
+    capture, count = _opened(cv2, path), 0
     try:
+        if not capture.isOpened():
+            raise RefusedFile("is not a video that opencv can read")
+        check_size(int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)), int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)))
         while (read := capture.read())[0]:
-            count += 1
+            if (count := count + 1) > MAX_FRAMES:
+                raise RefusedFile(f"has more than {MAX_FRAMES} frames; cut out what shows the test")
             grey = cv2.cvtColor(read[1], cv2.COLOR_BGR2GRAY)
-            yield Image(f"{path.name}#{count}", _scaled(grey), hashlib.sha256(grey.tobytes()).hexdigest())
+            yield as_image(f"{path.name}#{count}", grey)
+    except RefusedFile as error:
+        raise ValueError(f"{_shown(path)} {error}") from None
     finally:
         capture.release()
     if count == 0:
-        raise ValueError(f"{_shown(path)} is not a video that opencv can read")
+        raise ValueError(f"{_shown(path)} has no frame that opencv can read")
+
+
+def _opened(cv2: Any, path: Path) -> Any:
+    """A video opened by FFmpeg alone, by its whole path: other readers take a name with digits for a series of files."""
+    name, before = "OPENCV_FFMPEG_CAPTURE_OPTIONS", os.environ.get("OPENCV_FFMPEG_CAPTURE_OPTIONS")
+    os.environ[name] = CAPTURE_OPTIONS
+    try:
+        return cv2.VideoCapture(str(path.resolve()), cv2.CAP_FFMPEG)
+    finally:
+        del os.environ[name]
+        if before is not None:
+            os.environ[name] = before
 
 
 def as_image(name: str, pixels: NDArray[Any]) -> Image:
@@ -123,92 +165,11 @@ def as_image(name: str, pixels: NDArray[Any]) -> Image:
         raise TypeError(f"{name}: pixels must be uint8 or uint16, not {array.dtype}")
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[2] != 3):
         raise ValueError(f"{name}: pixels have shape {array.shape}; must be (height, width) or (height, width, 3)")
-    _refuse_small(name, array.shape[1], array.shape[0])
-    return Image(name, _scaled(_without_colour(array)), hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest())
-
-
-def _decoded(path: Path, data: bytes) -> tuple[Picture, datetime | None]:
-    """The picture, upright and wholly read, and when it was taken."""
-    import io
-    import warnings
-
-    from PIL import Image as Pillow
-    from PIL import ImageOps, UnidentifiedImageError
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of odd entries beside the picture
-        try:
-            picture = Pillow.open(io.BytesIO(data))
-            _refuse_small(_shown(path), *picture.size)
-            picture.load()
-            taken = _taken(picture)
-            return ImageOps.exif_transpose(picture), taken
-        except UnidentifiedImageError:
-            raise ValueError(f"{_shown(path)} is not a picture that can be read; PNG, JPEG, TIFF, BMP or PGM can") from None
-        except Pillow.DecompressionBombError as error:
-            raise ValueError(one_line(f"{_shown(path)} is too large: {error}")) from None
-        except (OSError, SyntaxError, EOFError, IndexError, KeyError, TypeError, OverflowError) as error:
-            raise ValueError(one_line(f"{_shown(path)} is damaged: {error}")) from None
-
-
-def _grey(path: Path, picture: Picture) -> Grey:
-    mode = picture.mode
-    if mode in ("I;16", "I;16B", "I;16L", "I;16N"):
-        return _scaled(np.asarray(picture).astype(np.uint16))
-    if mode == "I":  # what pillow makes of some 16-bit pictures
-        return _scaled(_sixteen_bit(path, np.asarray(picture)))
-    if mode == "F":
-        return _unit(path, np.asarray(picture))
-    if mode == "1":
-        picture = picture.convert("L")
-    elif mode not in ("L", "RGB"):
-        picture = picture.convert("RGB")
-    return _scaled(_without_colour(np.asarray(picture)))
-
-
-def _sixteen_bit(path: Path, values: NDArray[np.int32]) -> NDArray[np.uint16]:
-    if values.min() < 0 or values.max() > 65535:
-        raise ValueError(f"{_shown(path)} has values from {values.min()} to {values.max()}; 0 to 65535 can be read")
-    return values.astype(np.uint16)
-
-
-def _unit(path: Path, values: NDArray[np.float32]) -> Grey:
-    if not (np.all(np.isfinite(values)) and values.min() >= 0.0 and values.max() <= 1.0):
-        raise ValueError(f"{_shown(path)} is of floating-point numbers outside of 0 to 1; save it with 8 or 16 bits")
-    return values
-
-
-def _without_colour(pixels: NDArray[Any]) -> NDArray[Any]:
-    if pixels.ndim == 2:
-        return pixels
-    weights = np.array([0.299, 0.587, 0.114], np.float32)
-    grey: NDArray[Any] = (pixels.astype(np.float32) @ weights) / np.float32(np.iinfo(pixels.dtype).max)
-    return grey
-
-
-def _scaled(values: NDArray[Any]) -> Grey:
-    if values.dtype == np.float32:
-        return values
-    grey: Grey = values.astype(np.float32)
-    grey *= np.float32(1.0 / np.iinfo(values.dtype).max)
-    return grey
-
-
-def _taken(picture: Picture) -> datetime | None:
-    entries = picture.getexif()
-    within = entries.get_ifd(_EXIF)
-    for tag in _TAKEN:
-        text = within.get(tag) or entries.get(tag)
-        try:
-            return datetime.strptime(str(text).strip("\0 "), "%Y:%m:%d %H:%M:%S")
-        except ValueError:
-            continue
-    return None
-
-
-def _refuse_small(name: str, width: int, height: int) -> None:
-    if min(width, height) < SMALLEST:
-        raise ValueError(f"{name} has {width} x {height} pixels; two markers need {SMALLEST} x {SMALLEST} or more")
+    try:
+        check_size(array.shape[1], array.shape[0])
+    except RefusedFile as error:
+        raise ValueError(f"{name} {error}") from None
+    return Image(name, grey_of(array, np.iinfo(array.dtype).max), hashlib.sha256(np.ascontiguousarray(array).data).hexdigest())
 
 
 def _shown(path: Path) -> str:

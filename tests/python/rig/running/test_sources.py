@@ -67,6 +67,16 @@ def test_of_a_folder_the_newest_complete_picture_is_taken(tmp_path: Path) -> Non
     assert (filled / "one.JPG").exists()
 
 
+def test_links_in_a_folder_are_no_pictures(tmp_path: Path) -> None:
+    filled = tmp_path / "camera"
+    filled.mkdir()
+    source = Filled(filled)
+    (tmp_path / "elsewhere.png").write_bytes(b"not of this camera")
+    (filled / "link.png").symlink_to("../elsewhere.png")
+    (filled / "zero.png").symlink_to("/dev/zero")
+    assert [source.take(tmp_path) for _ in range(3)] == [None] * 3
+
+
 def test_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="there is no such folder"):
         Filled(tmp_path / "nowhere")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-import struct
+import os
 import sys
 from datetime import datetime
 from pathlib import Path
@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image as Pillow
-from strainwave.rig.vision.image import as_image, by_number, picture_files, read_image, video_images
+from strainwave.rig.vision.frame import look
+from strainwave.rig.vision.image import CAPTURE_OPTIONS, as_image, by_number, picture_files, read_image, video_images
 
 RAMP = np.arange(24 * 32, dtype=np.uint8).reshape(24, 32)
 
@@ -142,7 +143,7 @@ def test_floating_point_pictures_have_a_scale_of_one_or_are_refused(tmp_path: Pa
     Pillow.fromarray((RAMP / 255.0).astype(np.float32)).save(tmp_path / "a.tif")
     np.testing.assert_allclose(read_image(tmp_path / "a.tif").grey, RAMP / 255.0, rtol=1e-6)
     Pillow.fromarray(RAMP.astype(np.float32)).save(tmp_path / "a.tif")
-    with pytest.raises(ValueError, match="floating-point numbers outside of 0 to 1"):
+    with pytest.raises(ValueError, match="as floating-point numbers 0 to 1 can be read"):
         read_image(tmp_path / "a.tif")
 
 
@@ -176,9 +177,12 @@ def test_an_array_is_an_image_if_it_is_of_whole_numbers() -> None:
         as_image("a", RAMP[:, :4])
 
 
+MP4 = b"\0\0\0\x1cftypisom" + bytes(20)
+
+
 def test_a_video_without_opencv_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cv2", None)
-    (tmp_path / "a.mp4").write_bytes(struct.pack(">I", 8))
+    (tmp_path / "a.mp4").write_bytes(MP4)
     with pytest.raises(ImportError, match=r"a\.mp4: videos are read by opencv: pip install strainwave\[video\]"):
         next(video_images(tmp_path / "a.mp4"))
 
@@ -186,8 +190,18 @@ def test_a_video_without_opencv_says_how_to_get_it(tmp_path: Path, monkeypatch: 
 class Capture:
     """What cv2.VideoCapture is to the reader: frames in colour, blue first."""
 
-    def __init__(self, path: str) -> None:
+    def __init__(self, path: str, reader: int) -> None:
+        assert Path(path).is_absolute()
+        assert reader == OpenCV.CAP_FFMPEG
+        assert os.environ["OPENCV_FFMPEG_CAPTURE_OPTIONS"] == CAPTURE_OPTIONS
         self.left = 0 if "bad" in path else 2
+        self.width = 10**6 if "large" in path else RAMP.shape[1]
+
+    def isOpened(self) -> bool:  # noqa: N802
+        return True
+
+    def get(self, what: int) -> float:
+        return self.width if what == OpenCV.CAP_PROP_FRAME_WIDTH else 10 * RAMP.shape[0]
 
     def read(self) -> tuple[bool, np.ndarray | None]:
         self.left -= 1
@@ -202,6 +216,8 @@ class OpenCV:
 
     VideoCapture = Capture
     COLOR_BGR2GRAY = 6
+    CAP_FFMPEG = 1900
+    CAP_PROP_FRAME_WIDTH, CAP_PROP_FRAME_HEIGHT = 3, 4
 
     @staticmethod
     def cvtColor(frame: np.ndarray, code: int) -> np.ndarray:  # noqa: N802
@@ -211,12 +227,54 @@ class OpenCV:
 
 def test_a_video_gives_its_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cv2", OpenCV)
-    (tmp_path / "a.mp4").touch()
-    (tmp_path / "bad.mp4").touch()
+    monkeypatch.setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", "mine")
+    for name in ("a.mp4", "bad.mp4", "large.mp4"):
+        (tmp_path / name).write_bytes(MP4)
     images = list(video_images(tmp_path / "a.mp4"))
     assert [image.name for image in images] == ["a.mp4#1", "a.mp4#2"]
     np.testing.assert_allclose(images[1].grey, RAMP / 255.0, rtol=1e-6)
-    with pytest.raises(ValueError, match="is not a video that opencv can read"):
+    assert os.environ["OPENCV_FFMPEG_CAPTURE_OPTIONS"] == "mine"
+    with pytest.raises(ValueError, match="has no frame that opencv can read"):
         list(video_images(tmp_path / "bad.mp4"))
+    with pytest.raises(ValueError, match=r'^"large\.mp4" is too large: 1000000 x 240 pixels'):
+        list(video_images(tmp_path / "large.mp4"))
     with pytest.raises(FileNotFoundError, match="is not a file"):
         list(video_images(tmp_path / "missing.mp4"))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"#EXTM3U\n#EXTINF:1,\nother.mp4\n",
+        b"ffconcat version 1.0\nfile other.mp4\n",
+        b"<MPD>other.mp4</MPD>",
+        b"v=0\no=- ftyp",
+    ],
+)
+def test_what_names_other_files_is_no_video(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, data: bytes) -> None:
+    """Playlists, by which FFmpeg opens further files and addresses."""
+    monkeypatch.setitem(sys.modules, "cv2", OpenCV)
+    (tmp_path / "a.mp4").write_bytes(data)
+    with pytest.raises(ValueError, match=r'^"a\.mp4" is not a video that can be read; MP4, MOV, AVI and Matroska can'):
+        list(video_images(tmp_path / "a.mp4"))
+
+
+def test_what_is_no_regular_file_is_no_picture(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "fifo.png")
+    (tmp_path / "zero.png").symlink_to("/dev/zero")
+    for name in ("fifo.png", "zero.png"):
+        with pytest.raises(ValueError, match=f'^"{name}" is not a regular file'):
+            read_image(tmp_path / name)
+        assert look(tmp_path / name).sha256 == ""
+
+
+def test_a_folder_is_read_without_what_lies_elsewhere(tmp_path: Path) -> None:
+    (tmp_path / "outside.png").touch()
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "link.png").symlink_to("../outside.png")
+    os.mkfifo(tmp_path / "folder" / "fifo.png")
+    with pytest.raises(ValueError, match=r"holds no photograph; .*; links are not followed"):
+        picture_files(tmp_path / "folder")
+    (tmp_path / "folder" / "own.png").touch()
+    assert [path.name for path in picture_files(tmp_path / "folder")] == ["own.png"]
