@@ -1,4 +1,4 @@
-"""strainwave: from measurements of a strain wave gear to a validated model of that gear, and this one model everywhere.
+"""strainwave: identification and simulation of strain wave gears (harmonic drives).
 
 >>> import strainwave as sw
 >>> gear = sw.load("hfuc-25-100")
