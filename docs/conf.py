@@ -19,7 +19,7 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_static_path = ["_static"]
-html_css_files = ["formulas.css", "tables.css"]
+html_css_files = ["formulas.css", "layout.css", "tables.css"]
 html_title = f"{project} {version}"
 html_show_sourcelink = False
 html_copy_source = False
@@ -28,7 +28,10 @@ html_math_renderer = "mathml"
 
 def formula(writer: HTML5Translator, node: nodes.math | nodes.math_block) -> None:
     """Writes a formula as MathML, which browsers show by themselves, also offline."""
-    mathml = convert(node.astext(), display="block" if isinstance(node, nodes.math_block) else "inline")
+    source = node.astext().replace(
+        r"\operatorname{atan2}", r"\mathrm{atan2}"
+    )  # the converter sets a name with a digit in italics
+    mathml = convert(source, display="block" if isinstance(node, nodes.math_block) else "inline")
     if "\\" in mathml:  # the converter passes over what it does not know
         logging.getLogger(__name__).warning("unknown command in the formula %s", node.astext(), location=node)
     writer.body.append(mathml)

@@ -172,7 +172,7 @@ def linked(text: str) -> str:
 def titled(page: str) -> str:
     """Return a page on which the first link to each document is followed by its title."""
     for letter, title in TITLES.items():
-        page = re.sub(rf"(\[[Dd]ocument {letter}\]\([^)]*\)(?:'s)?)", rf"\1 (*{title}*)", page, count=1)
+        page = re.sub(rf"(\[[Dd]ocument {letter}\]\([^)]*\)(?:'s)?)", rf'\1 ("{title}")', page, count=1)
     return page
 
 
@@ -192,14 +192,11 @@ def references() -> dict[str, str]:
 
 def titles() -> dict[str, str]:
     """Return the title of each document, by its letter."""
-    found = re.findall(r"^### Document ([RPAT])\n\n\*([^*]+)\*", WORKS.read_text(encoding="utf-8"), re.MULTILINE)
-    return {letter: " ".join(title.split()) for letter, title in found}
+    return dict(re.findall(r'^\| \*\*([RPAT])\*\* \| "([^"]+)"', ERRATA.read_text(encoding="utf-8"), re.MULTILINE))
 
 
 TITLES = titles()
-DOCUMENTS = {
-    f"{word} {letter}": f"references.md#document-{letter.lower()}" for word in ("Document", "document") for letter in TITLES
-}
+DOCUMENTS = {f"{word} {letter}": "errata.md#the-four-documents" for word in ("Document", "document") for letter in TITLES}
 TARGETS = anchors() | references() | DOCUMENTS
 
 # ---- Parameters ------------------------------------------------------------------------------------------------------

@@ -1,0 +1,44 @@
+"""README and pages: the names in them exist, and a page that refers to a document gives its title."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+import strainwave as sw
+import typer
+from strainwave.cli import app
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = [page for page in sorted((ROOT / "docs").rglob("*.md")) if page.name != "errata.md"]
+VERBS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_a_page_that_refers_to_a_document_gives_its_title(page: Path) -> None:
+    errata = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
+    titles = dict(re.findall(r'^\| \*\*([RPAT])\*\* \| "([^"]+)"', errata, re.MULTILINE))
+    text = " ".join(page.read_text(encoding="utf-8").split())
+    assert [letter for letter in sorted(set(re.findall(r"[Dd]ocument ([RPAT])\b", text))) if titles[letter] not in text] == []
+
+
+def test_the_names_in_the_readme_exist() -> None:
+    names = set(re.findall(r"`sw\.(\w+)", README))
+    assert len(names) > 30
+    assert sorted(name for name in names if not hasattr(sw, name)) == []
+    verbs = re.findall(r"`strainwave ([\w-]+)", README)
+    assert [verb for verb in verbs if verb not in VERBS] == []
+
+
+def test_the_readme_lists_the_verbs_of_the_command() -> None:
+    (listed,) = re.findall(r"\[the command\]\(docs/command-line\.md\): ([^|]*) \|", README)
+    assert sorted(listed.split(", ")) == sorted(VERBS)
+
+
+def test_the_readme_counts_the_sets_of_the_catalogue() -> None:
+    gears, drives = sw.catalogue(), sw.catalogue("drives")
+    series = {name.partition("-")[0] for name in gears}
+    assert (len(gears), len(series), len(drives)) == (127, 3, 8)
+    assert "127 gear sets of three series and eight [whole drives]" in README
