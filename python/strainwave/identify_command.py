@@ -48,24 +48,24 @@ def identify(
     from strainwave.identification.joints import ALL
     from strainwave.report.provenance import Provenance
 
-    paths = [file for path in paths for file in files_of(path)]
-    said = said_of(mapping, column, unit, constant, side, joint, kind, paths)
+    read = [file for path in paths for file in files_of(path)]
+    said = said_of(mapping, column, unit, constant, side, joint, kind, read)
     if joint == ALL:
-        _every_joint(gear, paths, said, accept, out)
+        _every_joint(gear, paths, read, said, accept, out)
         return
     columns = (SpinnerColumn(), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("reading", total=len(paths))
+        task = bar.add_task("reading", total=len(read))
         done = -1
 
         def turn(name: str) -> None:
             nonlocal done
             done += 1
-            bar.update(task, description=name, completed=min(done, len(paths)))
+            bar.update(task, description=name, completed=min(done, len(read)))
 
         found = identified(gear, paths, mapping=said, accept=accept, progress=turn)
-        bar.update(task, description="report", completed=len(paths))
-        files = _files(found, Provenance.of_this_command(paths))
+        bar.update(task, description="report", completed=len(read))
+        files = _files(found, Provenance.of_this_command(read))
         write_folder(out, files)
     print("\n".join(_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
@@ -80,7 +80,9 @@ def _files(found: Identified, provenance: Provenance) -> dict[str, str]:
     return files | {"report.html": identify_report(found, provenance)}
 
 
-def _every_joint(gear: str, paths: list[Path], said: Callable[[Path], FileMapping], accept: bool, out: Path) -> None:
+def _every_joint(
+    gear: str, paths: list[Path], read: list[Path], said: Callable[[Path], FileMapping], accept: bool, out: Path
+) -> None:
     """All joints of an arm: a folder for each, and one page and one table of all."""
     from rich.console import Console
 
@@ -92,7 +94,7 @@ def _every_joint(gear: str, paths: list[Path], said: Callable[[Path], FileMappin
     with Console(stderr=True).status("reading") as status:
         joints = identify_joints(gear, paths, mapping=said, accept=accept, progress=status.update)
         status.update("report")
-        provenance = Provenance.of_this_command(paths)
+        provenance = Provenance.of_this_command(read)
         for name, found in joints.found.items():
             write_folder(out / folder_of(name), _files(found, provenance))
         write_folder(out, {"joints.csv": joints_csv(joints), "report.html": joints_report(joints, provenance)})
@@ -125,7 +127,7 @@ def _summary(found: Identified) -> Iterator[str]:
 
 
 def _of_file(finding: Finding) -> Iterator[str]:
-    from strainwave.identification.reading.channels import KINDS
+    from strainwave.identification.reading.kind import KINDS
 
     kind = finding.what or (KINDS[finding.recognised.kind] if finding.recognised is not None else "not read")
     same = f", the same measurement as {finding.same_as}" if finding.same_as else ""

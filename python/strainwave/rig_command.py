@@ -398,6 +398,7 @@ def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source
     """Guides through the steps that are left; returns how many are done."""
     from strainwave.report.rig_live import Terminal
     from strainwave.rig.bench.rig_file import write_rig
+    from strainwave.rig.bench.steps_file import photograph_of
     from strainwave.rig.running.guide import conduct, done_before
     from strainwave.rig.running.sources import Virtual
     from strainwave.rig.running.watching import Reader, torque_of_masses
@@ -409,6 +410,6 @@ def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source
     terminal = Terminal(
         console, len(made.steps), lambda step, _: tasks[step.number], lambda step: torque_of_masses(bench, step)
     )
-    terminal.before |= {step.number: reader(out / str(step.image), step) for step in done if step.image}
+    terminal.before |= {step.number: reader(photograph_of(step, out), step) for step in done if step.image}
     load = source.load if isinstance(source, Virtual) else lambda number: None
     return len(conduct(made.steps, out, source, reader, terminal, settling, load))

@@ -244,7 +244,7 @@ def test_what_cannot_be_analysed_is_refused(test: Path, tmp_path: Path, argument
         (("mass_positive [kg]", "mass_positive [m]"), "steps.csv"),
         (("mass_positive [kg]", "mass_positive"), 'column "mass_positive" has no unit'),
         (("0.1,", "-0.1,"), "mass_positive"),
-        (("0.1,", "much,"), '"much" is not a number'),
+        (("0.1,", "much,"), '"much" is no number'),
     ],
 )
 def test_a_record_that_is_wrong_is_refused_with_its_place(

@@ -99,15 +99,29 @@ def open_regular(path: str | Path) -> BinaryIO:
     return os.fdopen(descriptor, "rb")
 
 
+def budget_of(path: str | Path) -> Budget:
+    """Return the budget of a file by its size.
+
+    Raises:
+        RefusedFile: it is no regular file
+        OSError: there is no such file, or it may not be read
+    """
+    with open_regular(path) as file:
+        return Budget(os.fstat(file.fileno()).st_size)
+
+
 def read_regular(path: str | Path, max_bytes: int = MAX_ALLOWED_BYTES) -> bytes:
     """Read all bytes of a regular file of at most `max_bytes`.
 
     Raises:
-        RefusedFile: it is no regular file, or a larger one
+        RefusedFile: it is no regular file, a larger one, or one that grows
         OSError: there is no such file, or it may not be read
     """
     with open_regular(path) as file:
-        data = file.read(max_bytes + 1)
-    if len(data) > max_bytes:
-        raise RefusedFile(f"has more than {max_bytes / 1e6:.0f} MB, which is the most that is read of such a file")
+        size = os.fstat(file.fileno()).st_size
+        if size > max_bytes:
+            raise RefusedFile(f"has more than {max_bytes / 1e6:.0f} MB, which is the most that is read of such a file")
+        data = file.read(size + 1)  # not of `max_bytes`, which would be allocated at once
+    if len(data) > size:
+        raise RefusedFile("grows while it is read; read a copy of it")
     return data

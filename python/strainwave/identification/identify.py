@@ -9,6 +9,7 @@ from typing import Any
 
 from strainwave import kinematics
 from strainwave.files.entries import Entry
+from strainwave.files.folder import LINK, FolderFiles, files_below
 from strainwave.files.gear_set import GearSet
 from strainwave.files.tables import FORMATS
 from strainwave.identification import steady_runs
@@ -17,7 +18,7 @@ from strainwave.identification.each_file import fitted
 from strainwave.identification.findings import Finding, Number, numbers_of
 from strainwave.identification.known import Known, plain
 from strainwave.identification.parts import joined
-from strainwave.identification.reading.channels import Kind
+from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.steady_runs import Run, run_of
@@ -89,8 +90,10 @@ def identify(
     ('friction', 0.05)
     """
     check_arguments(files, mapping)
-    paths = [file for path in files for file in files_of(Path(path))]
-    each_read = {path: _recognised(path, mapping) for path in paths}
+    folders = [measurements_of(Path(path)) for path in files]
+    each_read = {path: _recognised(path, mapping) for folder in folders for path in folder.files}
+    for link in (link for folder in folders for link in folder.links):
+        each_read.setdefault(link, Finding(link.name, refused=LINK))
     recognised = joined([each for each in each_read.values() if isinstance(each, Recognised)])
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, Finding)}
@@ -223,10 +226,15 @@ def _without_name(told: str, path: Path) -> str:
 
 def files_of(path: Path) -> list[Path]:
     """A file; of a folder the files in it that may be measurements; the folder itself where there are none, or it is a bag."""
+    return measurements_of(path).files
+
+
+def measurements_of(path: Path) -> FolderFiles:
+    """The files that a path stands for, and the symbolic links in a folder, which are not followed."""
     if not path.is_dir() or Path(path, BAG).is_file():
-        return [path]
-    kept = FORMATS.keys() - SETTINGS
-    return sorted(file for file in path.rglob("*") if file.suffix.lower() in kept and file.is_file()) or [path]
+        return FolderFiles([path], [])
+    files, links = files_below(path, FORMATS.keys() - SETTINGS)
+    return FolderFiles(files or ([] if links else [path]), links)
 
 
 # ---- The ratio ---------------------------------------------------------------------------------------------------------

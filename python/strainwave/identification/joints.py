@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from strainwave.files.folder import LINK
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.identify import Identified, check_arguments, files_of, identify
+from strainwave.identification.identify import Identified, check_arguments, identify, measurements_of
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
 
@@ -52,7 +53,9 @@ def identify_joints(
     check_arguments(files, mapping)
     said = mapping or (lambda path: FileMapping())
     by_joint, left_out = dict[str, list[Path]](), dict[str, str]()
-    for path in (file for each in files for file in files_of(Path(each))):
+    folders = [measurements_of(Path(each)) for each in files]
+    left_out |= {link.name: LINK for folder in folders for link in folder.links}
+    for path in (file for folder in folders for file in folder.files):
         try:
             joints = joints_of(path, replace(said(path), joint=None))
         except ValueError as error:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import shlex
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
+
+from strainwave.files.budget import MAX_ALLOWED_BYTES, RefusedFile, open_regular
+
+BLOCK = 2**20  # bytes read at a time
 
 
 @dataclass(frozen=True)
@@ -18,7 +23,7 @@ class Provenance:
     Attributes:
         date: when, as the report shows it
         command: what was called
-        files: SHA-256 of each file that was read, by the name the report shows
+        files: SHA-256 of each file that was read, by the name the report shows; empty for what no command reads
     """
 
     date: str = ""
@@ -46,9 +51,17 @@ class Provenance:
 
 
 def _digest(file: Path) -> str:
-    """Of a file, or of all that a folder holds, as a bag is one."""
-    parts = sorted(file.iterdir()) if file.is_dir() else [file]
+    """Of a file, or of all that a folder contains, as a bag is one; empty if it is nothing that is read."""
+    parts = [file] if not file.is_dir() else sorted(each for each in file.iterdir() if each.is_file() and not each.is_symlink())
     digest = hashlib.sha256()
     for part in parts:
-        digest.update(part.read_bytes())
+        try:
+            with open_regular(part) as content:
+                if content.seek(0, os.SEEK_END) > MAX_ALLOWED_BYTES:
+                    return ""
+                content.seek(0)
+                while block := content.read(BLOCK):
+                    digest.update(block)
+        except RefusedFile:
+            return ""
     return digest.hexdigest()

@@ -103,6 +103,20 @@ def test_nothing_at_all_is_refused_with_the_reasons(tmp_path: Path) -> None:
         identify("hfuc-20-80", [])
 
 
+def test_links_in_a_folder_are_named_and_not_read(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    table(tmp_path / "elsewhere.csv", 0.07, 2e-4, 2)
+    link = tmp_path / "folder" / "link.csv"
+    link.symlink_to("../elsewhere.csv")
+    with pytest.raises(ValueError, match=r"no file tells anything of the gear: link\.csv: it is a symbolic link in a folder, "):
+        identify("hfuc-20-80", [tmp_path / "folder"])
+    table(tmp_path / "folder" / "own.csv", 0.05, 2e-4, 1)
+    found = identify("hfuc-20-80", [tmp_path / "folder"])
+    assert [(each.name, bool(each.refused)) for each in found.findings] == [("own.csv", False), ("link.csv", True)]
+    named = identify("hfuc-20-80", [link, tmp_path / "folder"])
+    assert [(each.name, bool(each.refused)) for each in named.findings] == [("link.csv", False), ("own.csv", False)]
+
+
 def finding(name: str, value: float, sigma: float, common: float = 0.0) -> Finding:
     return Finding(name, told=(Told("gear.friction_input.coulomb", "N.m", value, sigma, "", common=common),))
 

@@ -8,18 +8,21 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from strainwave.files.folder import inside
 from strainwave.files.gear_file import at
 from strainwave.files.labels import Label
 from strainwave.files.text_table import open_csv
 from strainwave.files.units import convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, quoted
+from strainwave.number_texts import number_in
 from strainwave.rig.bench.steps import Step
 
 FILE = "steps.csv"
@@ -132,6 +135,16 @@ def _file(path: str | Path) -> Path:
     return Path(path, FILE) if Path(path).is_dir() else Path(path)
 
 
+def photograph_of(step: Step, folder: Path) -> Path:
+    """The path of the photograph of a step, which lies in the folder of the test.
+
+    Raises:
+        ValueError: it lies elsewhere
+    """
+    with at(f"{folder / FILE} step {step.number} image:"):
+        return inside(folder, str(step.image))
+
+
 # Reading
 
 
@@ -172,16 +185,13 @@ def _read_row(cells: Mapping[str, str], labels: Mapping[str, Label], delimiter: 
 
 
 def _whole(cell: str) -> int:
-    if not cell.isdecimal():
-        raise ValueError(f"{quoted(cell)} must be a whole number, from 1")
+    if not re.fullmatch(r"[0-9]{1,9}", cell):
+        raise ValueError(f"{quoted(cell)} must be a whole number, from 1 to 999999999")
     return int(cell)
 
 
 def _number(cell: str, delimiter: str) -> float:
-    try:
-        return float(cell if delimiter == "," else cell.replace(",", "."))
-    except ValueError:
-        raise ValueError(f"{quoted(cell)} is not a number") from None
+    return number_in(cell if delimiter == "," else cell.replace(",", "."))
 
 
 def _check_empty(name: str, cells: Mapping[str, str]) -> None:

@@ -18,7 +18,7 @@ from strainwave.rig.analysis.regimes import cycles
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Camera, Rig
 from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import read_steps
+from strainwave.rig.bench.steps_file import photograph_of, read_steps
 from strainwave.rig.loop import Loop
 from strainwave.rig.reading.recorded import scatter
 from strainwave.rig.running.plan_check import check
@@ -91,7 +91,8 @@ def read_test(
         progress: is called with the name of each photograph before it is read
 
     Raises:
-        ValueError: rig or steps cannot be read, the reference is no photograph of the test, or no step has torque and angle
+        ValueError: rig or steps cannot be read, a photograph lies outside of the folder, the reference is none of the
+            test, or no step has torque and angle
     """
     folder = Path(folder)
     rig = load(folder / RIG) if rig is None else rig
@@ -105,7 +106,7 @@ def read_test(
     frames: list[Frame] = []
     for place, of_place in _places(steps).items():
         named = [step for step in of_place if step.image is not None]
-        frames_of_place = [_look(folder, str(step.image), rig, progress) for step in named]
+        frames_of_place = [_look(folder, step, rig, progress) for step in named]
         useful = [step for step, frame in zip(named, frames_of_place, strict=True) if frame.markers is not None]
         if useful:
             chosen = reference if reference in [step.image for step in useful] else _at_peak(useful)
@@ -139,9 +140,10 @@ def _deviations(folder: Path, steps: Sequence[Step]) -> tuple[str, ...] | None:
     return tuple(map(str, check(steps, read_steps(plan)))) if plan.exists() else None
 
 
-def _look(folder: Path, name: str, rig: Rig, progress: Callable[[str], None]) -> Frame:
+def _look(folder: Path, step: Step, rig: Rig, progress: Callable[[str], None]) -> Frame:
+    name = str(step.image)
     progress(name)
-    return replace(look(folder / name, camera=rig.camera), name=name)  # as the steps name it, folder and all
+    return replace(look(photograph_of(step, folder), camera=rig.camera), name=name)  # as the steps name it, folder and all
 
 
 def loops(steps: Sequence[Step], rig: Rig, angles: Angles | Iterable[Angles] = ()) -> list[Loop]:

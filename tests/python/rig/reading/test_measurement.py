@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import math
+import os
 import re
 import shutil
 from pathlib import Path
@@ -324,3 +325,26 @@ def test_a_centre_that_cannot_be_told_is_not() -> None:
         couple(np.zeros((2, 2)), np.zeros(2), np.zeros(2))
     with pytest.raises(ValueError, match="torque and angle go together"):
         couple(np.zeros((6, 2)), np.zeros(6), np.arange(6.0))
+
+
+@pytest.mark.parametrize("image", ["../secret.png", "/dev/zero", "link.png"])
+def test_a_photograph_outside_of_the_folder_is_refused(tmp_path: Path, image: str) -> None:
+    """Its digest would be in the report."""
+    test = tmp_path / "test"
+    test.mkdir()
+    (tmp_path / "secret.png").write_bytes(b"secret")
+    (test / "link.png").symlink_to("../secret.png")
+    write_steps(of_spring(MASSES, image=image), test)
+    write_rig(RIG, test / "rig.toml")
+    message = f'{test}/steps.csv step 1 image: "{image}" does not lie in the folder {test}; copy it there'
+    with pytest.raises(ValueError, match=re.escape(message)):
+        read_test(test)
+
+
+def test_a_photograph_that_is_no_file_is_told(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.png")
+    write_steps([*of_spring(MASSES), Step(30, image="a.png")], tmp_path)
+    write_rig(RIG, tmp_path / "rig.toml")
+    read = read_test(tmp_path)
+    assert read.hashes == {"a.png": ""}
+    assert any('cannot be read: "a.png" is not a regular file' in remark for remark in read.remarks)
