@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import Drive, _core
 from strainwave.messages import listed, quoted, shortened
 
+MIN_RATIO, MAX_RATIO = 0.1, 1e4  # size of the ratio of a gear
+
 
 def number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
     """A number in the interval from `low` to `high`, whose ends belong to it where the bracket is square.
@@ -35,6 +37,24 @@ def number(name: str, value: object, unit: str = "", brackets: str = "()", low: 
         allowed = "be finite" if interval == "(-inf, inf)" else f"lie in {interval}"
         raise ValueError(f"{f'{name} = {value} {unit}'.rstrip()} must {allowed}")
     return given
+
+
+def sized(name: str, value: object, unit: str = "", low: float = 0.0, high: float = inf) -> float:
+    """A number of either sign whose size lies in [low, high].
+
+    >>> sized("ratio", -0.0, low=0.1, high=1e4)
+    Traceback (most recent call last):
+    ValueError: ratio = -0.0 must lie in [0.1, 10000] or [-10000, -0.1]
+    """
+    given = number(name, value, unit, "[]", -high, high)
+    if abs(given) < low:
+        raise ValueError(f"{f'{name} = {value} {unit}'.rstrip()} must lie in [{low:g}, {high:g}] or [{-high:g}, {-low:g}]")
+    return given
+
+
+def ratio(name: str, value: object) -> float:
+    """The ratio of a gear, signed."""
+    return sized(name, value, low=MIN_RATIO, high=MAX_RATIO)
 
 
 def seconds(name: str, value: object) -> float:

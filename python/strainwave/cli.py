@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout, suppress
+from contextlib import contextmanager, redirect_stdout
 from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
+from strainwave.file_options import number_option
 from strainwave.identify_command import identify
 from strainwave.messages import listed, one_line, pairs, quoted, unquoted, with_options
+from strainwave.number_texts import number_in
 from strainwave.orders_command import orders
 from strainwave.plan_command import plan_experiments
 from strainwave.rank_command import rank
@@ -161,10 +164,11 @@ def simulate(
     scenario: Annotated[Path, typer.Option(help="What it does: TOML, or CSV or Parquet with the columns time and command.")],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Recording to write, .parquet or .csv.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Picture to write, .svg, .png or .pdf.")] = None,
-    dt: Annotated[float | None, typer.Option(help="Largest step in s, 0.0002 if not given.")] = None,
-    sample: Annotated[float, typer.Option(help="Distance of samples in s.")] = 1e-3,
+    dt: Annotated[float | None, typer.Option(parser=number_option, help="Largest step in s, 0.0002 if not given.")] = None,
+    sample: Annotated[float, typer.Option(parser=number_option, help="Distance of samples in s.")] = 1e-3,
     tolerance: Annotated[
-        float | None, typer.Option(help="Relative error, as 1e-8: steps as long as it allows, instead of --dt.")
+        float | None,
+        typer.Option(parser=number_option, help="Relative error, as 1e-8: steps as long as it allows, instead of --dt."),
     ] = None,
     record: Annotated[list[str] | None, typer.Option(help="A column to keep; repeat as needed. All, if not given.")] = None,
     changed: Annotated[
@@ -308,10 +312,13 @@ def _change(given: str) -> tuple[str, float | str]:
     path, equals, value = given.partition("=")
     if not (path and equals and value):
         raise ValueError(f"--set {given}: write it as --set load.inertia=0.6")
-    for kind in (int, float):
-        with suppress(ValueError):
-            return path, kind(value)
-    return path, value
+    if re.fullmatch("[+-]?[0-9]{1,18}", value):
+        return path, int(value)
+    try:
+        float(value)  # nan and other digits than ASCII are no words of a model either
+    except ValueError:
+        return path, value
+    return path, number_in(value)
 
 
 def _run(given: ScenarioFile, drive: Drive, dt: float | None, tolerance: float | None, options: dict[str, Any]) -> Run:
@@ -406,6 +413,9 @@ def main() -> None:
             code = app(sys.argv[1:] or ["--help"], standalone_mode=False)
     except MISUSED as error:
         _print(f"strainwave: {one_line(_misuse(error))}\n", sys.stderr)
+        code = REFUSED
+    except (OverflowError, ZeroDivisionError) as error:
+        _print(f"strainwave: a number is too large or too small to compute with: {one_line(str(error))}\n", sys.stderr)
         code = REFUSED
     except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
         _print(f"strainwave: {one_line(with_options(str(error), names_columns=_names_columns(sys.argv)))}\n", sys.stderr)

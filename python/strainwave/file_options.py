@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from strainwave.identification.reading.kind import KINDS
+from strainwave.number_texts import number_in
+
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
 
@@ -24,10 +27,22 @@ Constants = Annotated[
     typer.Option(help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed."),
 ]
 Side = Annotated[str | None, typer.Option(help="Where a table or angles were measured that do not say it: input or output.")]
-Kind = Annotated[
-    str | None, typer.Option(help="What files are that may be two things: friction, torsion, log, encoders or effort.")
-]
+Kind = Annotated[str | None, typer.Option(help=f"What files are that may be two things: {', '.join(KINDS)}.")]
 Joint = Annotated[str | None, typer.Option(help="Which joint, of files with several; with identify, all takes every one.")]
+
+
+def number_option(value: str | float) -> float:
+    """Return the number of an option; one that is not given stands for itself.
+
+    Raises:
+        typer.BadParameter: it is no number
+    """
+    if isinstance(value, float):
+        return value
+    try:
+        return number_in(value)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
 
 
 def said_of(
@@ -57,16 +72,17 @@ def said_of(
 
     def of(path: Path) -> FileMapping:
         there = names_in(path) if columns or units else set()
-        own = {
-            name: wanted
-            for name, wanted in columns.items()
-            if wanted in there or all(part in there or part.isdigit() for part in map(str.strip, wanted.split(",")))
-        }
+        own = {name: wanted for name, wanted in columns.items() if wanted in there or _are_there(wanted.split(","), there)}
         of_it = {name: each for name, each in units.items() if name in known or name in there}
         given = FileMapping(columns=own, units=of_it, constants=constants, side=side, joint=joint, kind=kind)
         return from_file.of(path).updated(given) if from_file is not None else given
 
     return of
+
+
+def _are_there(parts: Sequence[str], names: set[str]) -> bool:
+    """True if each part is a name, or may be the number of a column."""
+    return all(part in names or (part.isascii() and part.isdigit()) for part in map(str.strip, parts))
 
 
 def names_in(path: Path) -> set[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.file_options import Columns, Joint, Kind, Units, names_in
+from strainwave.file_options import Columns, Joint, Kind, Units, names_in, number_option
 
 if TYPE_CHECKING:
     from strainwave.identification.orders.measured import OrdersFound
@@ -17,17 +17,24 @@ if TYPE_CHECKING:
 def orders(
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Recordings of a drive, each by itself.")],
     ratio: Annotated[
-        float | None, typer.Option(help="Ratio of the gear, if it is known; found, or guessed from the lines, if not given.")
+        float | None,
+        typer.Option(
+            parser=number_option, help="Ratio of the gear, if it is known; found, or guessed from the lines, if not given."
+        ),
     ] = None,
     column: Columns = None,
     unit: Units = None,
     side: Annotated[
         str | None, typer.Option(help="Where an angle was measured whose name does not say it: input or output.")
     ] = None,
-    rate: Annotated[float | None, typer.Option(help="Samples per second of files without time, in Hz.")] = None,
+    rate: Annotated[
+        float | None, typer.Option(parser=number_option, help="Samples per second of files without time, in Hz.")
+    ] = None,
     joint: Joint = None,
     kind: Kind = None,
-    highest: Annotated[float | None, typer.Option(help="Order up to which ripple is looked for.")] = None,
+    highest: Annotated[
+        float | None, typer.Option(parser=number_option, help="Order up to which ripple is looked for, at most 100000.")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
 ) -> None:
     """Find the orders of a gear: its kinematic error from two encoders, its ripple from torque or current.
@@ -38,14 +45,21 @@ def orders(
     """
     from rich.console import Console
 
-    from strainwave.arguments import one_of
+    from strainwave.arguments import number, one_of
     from strainwave.files.writing import write_folder
+    from strainwave.identification.orders.ripple import MAX_ORDER
+    from strainwave.identification.reading.mapping import check_constant
     from strainwave.messages import one_line
     from strainwave.report.orders import orders_files, orders_report, orders_summary
     from strainwave.report.provenance import Provenance
 
     if side is not None:
         one_of("side", side, ("input", "output"))
+    for option, value in (("ratio", ratio), ("rate", rate)):
+        if value is not None:
+            check_constant(f"--{option}", option, value)
+    if highest is not None:
+        number("--highest", highest, brackets="(]", low=0.0, high=MAX_ORDER)
     _check_files(paths)
     with Console(stderr=True).status("reading") as status:
         found = []

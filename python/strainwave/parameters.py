@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -79,7 +80,7 @@ def replaced(model: Any, changes: Mapping[str, Any]) -> Any:
     for head in [each for each in direct if each.endswith("]")]:
         name, _, place = head[:-1].partition("[")
         elements = list(direct.get(name, getattr(model, name, ())))
-        if not (place.isdecimal() and int(place) < len(elements)):
+        if not (re.fullmatch("[0-9]{1,9}", place) and int(place) < len(elements)):
             raise unknown(head, every(model))
         elements[int(place)] = direct.pop(head)
         direct[name] = elements

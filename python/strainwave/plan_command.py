@@ -6,6 +6,9 @@ from typing import Annotated
 
 import typer
 
+from strainwave.file_options import number_option
+from strainwave.number_texts import is_number, number_in
+
 
 def plan_experiments(
     start: Annotated[
@@ -24,7 +27,7 @@ def plan_experiments(
         list[str] | None,
         typer.Option(help="Standard deviation in SI units, as friction=0.002; also torsion, input_torsion. Repeat as needed."),
     ] = None,
-    minutes: Annotated[float, typer.Option(help="What all measurements may take together.")] = 30.0,
+    minutes: Annotated[float, typer.Option(parser=number_option, help="What all measurements may take together.")] = 30.0,
     criterion: Annotated[str, typer.Option(help="A: sum of relative variances; D: determinant of the covariance.")] = "A",
     speed_limit: Annotated[str | None, typer.Option(help='Of the input, as "2000 rpm"; the rating, if not given.')] = None,
     lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,
@@ -67,8 +70,7 @@ def _noise(given: list[str]) -> dict[str, float]:
     found = {}
     for each in given:
         name, _, value = each.partition("=")
-        try:
-            found[name] = float(value)
-        except ValueError:
-            raise ValueError(f"--noise {each}: write it as --noise friction=0.002") from None
+        if not is_number(value):
+            raise ValueError(f"--noise {each}: write it as --noise friction=0.002")
+        found[name] = number_in(value)
     return found

@@ -34,7 +34,7 @@ def rank(
     from strainwave.files.gear_set import GearSet
     from strainwave.identification.rank import rank as ranked
     from strainwave.identification.rank import table_of
-    from strainwave.identification.reading.channels import KINDS
+    from strainwave.identification.reading.kind import KINDS
     from strainwave.identification.reading.recognise import recognise
 
     said, start, told = said_of(mapping, column, unit, constant, side, joint, kind, paths), GearSet.read(gear), list[str]()

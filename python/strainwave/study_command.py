@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from strainwave.file_options import number_option
+
 study = typer.Typer(help="Put questions of the literature to a drive, and answer them with numbers.")
 
 
@@ -54,8 +56,8 @@ def misalignment(
     drive: Annotated[
         str, typer.Option(help="Drive to run: a name of `strainwave drives`, or a .toml file; its controller a cascade.")
     ] = "tilt-actuator",
-    stroke: Annotated[float, typer.Option(help="Stroke of the output in degrees.")] = 90.0,
-    time: Annotated[float, typer.Option(help="Time of the ramp through the stroke in s.")] = 5.0,
+    stroke: Annotated[float, typer.Option(parser=number_option, help="Stroke of the output in degrees.")] = 90.0,
+    time: Annotated[float, typer.Option(parser=number_option, help="Time of the ramp through the stroke in s.")] = 5.0,
     measured: Annotated[
         Path | None,
         typer.Option(help="A ramp of your own drive to lay over: time, and torque, current, output_angle or input_angle."),

@@ -19,6 +19,7 @@ import strainwave as sw
 from strainwave import _core, cli
 from strainwave.cli import main
 from strainwave.files import gear_set
+from strainwave.identification.reading.kind import KINDS
 
 from tests.python.command import GOOD_GEAR, interrupted, refused, start, strainwave
 
@@ -366,6 +367,12 @@ def test_a_single_branch_gives_the_spring(tmp_path: Path) -> None:
     result = strainwave("twin", "--gear", "hfuc-20-80", "--torsion", "branch.csv", folder=tmp_path)
     assert result.returncode == 0, result.stderr
     assert "branch.csv: columns not used: room" in result.stdout
+
+
+@pytest.mark.parametrize("verb", ["identify", "rank", "orders"])
+def test_the_help_of_a_kind_names_every_kind(verb: str, tmp_path: Path) -> None:
+    shown = " ".join(strainwave(verb, "--help", folder=tmp_path).stdout.split())
+    assert f"What files are that may be two things: {', '.join(KINDS)}." in shown
 
 
 def test_without_a_verb_help_is_shown(tmp_path: Path) -> None:

@@ -154,10 +154,12 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["simulate", "none.toml", "--scenario", "ramp.toml"], ("none.toml cannot be read",)),
         ([*SIMULATE, "more"], ("unexpected extra argument", "more")),
         ([*SIMULATE, "--dtt", "1"], ("No such option: --dtt",)),
-        ([*SIMULATE, "--dt", "short"], ("'--dt'", "valid number")),
+        ([*SIMULATE, "--dt", "short"], ("'--dt': \"short\" is no number; write digits",)),
         ([*SIMULATE, "--dt", "-1"], ("dt = -1.0 s must lie in (0, inf)",)),
-        ([*SIMULATE, "--dt", "nan"], ("dt = nan s must lie in (0, inf)",)),
-        ([*SIMULATE, "--dt", "1e-15"], ("more than 1e+09 steps of 1e-15 s",)),
+        ([*SIMULATE, "--dt", "nan"], ("'--dt': \"nan\" is no number",)),
+        ([*SIMULATE, "--sample", "\u0661\u0662"], ("'--sample': \"\u0661\u0662\" is no number",)),
+        ([*SIMULATE, "--sample", 5000 * "9"], ("'--sample': \"999", "is too large a number")),
+        ([*SIMULATE, "--dt", "1e-15"], ("more than 1e+08 steps of 1e-15 s",)),
         ([*SIMULATE, "--sample", "0"], ("sample = 0.0 s must lie in (0, inf)",)),
         ([*SIMULATE, "--sample", "1e-12"], ("1e-12 s",)),
         ([*SIMULATE, "--tolerance", "1"], ("--tolerance 1.0 must lie in [1e-11, 0.01]",)),
@@ -166,7 +168,9 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         ([*SIMULATE, "--set", "load.inertia"], ("--set load.inertia: write it as --set load.inertia=0.6",)),
         ([*SIMULATE, "--set", "=1"], ("--set =1: write it as",)),
         ([*SIMULATE, "--set", "load.inertia=-1"], ("inertia.inertia = -1 kg.m2 must lie in (0, inf)",)),
-        ([*SIMULATE, "--set", "load.inertia=nan"], ("inertia.inertia = nan kg.m2 must lie in (0, inf)",)),
+        ([*SIMULATE, "--set", "load.inertia=nan"], ('"nan" is no number',)),
+        ([*SIMULATE, "--set", "load.inertia=\u0661\u0662"], ('"\u0661\u0662" is no number',)),
+        ([*SIMULATE, "--set", f"load.inertia=1{400 * '0'}"], ("is too large a number",)),
         ([*SIMULATE, "--set", "load.inertia=heavy"], ("inertia.inertia must be a number, not 'heavy'",)),
         ([*SIMULATE, "--set", "load.mass=1"], ("inertia has no parameter 'mass'; it has inertia",)),
         ([*SIMULATE, "--set", "gear.stiffness.k1=1e18"], ("dt = 0.0002 s is too coarse for this drive",)),
@@ -224,6 +228,17 @@ def test_memory_that_is_not_there_is_told_in_one_line(folder: Path, monkeypatch:
 
     monkeypatch.setattr(sw.ScenarioFile, "simulate", full)
     refused(folder, SIMULATE, "2e+09 samples take 16 GB", "sample less often")
+
+
+@pytest.mark.parametrize("error", [OverflowError("math range error"), ZeroDivisionError("float division by zero")])
+def test_arithmetic_that_no_bound_foresaw_is_told_in_one_line(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, error: ArithmeticError
+) -> None:
+    def overflowing(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(sw.ScenarioFile, "simulate", overflowing)
+    refused(folder, SIMULATE, f"a number is too large or too small to compute with: {error}")
 
 
 # Comparisons and listings

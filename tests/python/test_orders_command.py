@@ -68,6 +68,10 @@ def test_a_constant_speed_without_time_needs_a_rate_and_says_what_it_cannot_tell
 def test_what_cannot_be_is_refused_in_one_line(folder: Path) -> None:
     refused(folder, ["orders", "joint.csv", "--column", "torque=Nothing"], "Nothing")
     refused(folder, ["orders", "both.csv", "--ratio", 100], "both.csv", "is not that of the angles")
+    refused(folder, ["orders", "both.csv", "--ratio", 0], "--ratio = 0.0 must lie in [0.1, 10000] or [-10000, -0.1]")
+    refused(folder, ["orders", "both.csv", "--highest", "1e300"], "--highest = 1e+300 must lie in (0, 100000]")
+    refused(folder, ["orders", "both.csv", "--rate", "-5"], "--rate = -5.0 Hz must lie in [1e-06, 1e+09]")
+    refused(folder, ["orders", "both.csv", "--rate", "inf"], "'--rate': \"inf\" is no number")
     refused(folder, ["orders", "none.csv"], "none.csv")
     refused(folder, ["orders", "hfuc-20-80", "joint.csv"], "hfuc-20-80 is a gear set", "leave it out")
     refused(folder, ["orders", "steady.csv"], "steady.csv")

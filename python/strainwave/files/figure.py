@@ -13,8 +13,8 @@ Figure = float | str | Quantity
 
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
 _WRITTEN = re.compile(
-    r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)"
-    r"(?:\s*[x×·*]?\s*10(?:\^(?P<power>[+-]?\d{1,3})|(?P<raised>[⁻⁰¹²³⁴-⁹]+)))?"
+    r"(?P<number>[+-]?[0-9]+(?:[.,][0-9]+)?)(?:[eE](?P<exponent>[+-]?[0-9]{1,6}))?"
+    r"(?:\s*[x×·*]?\s*10(?:\^(?P<power>[+-]?[0-9]{1,6})|(?P<raised>⁻?[⁰¹²³⁴-⁹]{1,3})))?"
     r"\s*(?P<unit>.*)"
 )
 
@@ -56,10 +56,10 @@ def _read(name: str, text: str, unit: str, source: str) -> Quantity:
     if written is None:
         raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')
     number = written["number"]
-    if re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", number):
+    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", number):
         raise ValueError(f"{name} = {quoted(text)}: the comma may separate thousands or decimals; write a point, or none")
     power = (written["raised"] or written["power"] or "0").translate(_RAISED)
-    value = float(f"{number.replace(',', '.')}e{power}") if "e" not in number.lower() else float(number) * 10.0 ** int(power)
+    value = float(f"{number.replace(',', '.')}e{int(power) + int(written['exponent'] or 0)}")
     if not written["unit"] and unit != "1":
         raise ValueError(f'{name} = {quoted(text)} has no unit; write it as "{number} {unit}"')
     try:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
+from strainwave.files.budget import MAX_TEXT_BYTES, RefusedFile, read_regular
 from strainwave.files.described import ParameterField, PartField, all_paths, default_of, own_paths, parameters, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
 from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
@@ -133,11 +134,15 @@ def _filled(gear_set: Contents) -> Iterator[tuple[_Table, Any]]:
 def document(path: Path) -> dict[str, Any]:
     """What stands in a TOML file; `ValueError` where it cannot be read, is no TOML or holds nothing."""
     try:
-        content = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        content = tomllib.loads(read_regular(path, MAX_TEXT_BYTES).decode("utf-8-sig"))
+    except RefusedFile:
+        raise
     except OSError as error:
         raise ValueError(one_line(f"cannot be read: {error.strerror}")) from None
-    except (ValueError, RecursionError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeError, RecursionError) as error:
         raise ValueError(one_line(f"is not valid TOML: {error}")) from None
+    except ValueError:  # that Python has of a whole number, which is the last thing that it can be
+        raise ValueError("contains a whole number with too many digits") from None
     if not content:
         raise ValueError("is empty")
     return content

@@ -17,7 +17,7 @@ from strainwave.identification.encoders import encoders
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.findings import Finding, Told
 from strainwave.identification.known import Known, is_of, with_torque
-from strainwave.identification.reading.channels import Kind
+from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.suspicion import clipped_loop, of_levels, too_fast
 from strainwave.identification.twin import Twin, twin

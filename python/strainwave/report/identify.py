@@ -18,7 +18,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.evidence import verdict
 from strainwave.identification.findings import AGREE, APART, Finding, Number, Told, difference, distance
 from strainwave.identification.identify import Identified
-from strainwave.identification.reading.channels import KINDS
+from strainwave.identification.reading.kind import KINDS
 from strainwave.identification.reading.mapping import CONSTANTS
 from strainwave.report import figures
 from strainwave.report import identify_figures as plots
@@ -130,7 +130,7 @@ def _given_with_all(found: Identified) -> Mapping[str, float]:
 
 
 def _constant(name: str, value: float) -> str:
-    return f"{name.replace('_', ' ')} {quantity(value, CONSTANTS[name])}"
+    return f"{name.replace('_', ' ')} {quantity(value, CONSTANTS[name].unit)}"
 
 
 def _file(finding: Finding, anchor: str, given: Mapping[str, float]) -> dict[str, Any]:

@@ -27,6 +27,7 @@ SMALLEST_RATIO = 30.0  # of strain wave gears that makers offer
 LARGEST_RATIO = 161.0
 INPUT_HIGHEST = 20.0  # order of the input up to which is looked, if nothing is said
 OUTPUT_HIGHEST = 8.0  # times the ratio, or as much where that is not known as makes order 4 of the largest visible
+MAX_ORDER = 1e5  # that may be asked for: more than the teeth of any gear
 SAMPLED = 0.8  # of a half revolution of the line, that may lie between samples at a usual speed
 VARIES = 0.1  # of the speed or the load, above which ripple is told apart by it
 LEAST_ORDER = 0.5  # of the input: what repeats more slowly is not told from friction and gravity
@@ -145,7 +146,7 @@ def ripple(
         angle: column with the angle of the shaft, that may wrap at each revolution
         side: of the gear, on which this shaft is
         ratio: of the gear, if it is known; the sign does not matter
-        highest: order up to which is looked; what the samples allow, and gears show, if not given
+        highest: order up to which is looked, at most 1e5; what the samples allow, and gears show, if not given
         rate: samples per second of a recording without time [Hz]
         false_alarm: largest probability of a line by noise alone, over all lines tested together
 
@@ -167,7 +168,7 @@ def ripple(
     arguments.text("column", column)
     arguments.one_of("side", side, ("input", "output"))
     false_alarm = arguments.number("false_alarm", false_alarm, low=0.0, high=1.0)
-    size = None if ratio is None else abs(arguments.number("ratio", ratio))
+    size = None if ratio is None else abs(arguments.ratio("ratio", ratio))
     record, told = _moved(recording, column, angle, rate)
     lowest, top = _range(told, side, size, highest)
     _check_sampled(told, record, side, size, top, angle)
@@ -213,7 +214,7 @@ def _range(told: Moving, side: Side, size: float | None, highest: float | None) 
     sampled = SAMPLED * np.pi / usual if usual > 0.0 else np.inf
     lowest = max(LOWEST / revolutions, LEAST_ORDER * (1.0 if side == "input" else size or SMALLEST_RATIO))
     if highest is not None:
-        return lowest, arguments.number("highest", highest, low=lowest)
+        return lowest, arguments.number("highest", highest, brackets="(]", low=lowest, high=MAX_ORDER)
     if side == "input":
         return lowest, min(INPUT_HIGHEST, sampled)
     return lowest, min(OUTPUT_HIGHEST * size if size else 4.5 * LARGEST_RATIO, sampled)

@@ -85,7 +85,7 @@ def ratio_of(pair: Pair, given: float | None) -> Ratio:
         )
     value, sigma = _slow_ratio(pair, 1.0 / slope)
     if given is not None:
-        given = arguments.number("ratio", given)
+        given = arguments.ratio("ratio", given)
         if abs(abs(given) - abs(value)) > max(SETTLED * sigma, LOOSE * abs(value)):
             raise ValueError(
                 f"ratio = {given:g} is not that of the angles, {value:.5g} ± {sigma:.2g}; check the units of both, "

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.identification.experiments.branches import turning_points
-from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 
 Array = NDArray[np.float64]

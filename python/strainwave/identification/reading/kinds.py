@@ -9,8 +9,8 @@ import numpy as np
 
 from strainwave.identification.experiments.branches import turning_points
 from strainwave.identification.reading.at_rest import at_rest
-from strainwave.identification.reading.channels import KINDS, Kind
 from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.kind import KINDS, Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Quantity, Side
 from strainwave.identification.reading.sides import (

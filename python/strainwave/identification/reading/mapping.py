@@ -18,32 +18,42 @@ constants.load_inertia = 0.85
 
 from __future__ import annotations
 
-import math
-import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
-from strainwave.files.labels import unreadable
+from strainwave import arguments
+from strainwave.files.gear_file import at, document
 from strainwave.files.units import check as check_unit
 from strainwave.files.units import convert
-from strainwave.identification.reading.channels import ALIASES, CHANNELS, Kind
+from strainwave.identification.reading.channels import ALIASES, CHANNELS
+from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.names import Side
 from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.number_texts import is_number, number_in
 
-# Numbers that belong to a recording, with their units.
+
+class Constant(NamedTuple):
+    """A number that belongs to a recording: its unit, and the range of its size."""
+
+    unit: str
+    low: float
+    high: float
+    signed: bool = False
+
+
 CONSTANTS = {
-    "rate": "Hz",  # of rows without time
-    "ratio": "1",  # of the gear
-    "torque_constant": "N.m/A",
-    "resistance": "Ohm",
-    "motor_inertia": "kg.m2",
-    "load_inertia": "kg.m2",
-    "load_torque": "N.m",  # at the output, constant
-    "speed": "rad/s",  # of a record at one speed that holds none
-    "temperature": "K",
+    "rate": Constant("Hz", 1e-6, 1e9),  # of rows without time
+    "ratio": Constant("1", arguments.MIN_RATIO, arguments.MAX_RATIO, signed=True),  # of the gear
+    "torque_constant": Constant("N.m/A", 1e-6, 1e3),
+    "resistance": Constant("Ohm", 1e-6, 1e6),
+    "motor_inertia": Constant("kg.m2", 0.0, 1e6),  # 0: the gear's input inertia contains it
+    "load_inertia": Constant("kg.m2", 1e-12, 1e9),
+    "load_torque": Constant("N.m", 0.0, 1e9, signed=True),  # at the output, constant
+    "speed": Constant("rad/s", 0.0, 1e6, signed=True),  # of a record at one speed without a column of it
+    "temperature": Constant("K", 1.0, 1e3),
 }
 WILD = "*?[."  # a section with one of these in its name is a pattern of file names
 
@@ -83,10 +93,11 @@ class FileMapping:
                 _check_known(f"--{what} {name}", name, channels, "channels")
         for name in self.constants:
             _check_known(f"--constant {name}", name, CONSTANTS, "constants")
+            check_constant(f"--constant {name}", name, self.constants[name])
         for unit in self.units.values():
             check_unit(unit)
         for name, sign in self.sign.items():
-            if sign not in (1, -1):
+            if isinstance(sign, bool) or sign not in (1, -1):
                 raise ValueError(f"sign of {name} = {shortened(sign)} must be 1 or -1")
         for name, value, choices in (("kind", self.kind, get_args(Kind)), ("side", self.side, get_args(Side))):
             if value is not None:
@@ -123,10 +134,8 @@ class MappingFile:
         >>> said.of("loads/heavy.csv").constants, said.of("other.csv").columns
         ({'ratio': 80.0}, {'speed': '3'})
         """
-        try:
-            whole = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-        except (OSError, UnicodeError, tomllib.TOMLDecodeError, RecursionError) as error:
-            raise ValueError(unreadable(path, error)) from None
+        with at(f"{path}"):
+            whole = document(Path(path))
         try:
             patterns = {name: each for name, each in whole.items() if isinstance(each, dict) and set(name) & set(WILD)}
             general = _mapping("", {name: each for name, each in whole.items() if name not in patterns})
@@ -176,16 +185,38 @@ def _constant(place: str, value: object) -> float:
     """A number in SI units, or a text with a unit."""
     name = place.replace(" ", ".").rpartition(".")[2]
     _check_known(place, name, CONSTANTS, "constants")
+    wanted = CONSTANTS[name].unit
     if isinstance(value, str):
         number, _, unit = value.strip().partition(" ")
         try:
-            return convert(float(number), unit or CONSTANTS[name], CONSTANTS[name])
+            return check_constant(place, name, convert(number_in(number), unit or wanted, wanted))
         except ValueError as error:
-            reason = error if unit else f"it is no number in {CONSTANTS[name]}"
-            raise ValueError(f"{place} = {quoted(value)}: {reason}") from None
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError(f"{place} = {shortened(value)} must be a number in {CONSTANTS[name]}, or a text with number and unit")
-    return float(value)
+            if is_number(number):
+                raise ValueError(f"{place} = {quoted(value)}: {error}") from None
+            raise ValueError(f"{place} = {quoted(value)}: it is no number in {wanted}") from None
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
+        raise ValueError(f"{place} = {shortened(value)} must be a number in {wanted}, or a text with number and unit")
+    return check_constant(place, name, value)
+
+
+def check_constant(place: str, name: str, value: float) -> float:
+    """Return a constant [SI], if it lies in its range.
+
+    Args:
+        place: what the message calls it
+
+    Raises:
+        TypeError, ValueError: it is no number, or lies outside
+
+    >>> check_constant("--rate", "rate", -5.0)
+    Traceback (most recent call last):
+    ValueError: --rate = -5.0 Hz must lie in [1e-06, 1e+09]
+    """
+    unit, low, high, signed = CONSTANTS[name]
+    written = unit if unit != "1" else ""
+    if signed:
+        return arguments.sized(place, value, written, low, high)
+    return arguments.number(place, value, written, "[]", low, high)
 
 
 def constant_of(name: str, value: str) -> float:

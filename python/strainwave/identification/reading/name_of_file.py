@@ -14,7 +14,7 @@ UNITS = {
     **dict.fromkeys(("radps", "rad_s", "rads", "rad-s", "rad_per_s"), "rad/s"),
 }
 _SPEED = re.compile(
-    r"(?<![\w.+-])(?P<sign>[+-]|(?:neg|minus|pos|plus)[ _]?)?(?P<number>\d+(?:[.p]\d+)?)[ _]?"
+    r"(?<![\w.+-])(?P<sign>[+-]|(?:neg|minus|pos|plus)[ _]?)?(?P<number>[0-9]{1,6}(?:[.p][0-9]{1,9})?)[ _]?"
     rf"(?P<unit>{'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?![a-z0-9])"
 )
 
@@ -27,7 +27,7 @@ def speed_in(path: Path) -> float | None:
     >>> speed_in(Path("run_-20rpm.csv")), speed_in(Path("J2_0p5_rad_s.txt")), speed_in(Path("run_20.csv"))
     (-2.0943951023931953, 0.5, None)
     """
-    found = list(_SPEED.finditer(re.sub(r"_(?=[+-]?\d)|_(?=neg|minus|pos|plus)", " ", path.stem.casefold())))
+    found = list(_SPEED.finditer(re.sub(r"_(?=[+-]?[0-9])|_(?=neg|minus|pos|plus)", " ", path.stem.casefold())))
     if len(found) != 1:
         return None
     (match,) = found

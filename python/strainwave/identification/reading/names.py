@@ -238,6 +238,6 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
 
 def which_of(words: list[str]) -> str:
     """What words say of a channel but its quantity and side: the number of a joint, or its name."""
-    numbers = [str(int(word)) for word in words if word.isdigit()]
+    numbers = [word.lstrip("0") or "0" for word in words if word.isdigit()]
     known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, "dot"}
     return ".".join(numbers) or "_".join(word for word in words if word not in known)

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.recording import Recording
 from strainwave.files.tables import OpenTable, open_table
-from strainwave.identification.reading.channels import Kind
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints, read
+from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.kinds import kind_of
-from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.name_of_file import speed_in
 from strainwave.identification.reading.names import Side, meaning
 from strainwave.identification.reading.sides import UndecidedError
@@ -192,9 +192,10 @@ def _with_speed_of_name(columns: Sequence[Column], said: FileMapping, path: Path
 
 def _rate(name: str, value: float) -> float | None:
     """Rows in a second that a number of this name says."""
-    if name in RATES and value >= 1.0:
+    highest = CONSTANTS["rate"].high
+    if name in RATES and 1.0 <= value <= highest:
         return value
-    return 1.0 / value if name in STEPS and 0.0 < value < 1.0 else None
+    return 1.0 / value if name in STEPS and 1.0 / highest <= value < 1.0 else None
 
 
 def _unwrap(table: OpenTable, series: dict[str, Array], columns: Mapping[str, Column]) -> Iterator[str]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from math import inf, nan
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.identification.reading.channels import CHANNELS
-from strainwave.identification.reading.mapping import FileMapping, MappingFile
+from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
 
 TEXT = """
 side = "output"
@@ -61,6 +62,7 @@ def test_what_is_said_of_all_files_and_of_some(tmp_path: Path) -> None:
         ("columns = 3", "columns = 3 must be a table, with a line for each channel or constant"),
         ('units.torque = "furlong"', 'unit "furlong" is not known; write it like N.m, rad/s, deg'),
         ("sign.torque = 2", "sign of torque = 2 must be 1 or -1"),
+        ("sign.torque = true", "sign of torque = True must be 1 or -1"),
         ("constants.ratoi = 80", "constants.ratoi is not known; did you mean ratio? The constants are rate, ratio, "),
         ('constants.rate = "fast"', 'constants.rate = "fast": it is no number in Hz'),
         ('constants.speed = "3 Nm"', 'constants.speed = "3 Nm": cannot convert "Nm" to "rad/s"'),
@@ -69,14 +71,46 @@ def test_what_is_said_of_all_files_and_of_some(tmp_path: Path) -> None:
         ('side = "middle"', "side = 'middle' is not known; the sides are input, output"),
         ('kind = "torsoin"', "kind = 'torsoin' is not known; did you mean torsion? The kinds are "),
         ('["*.csv"]\ncolums.a = 1', '["*.csv"] colums is not known; did you mean columns? '),
-        ("side = ", "cannot be read: Invalid value"),
+        ('constants.rate = "-5"', 'constants.rate = "-5": constants.rate = -5.0 Hz must lie in [1e-06, 1e+09]'),
+        ("constants.rate = inf", "constants.rate = inf Hz must lie in [1e-06, 1e+09]"),
+        (f"constants.rate = 1{400 * '0'}", "constants.rate = 1000000"),
+        ("constants.rate = 0x" + 4000 * "f", "constants.rate = <int with too many digits> is too large a number"),
+        ("constants.ratio = 0", "constants.ratio = 0 must lie in [0.1, 10000] or [-10000, -0.1]"),
+        ("constants.ratio = -20_000", "constants.ratio = -20000 must lie in [-10000, 10000]"),
+        ("constants.torque_constant = 0", "constants.torque_constant = 0 N.m/A must lie in [1e-06, 1000]"),
+        ("constants.temperature = 0.5", "constants.temperature = 0.5 K must lie in [1, 1000]"),
+        ('constants.rate = "\u0661\u0662 Hz"', 'constants.rate = "\u0661\u0662 Hz": it is no number in Hz'),
+        (f"constants.rate = {5000 * '9'}", "contains a whole number with too many digits"),
+        (f"columns.speed = {5000 * '9'}", "contains a whole number with too many digits"),
+        ("side = ", "is not valid TOML: Invalid value"),
+        ("", "is empty"),
     ],
 )  # fmt: skip
 def test_what_is_not_known_is_refused_with_its_place(tmp_path: Path, text: str, message: str) -> None:
-    separator = " " if message.startswith("cannot be read") else ": "
+    separator = " " if message.startswith(("is ", "contains ")) else ": "
     begin = f"{tmp_path / 'columns.toml'}{separator}{message}"
     with pytest.raises(ValueError, match=f"^{re.escape(begin)}"):
         said(tmp_path, text)
+
+
+@pytest.mark.parametrize("name", CONSTANTS)
+@pytest.mark.parametrize("value", [inf, -inf, nan, 10**400, 1e300])
+def test_a_constant_out_of_its_range_is_refused_however_it_is_given(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=f"^--constant {name} = .* (must lie in|is too large a number)"):
+        FileMapping(constants={name: value})
+
+
+def test_other_digits_than_ascii_are_no_number() -> None:
+    for text in ("\u0661\u0662", "1_0", "inf", "nan", "0x10", "1e400"):
+        with pytest.raises(ValueError, match=r"^--constant rate = .* (it is no number in Hz|is too large a number)$"):
+            constant_of("rate", text)
+
+
+def test_a_mapping_is_read_from_a_small_regular_file_alone(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="/dev/zero is not a regular file"):
+        MappingFile.read("/dev/zero")
+    with pytest.raises(ValueError, match=r"columns\.toml has more than 17 MB"):
+        said(tmp_path, "#" + 2**24 * " ")
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
