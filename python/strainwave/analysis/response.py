@@ -100,7 +100,7 @@ def frequency_response(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: a frequency, `amplitude`, `dt` or `tolerance` is not positive, a period has more than 1e9 steps,
+        ValueError: a frequency, `amplitude`, `dt` or `tolerance` is not positive, a period has more than 1e8 steps,
             `max_periods` is below 2, `input` is another, or there is no equilibrium
         FloatingPointError, MemoryError: as `simulate`
         RuntimeError: a motion is not periodic after `max_periods`; says how far it is from that
@@ -189,6 +189,7 @@ class _Sines:
         step = _step(period, self.dt)
         temperature = excitation.first()[TEMPERATURE]
         check_resolution(self.drive, step, 0.0, temperature)
+        excitation.check_laid_out(step)
         time_grid = excitation.time_grid(step, None)
         recorded = outputs_of(self.drive)
         channels = [each.channel for each in recorded.values()]

@@ -120,6 +120,7 @@ def simulate_controlled(
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
     state = beginning_numbers(drive, start, initial, _under(0.0, excitation.first()))
     actions = _actions(command.duration, period, delay)
+    excitation.check_laid_out(dt)
     course = Course.of(drive, excitation, recorded, dt, interval, actions)
     longest = course.time_grid.longest
     course.check_steps(0.0, excitation.first()[TEMPERATURE])

@@ -177,6 +177,7 @@ class _Plan(ComparedByFields):
             if (values[path] != every(drive)[path].value).any():
                 raise ValueError(f"{path} must be that of the drive for all members: their steps end at the same instants")
         instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
+        excitation.check_laid_out(min(dt, sample))
         time_grid = excitation.time_grid(dt, sample, instants)
         return cls(
             drive, excitation, dt, sample, numbers, values, known, time_grid, excitation.over(time_grid), recorded, threads

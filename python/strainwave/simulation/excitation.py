@@ -75,6 +75,11 @@ class Excitation:
         breaks = np.concatenate([*(signal.breaks for signal in self._scenarios), instants])
         return TimeGrid.through(self.command.duration, dt, dt if samples is None else samples, breaks)
 
+    def check_laid_out(self, dt: float) -> None:
+        """Refuses steps of `dt` [s] whose inputs, all laid out by `over`, take too much memory; before a grid is made."""
+        check_instants(self.command.duration, dt, LONGER_STEPS)
+        check_room("steps", self.command.duration / dt, STEP + INPUTS, LONG_RUN)
+
     def ends(self, instants: Array, most: int) -> Array:
         """Where adaptive steps must end [s]: wherever an input jumps, at `instants`, at which a controller acts, and so often
         that none is as long as a period of an input.

@@ -1,4 +1,4 @@
-"""What does not fit into memory is said in one line: how much there is of it, how large it is, and what to do."""
+"""What takes too much memory is refused in one line: how much there is of it, how large it is, and what to do."""
 
 from __future__ import annotations
 
@@ -7,13 +7,15 @@ from contextlib import contextmanager
 
 import numpy as np
 
-MOST_INSTANTS = 1e9  # of a run or a signal: what memory could hold
+MAX_INSTANTS = 1e8  # steps or samples of one run or signal: 5.5 hours in steps of 0.2 ms
+MAX_ACTIONS = 1e7  # of a controller in one run: 10 000 s at 1 kHz
+MAX_BYTES = 8e9  # that steps or samples of one run may take
 ACTION = 120.0  # bytes: a sample of a controller, found in a few goes together with the instant at which its output arrives
 
 
 @contextmanager
 def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None]:
-    """Says what takes the memory that is not there.
+    """Refuses what takes more than `MAX_BYTES`, and says what takes the memory that is not there.
 
     Args:
         what: takes it, in the plural
@@ -21,11 +23,15 @@ def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None
         each: size of one [bytes]
         remedy: what to do about it
 
-    >>> with room_for("samples", 2e9, 8.0, "take fewer"):
+    >>> with room_for("samples", 5e8, 8.0, "take fewer"):
     ...     raise MemoryError
     Traceback (most recent call last):
-    MemoryError: 2e+09 samples take 16 GB, more memory than there is; take fewer
+    MemoryError: 5e+08 samples take 4 GB, more memory than there is; take fewer
     """
+    if count * each > MAX_BYTES:
+        raise MemoryError(
+            f"{count:.3g} {what} take {1e-9 * count * each:.3g} GB; at most {1e-9 * MAX_BYTES:g} GB are allowed; {remedy}"
+        )
     try:
         yield
     except MemoryError:
@@ -34,34 +40,38 @@ def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None
 
 
 def check_room(what: str, count: float, each: float, remedy: str) -> None:
-    """Refuses what is too large for the memory, as `room_for` says it, before time is spent on a part of it.
+    """Refuses what is too large for the memory, as `room_for` does, before time is spent on a part of it.
 
     >>> check_room("samples", 1e15, 8.0, "take fewer")
     Traceback (most recent call last):
-    MemoryError: 1e+15 samples take 8e+06 GB, more memory than there is; take fewer
+    MemoryError: 1e+15 samples take 8e+06 GB; at most 8 GB are allowed; take fewer
     """
     with room_for(what, count, each, remedy):
         np.empty(int(count * each), np.uint8)
 
 
-def check_instants(duration: float, step: float, remedy: str) -> None:
-    """Refuses to cut a duration [s] into so many steps [s] that no memory could hold them.
+def check_instants(duration: float, step: float, remedy: str, most: float = MAX_INSTANTS) -> None:
+    """Refuses to cut a duration [s] into more than `most` steps [s].
 
     >>> check_instants(1.0, 1e-12, "take longer ones")
     Traceback (most recent call last):
-    ValueError: 1 s are more than 1e+09 steps of 1e-12 s; take longer ones
+    ValueError: 1 s are more than 1e+08 steps of 1e-12 s; take longer ones
     """
-    if duration > MOST_INSTANTS * step:
-        raise ValueError(f"{duration:g} s are more than {MOST_INSTANTS:g} steps of {step:g} s; {remedy}")
+    if duration > most * step:
+        raise ValueError(f"{duration:g} s are more than {most:g} steps of {step:g} s; {remedy}")
 
 
 def check_acting(duration: float, period: float) -> None:
-    """Refuses so many samples of a controller, one a period [s] over a duration [s], that no memory could hold them.
+    """Refuses more than `MAX_ACTIONS` of a controller, one a period [s] over a duration [s].
 
-    >>> check_acting(1e12, 1.0)
+    >>> check_acting(0.1, 1e-9)
     Traceback (most recent call last):
-    ValueError: 1e+12 s are more than 1e+09 steps of 1 s; take a longer period
+    ValueError: a controller with period = 1e-09 s acts 1e+08 times in 0.1 s; at most 1e+07 times are allowed; take a longer \
+period, or make several runs
     """
-    remedy = "take a longer period"
-    check_instants(duration, period, remedy)
-    check_room("samples of the controller", duration / period, ACTION, f"{remedy}, or make several runs")
+    if duration > MAX_ACTIONS * period:
+        raise ValueError(
+            f"a controller with period = {period:g} s acts {duration / period:.3g} times in {duration:g} s; at most "
+            f"{MAX_ACTIONS:g} times are allowed; take a longer period, or make several runs"
+        )
+    check_room("samples of the controller", duration / period, ACTION, "take a longer period, or make several runs")

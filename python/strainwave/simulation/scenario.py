@@ -28,6 +28,7 @@ from strainwave.messages import shortened
 from strainwave.simulation.memory import check_instants, room_for
 
 Array = NDArray[np.float64]
+MAX_PULSES = 1e6  # of a pulse train
 SHORTEST = 1e-30  # s: a duration so short that its reciprocal and its square are still numbers
 
 
@@ -141,7 +142,7 @@ class Scenario:
             unit: unit of the command
 
         Raises:
-            ValueError: `dt` is out of its range, or would make more than 1e9 samples; the unit is not known
+            ValueError: `dt` is out of its range, or would make more than 1e8 samples; the unit is not known
             MemoryError: the samples are too many; says how large they are
 
         >>> ramp(rate=2.0, duration=1.0).recording(dt=0.25, unit="rad")["command"]
@@ -345,7 +346,7 @@ def pulse_train(amplitude: float, period: float, width: float, duration: float, 
     width = arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
     duration = _duration("pulse_train.duration", duration)
     start = arguments.number("pulse_train.start", start, "s", "[)", 0.0, duration)
-    check_instants(duration - start, period, "take fewer pulses")
+    check_instants(duration - start, period, "take fewer pulses", MAX_PULSES)
     pulses = np.ceil((duration - start) / period)
     with room_for("pulses", pulses, 200.0, "take fewer"):
         rise = start + period * np.arange(pulses)

@@ -134,7 +134,7 @@ def test_what_makes_no_sense_is_refused() -> None:
     for frequency in (-1.0, 0.0, 5e-324, float("nan"), 1e300):
         with pytest.raises(ValueError, match=rf"^frequency = {re.escape(str(frequency))} Hz must lie in \[1e-300, 1e\+30\]$"):
             sw.frequency_response(DRIVE, [1.0, frequency], 0.1)
-    with pytest.raises(ValueError, match=r"^1e\+20 s are more than 1e\+09 steps of 0\.0002 s; take a higher frequency"):
+    with pytest.raises(ValueError, match=r"^1e\+20 s are more than 1e\+08 steps of 0\.0002 s; take a higher frequency"):
         sw.frequency_response(DRIVE, 1e-20, 0.1)
     with pytest.raises(ValueError, match='input = "temperature" must be one of command, load_torque'):
         sw.frequency_response(DRIVE, 1.0, 0.1, input="temperature")

@@ -56,46 +56,66 @@ def test_a_temperature_that_dips_below_absolute_zero_between_steps_is_refused() 
             simulate(DRIVE, command(0.1), temperature=dipping)
 
 
+def test_a_controller_that_acts_too_often_is_refused_before_memory_is_taken() -> None:
+    words = r"^a controller with period = 1e-09 s acts 1e\+08 times in 0\.1 s; at most 1e\+07 times are allowed; take a longer"
+    held, idle = sw.scenario.constant(0.1, 0.1), DRIVE.replace(control=sw.control.OpenLoop())
+    with pytest.raises(ValueError, match=words):
+        sw.simulate_controlled(idle, lambda seen: 0.0, held, period=1e-9)
+    sampled = DRIVE.replace(control=sw.control.Sampled(law=sw.control.PID(proportional=1.0), period=1e-9))
+    with pytest.raises(ValueError, match=words):
+        sw.simulate(sampled, held)
+
+
+def test_steps_and_samples_that_take_more_than_a_run_may_are_refused() -> None:
+    held = sw.scenario.constant(0.1, 1.0)
+    with pytest.raises(MemoryError, match=r"^9e\+07 samples take 1[0-9.]+ GB; at most 8 GB are allowed; sample less often"):
+        sw.simulate(DRIVE, held, sample=1.0 / 9e7)
+    with pytest.raises(MemoryError, match=r"^9e\+07 steps take [0-9.]+ GB; at most 8 GB are allowed; take longer steps"):
+        sw.simulate_many(DRIVE, held, {"gear.damping": [1.0]}, dt=1.0 / 9e7, sample=0.1)
+
+
 def test_more_steps_than_can_be_are_refused() -> None:
     for most, voltage, remedy in (
         (10_000_000, sw.scenario.sine(1.0, 0.0, 6e6), "sample less often"),
         (10**12, sw.scenario.sine(1.0, 3e8, 1.0), "take longer steps or slower inputs"),
     ):
-        with pytest.raises(ValueError, match=rf" s are more than 1e\+09 steps of .* s; {remedy}"):
+        with pytest.raises(ValueError, match=rf" s are more than 1e\+08 steps of .* s; {remedy}"):
             sw.simulate_adaptively(DRIVE, voltage, max_steps=most)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
 @pytest.mark.parametrize(
-    "run",
+    ("run", "size"),
     [
-        lambda long: sw.simulate(DRIVE, long),
-        lambda long: sw.derivatives(DRIVE, long, ["gear.damping"]),
-        lambda long: sw.simulate_many(DRIVE, long, {"gear.damping": [1.0]}),
+        (lambda long: sw.simulate(DRIVE, long), 0.66),
+        (lambda long: sw.derivatives(DRIVE, long, ["gear.damping"]), 3.54),
+        (lambda long: sw.simulate_many(DRIVE, long, {"gear.damping": [1.0]}), 3.54),
     ],
 )
-def test_a_run_too_long_for_the_memory_says_how_large_it_is_and_what_to_do(run: Callable[[sw.scenario.Scenario], Any]) -> None:
-    said = f"5e+07 steps take 1.65 GB, more memory than there is; {LONG_RUN}"
+def test_a_run_too_long_for_the_memory_says_how_large_it_is_and_what_to_do(
+    run: Callable[[sw.scenario.Scenario], Any], size: float
+) -> None:
+    said = f"2e+07 steps take {size} GB, more memory than there is; {LONG_RUN}"
     with little_memory(64 << 20), pytest.raises(MemoryError, match=f"^{re.escape(said)}$"):
-        run(sw.scenario.constant(0.1, 1e4))
+        run(sw.scenario.constant(0.1, 4e3))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
 def test_outputs_too_many_for_the_memory_say_how_large_they_are() -> None:
     held = Excitation(sw.scenario.constant(0.1, 1.0))
-    words = r"^1e\+08 samples take 12\.8 GB, .*; sample less often, or record fewer outputs$"
+    words = r"^5e\+07 samples take 6\.4 GB, .*; sample less often, or record fewer outputs$"
     with little_memory(64 << 20), pytest.raises(MemoryError, match=words):
-        simulation.beginning(DRIVE, DRIVE.rest().numbers, held, EVERY, 10**8)
+        simulation.beginning(DRIVE, DRIVE.rest().numbers, held, EVERY, 5 * 10**7)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
 @pytest.mark.parametrize(
     "run",
     [
-        lambda held: sw.simulate(DRIVE, held, sample=1e-8),
-        lambda held: sw.simulate_adaptively(DRIVE, held, sample=1e-8),
+        lambda held: sw.simulate(DRIVE, held, sample=2e-8),
+        lambda held: sw.simulate_adaptively(DRIVE, held, sample=2e-8),
         lambda held: sw.simulate_controlled(
-            DRIVE.replace(control=sw.control.OpenLoop()), lambda seen: 0.0, held, period=0.1, sample=1e-8
+            DRIVE.replace(control=sw.control.OpenLoop()), lambda seen: 0.0, held, period=0.1, sample=2e-8
         ),
     ],
     ids=["simulate", "adaptively", "controlled"],
@@ -104,10 +124,10 @@ def test_samples_too_many_for_the_memory_are_refused_before_a_grid_is_laid_out(
     run: Callable[[sw.scenario.Scenario], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(_core, "grid", None)
-    words = r"^1e\+08 samples take 1[0-9.]+ GB, .*; sample less often, or record fewer outputs$"
+    words = r"^5e\+07 samples take [0-9.]+ GB, .*; sample less often, or record fewer outputs$"
     with little_memory(64 << 20), pytest.raises(MemoryError, match=words):
         run(sw.scenario.constant(0.1, 1.0))
-    words = r"^100 s are more than 1e\+09 steps of 1e-08 s; sample less often, or record fewer outputs$"
+    words = r"^100 s are more than 1e\+08 steps of 2e-08 s; sample less often, or record fewer outputs$"
     with pytest.raises(ValueError, match=words):
         run(sw.scenario.constant(0.1, 100.0))
 
