@@ -71,7 +71,13 @@ _WORDS = {
     "Nm": "N*m", "NM": "N*m", "Ncm": "N*cm", "Nmm": "N*mm", "mNm": "mN*m", "kNm": "kN*m", "Nms": "N*m*s", "kgm": "kg*m",
     "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "RPM": "rpm", "ohm": "Ohm", "sec": "s", "msec": "ms",
     "cNm": "cN*m", "kgfm": "kgf*m", "kgfcm": "kgf*cm", "Grad": "deg", "tr": "rev", "Umdr": "rev", "Upm": "rpm", "UPM": "rpm",
+    "degree": "deg", "degrees": "deg",
 }  # fmt: skip
+# As catalogues write minutes and seconds of arc: arc-min, arc min, arc. min., arcminutes, Winkelminuten.
+_OF_ARC = re.compile(
+    r"\b(?:arc[-. ]{0,2}|Winkel|Bogen)(min|sec|[Ss]ek)(?:ut|und|ond)?(?:en|es|e|s)?(?![a-z])(?:\.(?![a-z(]))?",
+    re.ASCII | re.IGNORECASE,
+)
 _PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s"}  # as the data sheets of sensors write them
 
 # What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.
@@ -272,6 +278,7 @@ def _expression(unit: str) -> str:
     text = unit.replace("**", "^").translate(_CHARACTERS)
     if not text.isprintable():
         raise ValueError("not one line of text")
+    text = _OF_ARC.sub(lambda found: "arcmin" if found[1].lower() == "min" else "arcsec", text)
     text = re.sub(r" *([./()]) *", r"\1", text.strip())
     text = "1" if text == "-" else re.sub(r" +|\.|(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)
     text = _REVOLUTIONS.sub("rev", re.sub(r"\^(?=-?\d)", "", _PER_SECOND.get(text, text)))
