@@ -36,8 +36,9 @@ _COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothin
 class Linearisation(ComparedByFields):
     """A drive seen from close by: A, B, C, D of its small deviations from a state, for n states, 4 inputs and m outputs.
 
-    Unpacks to the four matrices, as ``control.StateSpace(*linear)`` of python-control wants them. `command_rate` is the rate
-    of `command`: whoever feeds a command from elsewhere feeds both; `response` does.
+    Unpacks to the four matrices, which have no names: ``control.StateSpace(*linear, **linear.labels)`` of python-control keeps
+    those of states, inputs and outputs. `command_rate` is the rate of `command`: whoever feeds a command from elsewhere feeds
+    both; `response` does.
 
     Args:
         A: of the states [unit of the row / s / unit of the column], shape (n, n)
@@ -61,6 +62,11 @@ class Linearisation(ComparedByFields):
 
     def __iter__(self) -> Iterator[Array]:
         return iter((self.A, self.B, self.C, self.D))
+
+    @property
+    def labels(self) -> dict[str, list[str]]:
+        """The names of states, inputs and outputs, as python-control takes them."""
+        return {"states": list(self.states), "inputs": list(self.inputs), "outputs": list(self.outputs)}
 
     @cached_property
     def _eigen(self) -> tuple[Complex, Complex]:

@@ -261,9 +261,12 @@ def test_a_small_step_is_followed_to_second_order(command: float) -> None:
 
 def test_the_matrices_are_those_that_python_control_takes() -> None:
     linear = sw.linearise(DRIVE)
-    system = control.StateSpace(*linear)
+    system = control.StateSpace(*linear, **linear.labels)
+    assert system.state_labels == list(linear.states)
+    assert system.input_labels == list(linear.inputs)
+    assert system.output_labels == list(linear.outputs)
     at = tau * 1j * 3.0
-    answer = system(at)[linear.outputs.index("twist"), linear.inputs.index("load_torque")]
+    answer = system["twist", "load_torque"](at)
     assert answer == pytest.approx(linear.response(3.0, "twist", "load_torque"), rel=1e-9)
 
 
