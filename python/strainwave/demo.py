@@ -7,17 +7,22 @@ two twins. No publication known to us measures both on one gear.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from strainwave import Drive
+from strainwave import Drive, load
 from strainwave.files.recording import Recording
+from strainwave.friction import Coulomb
 from strainwave.identification.twin import Twin, twin
 from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.simulation import scenario
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario
 from strainwave.studies.position_control import TABLE_4
+
+if TYPE_CHECKING:
+    from strainwave.identification.candidates.position import Reading
 
 PUBLISHED = Path(__file__).with_name("published")
 
@@ -26,6 +31,7 @@ REMARK = (
     "response with the command; those of document P compare its simulation with measurements that were not published. They are "
     "shown to compare with, not as reproduced."
 )
+LABELS = ("Table 2 as all friction", "Table 2 as viscous part", "Table 2 as viscous part, output speeds")  # of the readings
 
 
 def commands() -> dict[str, Scenario]:
@@ -38,11 +44,11 @@ def commands() -> dict[str, Scenario]:
 
 
 def position_drive() -> Twin:
-    """The twin of document P's drive from its Table 2, with which its other friction data are in contradiction (E-P6)."""
+    """Return the twin of document P's drive from its Table 2, read as all friction (E-P7)."""
     return twin(
         "position-drive",
         friction=PUBLISHED / "position-control-friction.csv",
-        sources={"friction": "document P, Table 2 (measured)"},
+        sources={"friction": "document P, Table 2 (measured), read as all friction; see E-P7 for its other readings"},
     )
 
 
@@ -56,27 +62,46 @@ def torsion_rig() -> Twin:
 
 
 def experiments(found: Twin) -> list[SimulatedExperiment]:
-    """Document P's experiments with the twin, with the friction that contradicts it, and with document P's own drive."""
-    drive, printed = found.gear_set.drive, found.start.drive
-    earlier = drive.gear.replace(friction_input=printed.gear.friction_input)
+    """Return document P's experiments with each reading of its Table 2, and with document P's own drive."""
+    printed, ways = found.start.drive, dict(zip(LABELS, table_2(found), strict=True))
     drives = {
-        "twin": drive,
-        "twin with the friction of Tables 1 and 3": drive.replace(gear=earlier),
-        "document P's drive, r = 1/100": printed,
+        label: printed.replace({"gear.friction_input": _law(way, printed.gear.friction_input)}) for label, way in ways.items()
     }
+    drives["document P's drive, r = 1/100"] = printed
+    contradicted = " ".join(
+        f"{label} contradicts its other tables: {'; '.join(way.contradicts)}." for label, way in ways.items()
+    )
+    remark = f"{REMARK} Document P's Table 2 can be read in three ways (E-P6, E-P7). {contradicted}"
     pairs = zip(commands().items(), TABLE_4.values(), strict=True)
-    return [_experiment(name, command, drives, published) for (name, command), published in pairs]
+    return [_experiment(name, command, drives, published, remark) for (name, command), published in pairs]
+
+
+def table_2(found: Twin) -> tuple[Reading, ...]:
+    """Return the three readings of document P's Table 2 beside document P's average friction."""
+    from strainwave.identification.candidates.position import readings
+    from strainwave.identification.experiments.friction_table import FrictionTable
+
+    table = found.evidence[0].fit.experiment
+    assert isinstance(table, FrictionTable)
+    law = load("position-drive-full-friction").gear.friction_input.replace(cosine=[], sine=[])
+    return readings(table, law, reduction=abs(float(found.start.drive.gear.kinematics.ratio)))
+
+
+def _law(way: Reading, printed: Any) -> Coulomb:
+    """Return the friction law of a reading; the excess of the static friction is document P's."""
+    dry = way.coulomb.value + (printed.coulomb if way.part else 0.0)
+    return Coulomb(coulomb=dry, breakaway=dry * printed.breakaway / printed.coulomb, viscous=way.viscous.value)
 
 
 def _experiment(
-    name: str, command: Scenario, drives: dict[str, Drive], table_4: tuple[float, float, float]
+    name: str, command: Scenario, drives: dict[str, Drive], table_4: tuple[float, float, float], remark: str
 ) -> SimulatedExperiment:
     runs = tuple((label, simulate(drive, command, sample=2e-3)) for label, drive in drives.items())
     figures = zip(*(_figures(run) for _, run in runs), strict=True)
     names = (("root mean square error", "rad"), ("largest error", "rad"), ("correlation coefficient", "1"))
     return SimulatedExperiment(
         name=name,
-        remark=REMARK,
+        remark=remark,
         runs=runs,
         figures=tuple(
             Figure(what, unit, values, published)

@@ -57,7 +57,9 @@ DARK = {
     "held-out": "#d3a4ff",
     "earlier": "#e0c15c",
 }
-RUNS = (("model", "-", 2.0), ("measured", "--", 1.5), ("held-out", ":", 1.3))  # colours and lines of runs, in turn
+RUNS = (  # colours and lines of runs, in turn
+    ("model", "-", 2.0), ("measured", "--", 1.5), ("held-out", ":", 1.3), ("earlier", "-.", 1.3),
+)  # fmt: skip
 WIDTH = 4.4  # inches: its letters are as large as those of the page, on a telephone as well as on a desk
 LINE = 48  # letters that fit beside each other in this width
 HANDLE = 5  # letters that the line before a label takes

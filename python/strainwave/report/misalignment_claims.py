@@ -157,7 +157,8 @@ def _constant(found: MisalignmentStudy) -> Claim:
         "“a constant component, related to clearance, and a variable one, related to misalignment and tooth machining error”",
         IN_PART,
         f"Misalignment has a constant part, too: e₂ = {microns(study.BESIDE)} alone shifts the output by "
-        f"{arcmin(abs(constant))} for good, and nothing that repeats. The setting of zero takes it away.",
+        f"{arcmin(abs(constant))} for good, and nothing that repeats. The setting of zero takes it away. "
+        "That of a clearance is constant only while the torque keeps its sign (E-A15).",
     )
 
 
@@ -209,8 +210,8 @@ def _flap(found: MisalignmentStudy) -> Claim:
         f"{number(frequency(found), 3)} Hz, the loop reaches {number(gain / (2.0 * np.pi), 2)} Hz, and by itself would let "
         f"{ideal} pass. On average over the ramp {percent(share_at(found, OUTPUT))} pass, {percent(share_at(found, INPUT))} "
         "with the loop on the motor encoder: inertias, friction, the spring and the reaction of the error on the motor "
-        "decide. Where the loop is faster than the error the claim holds for the output sensor alone: in twice the time and "
-        f"with four times the gain {percent(best[0])} pass, with the loop on the motor encoder {percent(best[1])}.",
+        "decide (E-A10). Where the loop is faster than the error the claim holds for the output sensor alone: in twice the "
+        f"time and with four times the gain {percent(best[0])} pass, with the loop on the motor encoder {percent(best[1])}.",
     )
 
 
@@ -231,8 +232,8 @@ def _figure_3b(found: MisalignmentStudy) -> Claim:
         "Figure 3.b: “the differences between the nominal torque and the one in the presence only of angular deviations” in "
         "the text, “angular deviation misalignment kinematic error” in the caption",
         CORRECTED,
-        f"The two are not the same quantity, so both are drawn. With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° the "
-        f"error swings by ±{arcmin(error)}, the torque by ±{quantity(torque, 'N.m', 2)}.",
+        f"The two are not the same quantity (E-A14), so both are drawn. With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° "
+        f"the error swings by ±{arcmin(error)}, the torque by ±{quantity(torque, 'N.m', 2)}.",
     )
 
 

@@ -264,7 +264,7 @@ def _budget(budget: Budget) -> dict[str, Any]:
 
 DOCUMENT = "document T, “Harmonic Drive Torsional Stiffness: Measurement and Hysteresis Analysis”"
 SOURCES = {
-    "Form of the table, rig, cycle of five steps": f"{DOCUMENT}, Tables 1 and 2; corrected by the errata E-T1 to E-T11",
+    "Form of the table, rig, cycle of five steps": f"{DOCUMENT}, Tables 1 and 2; corrected by the errata E-T1 to E-T13",
     "Torque of a couple: m is the total of both pans of a pair": "document T; erratum E-T7",
     "Angle from two markers by atan2, followed from photograph to photograph": "erratum E-T1",
     "Centres of the markers: circle, or ellipse, fitted by distance to sub-pixel edges": "erratum E-T2",

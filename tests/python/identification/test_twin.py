@@ -98,7 +98,7 @@ def test_a_catalogue_stiffness_within_its_spread_is_no_contradiction() -> None:
 
 
 def test_the_two_friction_data_sets_of_document_p_are_shown_as_contradictory() -> None:
-    """Errata E-P6 and E-P7: Table 2 against Tables 1 and 3 of the same document."""
+    """Errata E-P6 and E-P7: Table 2, read as all friction, against Tables 1 and 3 of the same document."""
     found = position_drive()
     contradictions = {c.path: c for c in found.contradictions}
     coulomb, viscous = contradictions["gear.friction_input.coulomb"], contradictions["gear.friction_input.viscous"]

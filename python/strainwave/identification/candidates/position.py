@@ -8,7 +8,7 @@ as s3 (E-P9).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,11 +56,13 @@ class Reading:
     """One way to read a table of friction over speed beside a law over the angle.
 
     Attributes:
-        name: total friction, or its viscous part
+        name: total friction, or its viscous part, of speeds of the motor or of the output
         coulomb: its torque at speed 0 [N.m]: of the viscous part, what it adds to Coulomb's
-        viscous: its rise with the speed [N.m.s/rad]
+        viscous: its rise with the speed of the motor [N.m.s/rad]
         total: what the drive's friction would be with it at each speed of the table [N.m], where the law's average is least
         contradicts: what it excludes, in words; empty if it fits
+        part: true if the table is the viscous part, which comes on top of Coulomb's
+        remark: what the offset of a viscous part adds to the law, in words; empty if there is none
     """
 
     name: str
@@ -68,6 +70,8 @@ class Reading:
     viscous: Estimate
     total: Array
     contradicts: tuple[str, ...]
+    part: bool
+    remark: str
 
 
 def fit_position(recordings: Recording | Sequence[Recording], orders: int = ORDERS) -> PositionFit:
@@ -190,25 +194,30 @@ def _between(angle: Array, level: Array, start: float, end: float) -> tuple[Arra
     return np.concatenate([[start], angle[inside], [end]]), np.concatenate([ends[:1], level[inside], ends[1:]])
 
 
-def readings(table: FrictionTable, law: PositionDependent) -> tuple[Reading, Reading]:
-    """Both readings of a table of friction over speed beside a law over the angle, as document P's Table 2 beside its law.
+def readings(table: FrictionTable, law: PositionDependent, reduction: float | None = None) -> tuple[Reading, ...]:
+    """Return the readings of a table of friction over speed beside a law over the angle, as document P's Table 2.
 
-    Its text does not say whether the table is all the friction, or its viscous part b v + B. Both are fitted by a line; each
-    says what it contradicts in the law (E-P6, E-P7, E-P11). Nothing is averaged.
+    Its title says viscous friction: then the table is the part b v + B, which is added to Coulomb's. Its columns say friction:
+    then it is all of it. Both are fitted by a line, and each states what it contradicts in the law (E-P6, E-P7, E-P11).
+    Nothing is averaged.
 
     Args:
         table: friction over speed
         law: friction over the angle; its `constant` and `viscous` are compared
+        reduction: speed of the motor over that of the output; if given, a third reading takes the speeds of the table, read as
+            its viscous part, for those of the output
 
     >>> import numpy as np
     >>> speed, torque = np.array([0.1, 0.5, 1.0, 2.0, 5.0]), np.array([0.012, 0.028, 0.045, 0.078, 0.165])
     >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, viscous=0.0004, domain_start=0.0,
     ...                         domain_end=240.82)
-    >>> total, part = readings(FrictionTable(speed, torque), law)
+    >>> total, part, at_output = readings(FrictionTable(speed, torque), law, reduction=100.0)
     >>> print(total.contradicts[0])
-    it says 0.012 N·m in all at 0.1 rad/s, but the law has at least 0.0492 N·m at any angle
+    its 0.012 N·m in all at 0.1 rad/s are less than the 0.0492 N·m that the law has at every angle
     >>> print(part.contradicts[0])
     its slope of 0.0308 N·m·s/rad is 77.1 times the law's 0.0004
+    >>> print(at_output.contradicts[0])
+    its slope of 0.000308 N·m·s/rad is 0.771 times the law's 0.0004
     """
     speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
     jacobian = np.stack([np.ones_like(speed), speed], axis=1)
@@ -222,24 +231,34 @@ def readings(table: FrictionTable, law: PositionDependent) -> tuple[Reading, Rea
     least = float(
         np.min(law.replace(outside="clamp").steady(1e-300, angle=np.linspace(law.domain_start, law.domain_end, 4097)))
     )
-    of_slope = []
-    if abs(slope.value - law.viscous) > APART * slope.sigma:
-        times = f"is {slope.value / law.viscous:.3g} times" if law.viscous > 0.0 else "stands against"
-        of_slope.append(f"its slope of {slope.value:.3g} N·m·s/rad {times} the law's {law.viscous:g}")
     slowest = int(np.argmin(speed))
-    of_level = []
+    of_level: tuple[str, ...] = ()
     if torque[slowest] < least - APART * sigma[0]:
-        of_level.append(
-            f"it says {torque[slowest]:.3g} N·m in all at {speed[slowest]:.3g} rad/s, but the law has at least {least:.3g} N·m "
-            "at any angle"
+        of_level = (
+            f"its {torque[slowest]:.3g} N·m in all at {speed[slowest]:.3g} rad/s are less than the {least:.3g} N·m that the "
+            "law has at every angle",
         )
-    of_offset = []
+    remark = ""
     if offset.value > APART * offset.sigma:
-        of_offset.append(
+        remark = (
             f"its offset of {offset.value:.3g} N·m is no viscous friction: one that reverses is Coulomb friction, and adds to "
             f"the law's {law.constant:.3g} N·m"
         )
-    return (
-        Reading("total friction", offset, slope, torque, (*of_level, *of_slope)),
-        Reading("its viscous part", offset, slope, least + torque, (*of_slope, *of_offset)),
+    found_readings = (
+        Reading("total friction", offset, slope, torque, (*of_level, *_against_slope(slope, law)), False, ""),
+        Reading("its viscous part", offset, slope, least + torque, _against_slope(slope, law), True, remark),
     )
+    if reduction is None:
+        return found_readings
+    share = 1.0 / arguments.number("reduction", reduction, "1", low=0.0)
+    at_motor = replace(slope, value=share * slope.value, sigma=share * slope.sigma)
+    name = "its viscous part, over speeds of the output"
+    return (*found_readings, Reading(name, offset, at_motor, least + torque, _against_slope(at_motor, law), True, remark))
+
+
+def _against_slope(slope: Estimate, law: PositionDependent) -> tuple[str, ...]:
+    """What a slope contradicts in the law, in words; empty if it fits."""
+    if abs(slope.value - law.viscous) <= APART * slope.sigma:
+        return ()
+    times = f"is {slope.value / law.viscous:.3g} times" if law.viscous > 0.0 else "stands against"
+    return (f"its slope of {slope.value:.3g} N·m·s/rad {times} the law's {law.viscous:g}",)

@@ -105,17 +105,23 @@ def test_too_little_is_refused(turns: float, samples: int, message: str) -> None
         fit_position(run(angle, 0.07 + 0.0 * angle))
 
 
-def test_both_readings_of_table_2_have_its_line_and_say_what_they_exclude() -> None:
+def test_the_readings_of_table_2_have_its_line_and_say_what_they_exclude() -> None:
     """Numbers of errata E-P6 and E-P7."""
     _, law = truth(0, viscous=4e-4)
-    total, part = readings(TABLE_2, law.replace(cosine=[], sine=[]))
+    total, part, at_output = readings(TABLE_2, law.replace(cosine=[], sine=[]), reduction=100.0)
     for reading in (total, part):
         assert (reading.coulomb.value, reading.viscous.value) == pytest.approx((0.012554434963, 0.030840444789), rel=1e-9)
-    assert total.contradicts[0] == "it says 0.012 N·m in all at 0.1 rad/s, but the law has at least 0.0492 N·m at any angle"
+    assert (
+        total.contradicts[0] == "its 0.012 N·m in all at 0.1 rad/s are less than the 0.0492 N·m that the law has at every angle"
+    )
     assert "77.1 times the law's 0.0004" in total.contradicts[1]
     assert part.total == pytest.approx(0.0491812523669 + TABLE_2.torque, rel=1e-5)
+    assert len(part.contradicts) == 1, "nothing contradicts the Coulomb level"
     assert "77.1 times" in part.contradicts[0]
-    assert "adds to the law's 0.072 N·m" in part.contradicts[1]
+    assert "adds to the law's 0.072 N·m" in part.remark
+    assert at_output.viscous.value == pytest.approx(0.000308404448, rel=1e-9)
+    assert at_output.coulomb.value == part.coulomb.value
+    assert "0.771 times" in at_output.contradicts[0]
 
 
 def test_a_table_that_agrees_with_the_law_contradicts_nothing() -> None:
