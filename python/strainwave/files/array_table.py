@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.labels import Content, Label, Source
 from strainwave.files.units import measures
-from strainwave.messages import listed, quoted
+from strainwave.messages import listed, one_line, quoted
 
 Array = NDArray[np.float64]
 
@@ -66,6 +66,7 @@ class GridTable:
     title: str
     labels: Sequence[Label]
     grids: Sequence[Grid]
+    left_out: Sequence[str] = ()
 
     @property
     def contents(self) -> list[Content]:
@@ -84,7 +85,7 @@ class GridTable:
         """The columns wanted on the slowest of their grids; and what was done."""
         grids = self._grids(sources)
         if len(grids) == 1:
-            return self._on(grids[0], grids, sources), []
+            return self._on(grids[0], grids, sources), list(self.left_out)
         slowest = max(self._grids([each for each in sources if not measures(each.unit, "K")]), key=_step)
         begin, end = max(grid.time[0] for grid in grids), min(grid.time[-1] for grid in grids)
         rows = slice(*np.searchsorted(slowest.time, [begin, np.nextafter(end, np.inf)]))
@@ -96,7 +97,7 @@ class GridTable:
         moved = listed(name for grid in others for name in grid.columns if name in wanted)
         rate = f"{1.0 / _step(slowest):.4g} Hz"
         remark = f"sampled at other instants, and put on the {rate} of the others by linear interpolation: {moved}"
-        return self._on(common, [common, *others], sources), [remark]
+        return self._on(common, [common, *others], sources), [remark, *self.left_out]
 
     def place(self, row: int) -> str:
         return f"sample {row}"
@@ -127,9 +128,12 @@ def _step(grid: Grid) -> float:
     return float(np.median(np.diff(grid.time))) if len(grid.time) > 1 else np.inf
 
 
-def grid_table(file: str, title: str, grids: Sequence[Grid], units: Mapping[str, str]) -> GridTable:
-    """The table of grids; names differ."""
+def grid_table(
+    file: str, title: str, grids: Sequence[Grid], units: Mapping[str, str], left_out: Sequence[str] = ()
+) -> GridTable:
+    """The table of grids, whose names differ; and in words what of the file was left out."""
     if not grids:
-        raise ValueError(f"{file} holds no series of numbers")
+        raise ValueError(one_line("; ".join([f"{file} holds no series of numbers", *left_out])))
     names = [name for grid in grids for name in grid.columns]
-    return GridTable(file, title, [Label("time", "time", "s"), *(Label(name, name, units.get(name)) for name in names)], grids)
+    labels = [Label("time", "time", "s"), *(Label(name, name, units.get(name) or None) for name in names)]
+    return GridTable(file, title, labels, grids, [one_line(each) for each in left_out])

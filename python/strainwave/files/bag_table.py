@@ -1,23 +1,19 @@
-"""Bags of the Robot Operating System: rosbag, rosbag2 and MCAP, by rosbags; the states of joints in them, and plain numbers."""
+"""Bags of the Robot Operating System: rosbag, rosbag2 and MCAP; the states of joints in them, and plain numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from array import array
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
+from strainwave.files.bag_containers import bag_files, messages_of
+from strainwave.files.bag_messages import JOINTS, NUMBERS, UNITS, joint_states, plain_number
+from strainwave.files.budget import Budget
 from strainwave.files.labels import read_by_others
 from strainwave.messages import one_line
-
-Array = NDArray[np.float64]
-
-JOINTS = "sensor_msgs/msg/JointState"
-UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N.m"}  # of revolute joints, as the message defines them
-NUMBERS = tuple(f"std_msgs/msg/{kind}" for kind in ("Float64", "Float32", "Int32", "Int64"))
 
 
 def open_bag(path: str | Path) -> GridTable:
@@ -25,50 +21,57 @@ def open_bag(path: str | Path) -> GridTable:
 
     The time of a joint's state is that of its header; that of a plain number is when it was recorded. It counts from the first.
     """
-    try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise ImportError(f"{Path(path).name}: bags are read by rosbags: pip install strainwave[formats]") from None
-
-    samples: dict[str, list[tuple[int, dict[str, float]]]] = {}
-    with (
-        read_by_others(path, "bag"),
-        AnyReader([Path(path)], default_typestore=get_typestore(Stores.LATEST)) as reader,
-    ):
-        wanted = [each for each in reader.connections if each.msgtype in (JOINTS, *NUMBERS)]
-        several = len({each.topic for each in wanted if each.msgtype == JOINTS}) > 1
-        for connection, stamp, data in reader.messages(wanted) if wanted else ():
-            message: Any = reader.deserialize(data, connection.msgtype)
-            if connection.msgtype == JOINTS:
-                row = dict(_of_joints(message, f"{connection.topic.strip('/')}." if several else ""))
-                samples.setdefault(connection.topic, []).append((_stamp(message) or stamp, row))
+    series: dict[tuple[str, str], _Series] = {}
+    with read_by_others(path, "bag"):
+        files = bag_files(Path(path))
+        budget = Budget(sum(file.stat().st_size for file in files))
+        for message in messages_of(files, (JOINTS, *NUMBERS), budget):
+            own = series.setdefault((message.topic, message.kind), _Series(budget))
+            if message.kind == JOINTS:
+                state = joint_states(message)
+                own.add(message.stamp, state.stamp or message.stamp, dict(state.numbers))
             else:
-                name = connection.topic.strip("/").replace("/", ".")
-                samples.setdefault(connection.topic, []).append((stamp, {name: float(message.data)}))
-    begin = min((rows[0][0] for rows in samples.values()), default=0)
-    grids = [_grid(rows, begin) for rows in samples.values()]
+                own.add(message.stamp, message.stamp, {"": plain_number(message)})
+        begin = min((each.begin for each in series.values()), default=0)
+        several = sum(kind == JOINTS for _, kind in series) > 1
+        grids = [each.grid(begin, _prefix(topic, kind, several)) for (topic, kind), each in series.items()]
     names = [name for grid in grids for name in grid.columns]
     units = {name: UNITS[name.rpartition(".")[2]] for name in names if name.rpartition(".")[2] in UNITS}
     return grid_table(one_line(str(path)), "", grids, units)
 
 
-def _of_joints(message: Any, prefix: str) -> Iterator[tuple[str, float]]:
-    """What a message says of each joint; an effort or velocity that is not measured is left empty in it."""
-    for channel in UNITS:
-        values = getattr(message, channel)
-        if len(values) == len(message.name):
-            for joint, value in zip(message.name, values, strict=True):
-                yield f"{prefix}{joint}.{channel}", float(value)
+def _prefix(topic: str, kind: str, several: bool) -> str:
+    """Return what stands before the names of a topic's numbers."""
+    if kind == JOINTS:
+        return f"{topic.strip('/')}." if several else ""
+    return topic.strip("/").replace("/", ".")
 
 
-def _stamp(message: Any) -> int:
-    """The time in the header [ns]; 0 where none was set."""
-    stamp = message.header.stamp
-    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+class _Series:
+    """Numbers of one topic as they come, nan where a message lacks one."""
 
+    def __init__(self, budget: Budget) -> None:
+        self.budget = budget
+        self.recorded = array("q")  # ns
+        self.stamps = array("q")  # ns
+        self.columns: dict[str, array[float]] = {}
 
-def _grid(rows: list[tuple[int, dict[str, float]]], begin: int) -> Grid:
-    names = list(dict.fromkeys(name for _, row in rows for name in row))
-    time = np.array([stamp - begin for stamp, _ in rows], float) * 1e-9
-    return Grid(time, {name: np.array([row.get(name, np.nan) for _, row in rows]) for name in names})
+    def add(self, recorded: int, stamp: int, numbers: Mapping[str, float]) -> None:
+        new = numbers.keys() - self.columns.keys()
+        self.budget.take_bytes(8 * (2 + len(self.columns) + len(new) * (1 + len(self.stamps))), "its messages")
+        self.columns.update((name, array("d", [np.nan]) * len(self.stamps)) for name in numbers if name in new)
+        self.recorded.append(recorded)
+        self.stamps.append(stamp)
+        for name, values in self.columns.items():
+            values.append(numbers.get(name, np.nan))
+
+    @property
+    def begin(self) -> int:
+        """The stamp of the message that was recorded first [ns]."""
+        return self.stamps[int(np.argmin(self.recorded))]
+
+    def grid(self, begin: int, prefix: str) -> Grid:
+        """Return the numbers in the order in which they were recorded."""
+        order = np.argsort(self.recorded, kind="stable")
+        time = (np.array(self.stamps)[order] - begin).astype(float) * 1e-9
+        return Grid(time, {f"{prefix}{name}": np.array(values)[order] for name, values in self.columns.items()})

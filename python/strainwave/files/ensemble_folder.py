@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
-from strainwave.files.labels import unreadable
+from strainwave.files.parquet_table import read_columns
 from strainwave.files.writing import remove_drafts, replacing
 from strainwave.messages import one_line
 
@@ -70,13 +71,12 @@ class EnsembleFolder(ComparedByFields):
         if not (path / PLAN).exists():
             raise ValueError(one_line(f"{path} holds no ensemble: there is no {PLAN}"))
         table = _read(path / PLAN)
-        try:
+        sound = False
+        with suppress(KeyError, TypeError, ValueError, RecursionError):
             said = json.loads(table.schema.metadata[b"plan"])
             parameters = {name: table[name].to_numpy() for name in table.column_names}
             found = EnsembleFolder(path, said["asked"], parameters, said["units"], said["size"])
-            sound = table.schema.metadata[b"identity"] == found.identity
-        except (KeyError, TypeError, ValueError):
-            sound = False
+            sound = table.schema.metadata[b"identity"] == found.identity and type(found.size) is int and found.size > 0
         if not sound:
             raise ValueError(one_line(f"{path / PLAN} is damaged; the parts beside it cannot be checked without it"))
         return found
@@ -216,14 +216,12 @@ def _write(path: Path, columns: Mapping[str, Any], units: Mapping[str, str], met
 def _read(path: Path) -> pyarrow.Table:
     """The table in a file; `ValueError` in one line where it is not what was written."""
     import pyarrow
-    from pyarrow.parquet import ParquetFile
 
     try:
-        with ParquetFile(path, page_checksum_verification=True) as file:
-            table = file.read()
+        table = read_columns(path)
         sound = (table.schema.metadata or {}).get(b"digest") == _digest(table)
-    except (OSError, pyarrow.ArrowException, UnicodeDecodeError) as error:
-        raise ValueError(f"{unreadable(path, error)}; {_REMEDY}") from None
+    except (ValueError, pyarrow.ArrowException) as error:
+        raise ValueError(f"{error}; {_REMEDY}") from None
     if not sound:
         raise ValueError(one_line(f"{path} is damaged: its values are not those of its digest; {_REMEDY}"))
     return table

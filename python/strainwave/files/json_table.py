@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import json
+import re
+import sys
 from collections.abc import Iterator, Mapping, Sequence
+from math import nan
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from strainwave.files.array_table import ArrayTable
+from strainwave.files.budget import Budget, RefusedFile, read_regular
 from strainwave.files.labels import unreadable
-from strainwave.files.variables import table_of
+from strainwave.files.variables import DEPTH, table_of
 from strainwave.messages import one_line
+
+BYTES_OF_VALUE = 64  # that a value takes in memory as Python has it
 
 
 def open_json(path: str | Path) -> ArrayTable:
@@ -33,28 +39,33 @@ def open_json(path: str | Path) -> ArrayTable:
     """
     file = one_line(str(path))
     try:
-        found = _parsed(file, Path(path).read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeError, RecursionError) as error:
+        data = read_regular(path)
+        budget = Budget(len(data))
+        budget.take_bytes(BYTES_OF_VALUE * sum(map(data.count, (b",", b"[", b"{"))), "its values")
+        found = _parsed(file, data.decode("utf-8-sig"))
+        if isinstance(found, Mapping):
+            rows = next((each for each in found.values() if _are_rows(each)), None)
+        else:
+            rows = found if _are_rows(found) else None
+        if rows is not None:
+            return table_of(file, _of_rows(rows, budget), budget)
+        variables = found if isinstance(found, Mapping) else {"": found}
+        return table_of(file, ((name, _numbers(each, name)) for name, each in variables.items()), budget)
+    except (OSError, UnicodeError, RecursionError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
-    if isinstance(found, Mapping):
-        rows = next((each for each in found.values() if _are_rows(each)), None)
-        return table_of(file, _of_rows(rows) if rows is not None else ((name, _numbers(each)) for name, each in found.items()))
-    if _are_rows(found):
-        return table_of(file, _of_rows(found))
-    return table_of(file, [("", _numbers(found))])
 
 
 def _parsed(file: str, text: str) -> Any:
     """One value, or one a line."""
     try:
-        return json.loads(text)
+        return _value(text)
     except json.JSONDecodeError as error:
         whole = error
     lines = [(number, line) for number, line in enumerate(text.splitlines(), start=1) if line.strip()]
     rows = []
     for place, (number, line) in enumerate(lines):
         try:
-            rows.append(json.loads(line))
+            rows.append(_value(line, number))
         except json.JSONDecodeError as error:
             if not rows:
                 raise ValueError(f"{file} line {whole.lineno} is no JSON: {one_line(whole.msg)}") from None
@@ -64,34 +75,77 @@ def _parsed(file: str, text: str) -> Any:
     return rows
 
 
+def _value(text: str, line: int = 1) -> Any:
+    """The value in a text that begins in a line of the file."""
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError:
+        raise
+    except ValueError:  # from int, which does not name the place
+        begin = next(match.start() for match in re.finditer(r"[0-9]++", text) if len(match[0]) > sys.get_int_max_str_digits())
+        at = line + text.count("\n", 0, begin)
+        raise RefusedFile(f"line {at} has an integer of more than {sys.get_int_max_str_digits()} digits") from None
+
+
 def _are_rows(value: Any) -> bool:
     return isinstance(value, list) and len(value) > 1 and all(isinstance(each, Mapping) for each in value)
 
 
-def _of_rows(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, Any]]:
+def _of_rows(rows: Sequence[Mapping[str, Any]], budget: Budget) -> Iterator[tuple[str, Any]]:
     """The series of rows, by the names that any of them has."""
-    flat = [dict(_flat("", row)) for row in rows]
-    for name in dict.fromkeys(name for row in flat for name in row):
-        yield name, np.array([row.get(name, np.nan) for row in flat], float)
+    columns: dict[str, list[float]] = {}
+    for place, row in enumerate(rows):
+        for name, value in _flat("", row, DEPTH):
+            column = columns.get(name)
+            if column is None:
+                budget.take_bytes(len(name) + 8 * len(rows), "a column for each name in its rows")
+                column = columns[name] = [nan] * place
+            elif len(column) > place:  # two keys make the same name; the last is taken
+                column.pop()
+            elif len(column) < place:
+                column += [nan] * (place - len(column))
+            column.append(_float(value, f"{name} in row {place}") if type(value) is int else nan if value is None else value)
+    for name, column in columns.items():
+        yield name, np.array(column + [nan] * (len(rows) - len(column)))
 
 
-def _flat(name: str, value: Any) -> Iterator[tuple[str, float]]:
+def _flat(name: str, value: Any, depth: int) -> Iterator[tuple[str, float | None]]:
     """The numbers of a row by their names, as `joint.q_1`."""
     if isinstance(value, Mapping):
         for key, each in value.items():
-            yield from _flat(f"{name}.{key}" if name else str(key), each)
+            if type(each) is float and not name:
+                yield key, each
+            elif depth:
+                yield from _flat(f"{name}.{key}" if name else key, each, depth - 1)
     elif isinstance(value, list):
-        for number, each in enumerate(value, start=1):
-            yield from _flat(f"{name}_{number}", each)
+        for number, each in enumerate(value, start=1) if depth else ():
+            yield from _flat(f"{name}_{number}", each, depth - 1)
     elif value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
-        yield name, np.nan if value is None else float(value)
+        yield name, value
 
 
-def _numbers(value: Any) -> Any:
+def _float(value: int, place: str) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise RefusedFile(f"{place} is an integer of {len(str(abs(value)))} digits; a number is at most 1.8e308") from None
+
+
+def _numbers(value: Any, name: str) -> Any:
     """A list of numbers, or of lists of them, as an array; a table of names to such; what else there is as it stands."""
     if isinstance(value, Mapping):
-        return {name: _numbers(each) for name, each in value.items()}
+        return {key: _numbers(each, f"{name}.{key}") for key, each in value.items()}
+    if isinstance(value, str) or (isinstance(value, list) and str in _types(value)):
+        return np.array([])
     try:
         return np.array(value, float)  # None becomes nan
+    except OverflowError:
+        raise RefusedFile(f"{name or 'its list'} has an integer beyond the largest number, 1.8e308") from None
     except (TypeError, ValueError):
         return np.array([])
+
+
+def _types(values: list[Any]) -> set[type]:
+    """The types of values in a list, and in the lists in it."""
+    found = set(map(type, values))
+    return found.union(*(map(type, each) for each in values if isinstance(each, list))) if list in found else found

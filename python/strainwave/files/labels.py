@@ -58,13 +58,17 @@ def labels_of(texts: Sequence[str]) -> list[Label]:
     ['s', None, None, '1']
     """
     labels = [label_of(text) for text in texts]
-    again = Counter(label.name for label in labels if label.unit is not None and label.unit.isdigit())
+    again = Counter(label.name for label in labels if label.unit is not None and _is_index(label.unit))
     return [
         Label(label.text, label.text, None)
-        if label.unit is not None and label.unit.isdigit() and again[label.name] > 1
+        if label.unit is not None and _is_index(label.unit) and again[label.name] > 1
         else label
         for label in labels
     ]
+
+
+def _is_index(text: str) -> bool:
+    return text.isascii() and text.isdigit()
 
 
 def is_unit(text: str) -> bool:
@@ -145,6 +149,9 @@ def _unit(file: str, label: Label, name: str, given: str | None) -> str:
 
 
 def unreadable(path: str | Path, error: Exception) -> str:
+    """The message of a file that is not read: the refusal itself, or what the system or a library reports."""
+    if isinstance(error, RefusedFile):
+        return one_line(f"{path}: {error}")
     reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error).partition("\n")[0]
     return one_line(f"{path} cannot be read: {reason}")
 
@@ -161,7 +168,7 @@ def read_by_others(path: str | Path, kind: str) -> Iterator[None]:
     except ImportError:
         raise
     except RefusedFile as error:
-        raise ValueError(one_line(f"{path}: {error}")) from None
+        raise ValueError(unreadable(path, error)) from None
     except Exception as error:
         cause: BaseException | None = error
         while cause is not None:

@@ -1,76 +1,94 @@
-"""MDF files of measurement systems in vehicles and test benches, versions 3 and 4, by asammdf."""
+"""MDF files of measurement systems in vehicles and test benches, versions 2 to 4.
+
+They are read here and not by a library: asammdf evaluates the formulas that a file contains, as code, and follows links, claims
+and external files without a bound. Here a formula refuses its channel, and one budget bounds blocks, bytes and depth.
+"""
 
 from __future__ import annotations
 
-import logging
+import mmap
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
+from strainwave.files.budget import Budget, RefusedFile, open_regular
 from strainwave.files.labels import read_by_others
+from strainwave.files.mdf3_blocks import channel_groups
+from strainwave.files.mdf4_blocks import Mdf4File
+from strainwave.files.mdf_channels import Bytes, ChannelGroup, channel_values
+from strainwave.files.mdf_conversion import RefusedChannel
 from strainwave.messages import one_line
 
 Array = NDArray[np.float64]
+MAGIC = (b"MDF ", b"UnFinMF ")  # at the beginning of every MDF file; the second while it is still being recorded
 
 
 def open_mdf(path: str | Path) -> GridTable:
-    """The channels of an MDF file that hold numbers, each group of them on a grid of its own."""
-    try:
-        from asammdf import MDF
-    except ImportError:
-        raise ImportError(f"{Path(path).name}: MDF files are read by asammdf: pip install strainwave[formats]") from None
+    """The channels of an MDF file that hold numbers, each group of them on a grid of its own.
 
+    Linear, rational and table conversions are applied. A channel whose conversion is a formula is left out by its name.
+    """
     grids: list[Grid] = []
     units: dict[str, str] = {}
-    with read_by_others(path, "MDF"), _silent("asammdf"), Path(path).open("rb") as file, MDF(file) as opened:
-        for number in range(len(opened.groups)):
-            signals = [signal for signal in _signals(opened, number) if len(signal.samples)]
-            columns: dict[str, Array] = {}
-            for signal in signals:
-                name = _unique(signal.name, number, {name for grid in grids for name in grid.columns} | columns.keys())
-                columns[name] = _values(signal)
-                if signal.unit:
-                    units[name] = str(signal.unit)
-            if columns:
-                grids.append(Grid(np.asarray(signals[0].timestamps, float), columns))
-    return grid_table(one_line(str(path)), "", grids, units)
+    left_out: list[str] = []
+    with read_by_others(path, "MDF"), open_regular(path) as file:
+        data = np.frombuffer(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ), np.uint8)
+        budget = Budget(len(data))
+        for number, group in enumerate(_groups(data, budget)):
+            if len(group.records) and (grid := _grid(group, number, units, left_out, budget)):
+                grids.append(grid)
+    return grid_table(one_line(str(path)), "", grids, units, left_out)
 
 
-@contextmanager
-def _silent(logger: str) -> Iterator[None]:
-    """Keeps a library from writing to the terminal what is then said by an error, or does not matter."""
-    log, before = logging.getLogger(logger), logging.getLogger(logger).disabled
-    log.disabled = True
+def _groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
+    begin = data[:64].tobytes()
+    if begin.startswith(MAGIC[1]):
+        raise RefusedFile("was not closed by its recorder (UnFinMF); let the recorder's software finalise it")
+    if not begin.startswith(MAGIC[0]):
+        raise ValueError("no MDF file")
+    version = int.from_bytes(begin[28:30], "little")
+    return Mdf4File(data, budget).channel_groups() if version >= 400 else channel_groups(data, budget)
+
+
+def _grid(group: ChannelGroup, number: int, units: dict[str, str], left_out: list[str], budget: Budget) -> Grid | None:
+    """Return the channels of a group; add what they are measured in, and what of it is not read."""
     try:
-        yield
-    finally:
-        log.disabled = before
+        time = _time(group, budget)
+    except RefusedChannel as refused:
+        left_out.append(f"channel group {number} is left out: {refused}")
+        return None
+    columns: dict[str, Array] = {}
+    for channel in group.channels:
+        if channel.is_master:
+            continue
+        name = _unique(channel.name, number, columns.keys() | units.keys())
+        try:
+            columns[name] = channel_values(channel, group.records, budget)
+            units[name] = channel.unit
+        except RefusedChannel as refused:
+            left_out.append(f"{name} is left out: {refused}")
+    return Grid(time, columns) if columns else None
 
 
-def _signals(opened: Any, number: int) -> list[Any]:
-    """The channels of a group but for its time."""
-    found = []
-    master = opened.masters_db.get(number)
-    for index, channel in enumerate(opened.groups[number].channels):
-        if index != master:
-            signal = opened.get(channel.name, group=number, index=index)
-            if signal.samples.dtype.kind in "fiub" and signal.samples.ndim == 1:
-                found.append(signal)
-    return found
-
-
-def _values(signal: Any) -> Array:
-    """The samples, nan where the file says that they are not valid."""
-    values = np.array(signal.samples, float)
-    if (invalid := signal.invalidation_bits) is not None:
-        values[np.asarray(invalid, bool)] = np.nan
-    return values
+def _time(group: ChannelGroup, budget: Budget) -> Array:
+    """Return the instants of a group [s]."""
+    if group.master is None:
+        raise RefusedChannel("it has no time channel")
+    channel, records = group.master
+    if not channel.is_time:
+        raise RefusedChannel(f"{channel.name}, over which it was sampled, is not the time")
+    if len(records) != len(group.records):
+        raise RefusedFile(f"has {len(group.records)} samples at {len(records)} instants of {channel.name}")
+    return channel_values(channel, records, budget)
 
 
 def _unique(name: str, group: int, taken: set[str]) -> str:
-    return name if name not in taken else f"{name}.{group}"
+    """Return the name, with the number of its group behind it where the file has it already."""
+    found, count = name, 0
+    while found in taken:
+        found = f"{name}.{group}" if not count else f"{name}.{group}.{count}"
+        count += 1
+    return found

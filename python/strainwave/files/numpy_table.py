@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import zipfile
 from collections.abc import Iterator
+from math import prod
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.lib import format as numpy_format
 
 from strainwave.files.array_table import ArrayTable
+from strainwave.files.budget import Budget, RefusedFile, budget_of, open_regular
 from strainwave.files.labels import read_by_others
-from strainwave.files.variables import table_of
+from strainwave.files.variables import Unreadable, table_of
 from strainwave.messages import one_line
+
+ZIP = b"PK"  # first letters of a file of several arrays
+PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; zipfile unpacks others without a bound
+OBJECTS = Unreadable("an array of Python objects, which may run any program as it is loaded; save its numbers")
 
 
 def open_numpy(path: str | Path) -> ArrayTable:
@@ -25,20 +33,44 @@ def open_numpy(path: str | Path) -> ArrayTable:
     >>> [label.name for label in table.labels], table.singles
     (['time', 'q_1', 'q_2'], {'fs': 100.0})
     """
-    with read_by_others(path, "NumPy"):
-        variables = list(_variables(np.load(path, allow_pickle=False)))
-    return table_of(one_line(str(path)), variables)
+    with read_by_others(path, "NumPy"), open_regular(path) as file:
+        budget = budget_of(path)
+        is_zip = file.read(len(ZIP)) == ZIP
+        file.seek(0)
+        variables = list(_of_zip(file, budget) if is_zip else _of_array("", file, budget.file_bytes, budget))
+    return table_of(one_line(str(path)), variables, budget)
 
 
-def _variables(loaded: Any) -> Iterator[tuple[str, Any]]:
-    if isinstance(loaded, np.ndarray):
-        names = loaded.dtype.names
-        yield from [("", loaded)] if names is None else ((name, loaded[name]) for name in names)
+def _of_zip(file: BinaryIO, budget: Budget) -> Iterator[tuple[str, Any]]:
+    with zipfile.ZipFile(file) as members:
+        for member in members.infolist():
+            budget.take_node()
+            if member.filename.endswith(".npy"):
+                if member.compress_type not in PACKED:
+                    raise RefusedFile(f"{member.filename} is packed in another way than NumPy does")
+                with members.open(member) as opened:
+                    yield from _of_array(member.filename.removesuffix(".npy"), opened, member.file_size, budget)
+
+
+def _of_array(name: str, file: Any, file_bytes: int, budget: Budget) -> Iterator[tuple[str, Any]]:
+    """Return the arrays of numbers in a file of that many bytes, those of a structured array by its names."""
+    version = numpy_format.read_magic(file)
+    read_header = numpy_format.read_array_header_1_0 if version == (1, 0) else numpy_format.read_array_header_2_0
+    shape, is_transposed, kind = read_header(file)
+    if kind.hasobject:
+        yield name, OBJECTS
         return
-    with loaded:
-        for name in loaded.files:
-            try:
-                value = loaded[name]
-            except ValueError:  # objects
-                continue
-            yield from ((f"{name}.{key}", value[key]) for key in value.dtype.names) if value.dtype.names else [(name, value)]
+    size = prod(shape)
+    if min(shape, default=0) < 0 or size * kind.itemsize > file_bytes:
+        raise RefusedFile(f"{name or 'its array'} claims {size * kind.itemsize} bytes, but has {file_bytes}; it is damaged")
+    budget.take_bytes(size * max(kind.itemsize, 1), name or "its array")
+    data: Any = np.frombuffer(_whole(file, size * kind.itemsize), kind, size) if kind.itemsize else np.empty(0)
+    value = data.reshape(shape[::-1]).T if is_transposed else data.reshape(shape)
+    yield from ((f"{name}.{key}" if name else key, value[key]) for key in kind.names) if kind.names else [(name, value)]
+
+
+def _whole(file: BinaryIO, count: int) -> bytes:
+    data = file.read(count)
+    if len(data) < count:
+        raise RefusedFile(f"ends {count - len(data)} bytes before its last number; it is damaged")
+    return data

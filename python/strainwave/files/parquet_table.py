@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Content, Label, Source, label_of, seconds_since_first, unreadable
+from strainwave.files.budget import MAX_NODES, RefusedFile, budget_of, open_regular
+from strainwave.files.labels import Content, Label, Source, label_of, read_by_others, seconds_since_first, unreadable
+from strainwave.files.parquet_pages import check_columns
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -24,14 +26,16 @@ def open_parquet(path: str | Path) -> ParquetTable:
     import pyarrow
     from pyarrow.parquet import read_schema
 
-    file = Path(path)
     try:
-        schema = read_schema(file)
+        with open_regular(path) as file:
+            schema = read_schema(file)
+        if len(schema) > MAX_NODES:
+            raise RefusedFile(f"has {len(schema)} columns; at most {MAX_NODES} are read")
         title = (schema.metadata or {}).get(b"title", b"").decode()
         labels = [_label(field) for field in schema]
-    except (OSError, pyarrow.ArrowException, UnicodeError) as error:
+    except (OSError, pyarrow.ArrowException, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
-    return ParquetTable(one_line(str(path)), title, labels, file, schema)
+    return ParquetTable(one_line(str(path)), title, labels, Path(path), schema)
 
 
 @dataclass(frozen=True)
@@ -50,12 +54,12 @@ class ParquetTable:
 
     def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
         """The columns wanted, which must be numbers."""
-        table = self._read(sources)
+        table = self._read(sources, ("numbers",))
         return {source.name: self._numbers(table, source.position) for source in sources}
 
     def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written, dates as seconds; and what was left out."""
-        table = self._read(sources)
+        table = self._read(sources, ("numbers", "dates"))
         dates = {source.position for source in sources if self.contents[source.position] == "dates"}
         return {
             source.name: _seconds(table, self.schema.field(source.position))
@@ -67,29 +71,37 @@ class ParquetTable:
     def place(self, row: int) -> str:
         return f"row {row}"
 
-    def _read(self, sources: Sequence[Source]) -> pyarrow.Table:
-        import pyarrow
-        from pyarrow.parquet import ParquetFile
-
-        wanted = [self.schema.field(source.position).name for source in sources]
-        try:
-            with ParquetFile(self.path, page_checksum_verification=True) as opened:
-                return opened.read(columns=wanted, use_threads=False)  # threads: apache/arrow#34314
-        except (OSError, pyarrow.ArrowException, UnicodeError) as error:
-            raise ValueError(unreadable(self.path, error)) from None
+    def _read(self, sources: Sequence[Source], allowed: Sequence[Content]) -> pyarrow.Table:
+        wanted = [self.schema.field(source.position) for source in sources]
+        for field in wanted:
+            if _content(field.type) not in allowed:
+                raise ValueError(f"{self.file} column {quoted(field.name)} holds {one_line(str(field.type))}, not numbers")
+        return read_columns(self.path, [field.name for field in wanted])
 
     def _numbers(self, table: pyarrow.Table, position: int) -> Array:
         import pyarrow
 
         field = self.schema.field(position)
-        column = f"{self.file} column {quoted(field.name)}"
-        if _content(field.type) != "numbers":
-            raise ValueError(f"{column} holds {one_line(str(field.type))}, not numbers")
         try:
             values: Array = table.column(field.name).cast(pyarrow.float64()).to_numpy()
         except pyarrow.ArrowInvalid as error:
-            raise ValueError(f"{column}: {one_line(str(error))}") from None
+            raise ValueError(f"{self.file} column {quoted(field.name)}: {one_line(str(error))}") from None
         return values
+
+
+def read_columns(path: Path, names: Sequence[str] | None = None) -> pyarrow.Table:
+    """Return columns of a Parquet file; all if none are named.
+
+    Raises:
+        ValueError: the file is damaged, or would expand to more than it may
+    """
+    from pyarrow.parquet import ParquetFile
+
+    with read_by_others(path, "Parquet"), open_regular(path) as file:
+        budget = budget_of(path)
+        with ParquetFile(file, page_checksum_verification=True) as opened:
+            check_columns(file, opened.metadata, names, budget)
+            return opened.read(columns=names, use_threads=False)  # threads: apache/arrow#34314
 
 
 def _label(field: pyarrow.Field) -> Label:

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.bag_table import open_bag
+from strainwave.files.budget import RefusedFile, open_regular
+from strainwave.files.hdf5_table import open_hdf5
 from strainwave.files.json_table import open_json
 from strainwave.files.labels import Content, Label, Source, sources_of, unreadable
-from strainwave.files.matlab_table import open_hdf5, open_mat
-from strainwave.files.mdf_table import open_mdf
+from strainwave.files.matlab_table import open_mat
+from strainwave.files.mdf_table import MAGIC, open_mdf
 from strainwave.files.numpy_table import open_numpy
 from strainwave.files.parquet_table import open_parquet
 from strainwave.files.text_table import open_csv
@@ -55,11 +57,11 @@ class OpenTable(Protocol):
 def _open_dat(path: str | Path) -> OpenTable:
     """A file whose suffix says nothing but that it holds data: MDF by its first letters, else text."""
     try:
-        with Path(path).open("rb") as file:
+        with open_regular(path) as file:
             begin = file.read(8)
-    except OSError as error:
+    except (OSError, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
-    return open_mdf(path) if begin.startswith(b"MDF ") else open_csv(path)
+    return open_mdf(path) if begin.startswith(MAGIC) else open_csv(path)
 
 
 FORMATS: dict[str, Callable[[str | Path], OpenTable]] = {

@@ -15,7 +15,7 @@ from strainwave.files.labels import Label, is_unit
 Array = NDArray[np.float64]
 
 NUMBER = re.compile(
-    r"[+-]?(?=[.,]?\d)\d*([.,]?)\d*(?:[eE][+-]?\d+)?", re.ASCII
+    r"[+-]?(?=[.,]?\d)\d*+([.,]?)\d*+(?:[eE][+-]?\d++)?", re.ASCII
 )  # sign, digits, one decimal mark (group 1), exponent
 CLOCK = re.compile(  # a time of day, or with a date as controllers and loggers write it
     r"(?:(?P<day>\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})[ T])?(?P<h>\d\d?):(?P<m>\d\d):(?P<s>\d\d(?:[.,]\d{1,9})?)", re.ASCII

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.files.budget import RefusedFile, read_regular
 from strainwave.files.labels import Content, Label, Source, labels_of, seconds_since_first, unreadable
 from strainwave.files.text_layout import CLOCK, NUMBER, lines_above, lists_apart, seconds_of_clock, with_units
 from strainwave.messages import one_line, quoted
@@ -39,8 +40,8 @@ def open_csv(path: str | Path) -> CsvTable:
     """The header of a text table, and its rows as they stand; without a header the columns are column_1, column_2 …"""
     file = one_line(str(path))
     try:
-        data = Path(path).read_bytes()
-    except (OSError, UnicodeError) as error:
+        data = read_regular(path)
+    except (OSError, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
     data = re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB and of ROS

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
+from strainwave.files.budget import Budget, RefusedFile
 from strainwave.files.labels import label_of
-from strainwave.messages import listed
+from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,13 @@ class Unreadable(NamedTuple):
     what: str
 
 
-def table_of(file: str, variables: Iterable[tuple[str, Any]]) -> ArrayTable:
+def object_of_matlab(kind: str) -> Unreadable:
+    """What to do with an object of a class of MATLAB, as a table, a timetable, a timeseries or a Simulink data set."""
+    save = "save its numbers instead, as with s = struct('t', x.Time, 'q', x.Data), or write a .csv with writetable"
+    return Unreadable(f"an object of MATLAB ({kind}), which MATLAB alone reads: {save}")
+
+
+def table_of(file: str, variables: Iterable[tuple[str, Any]], budget: Budget) -> ArrayTable:
     """The series that are of the length most of them have.
 
     A series is a variable, or a field of a structure, as `data.q`; a matrix holds several, `q_1`, `q_2` …, and one without a
@@ -34,19 +41,22 @@ def table_of(file: str, variables: Iterable[tuple[str, Any]]) -> ArrayTable:
     length are told of and left out.
 
     Raises:
-        ValueError: there is no series of numbers
+        ValueError: there is no series of numbers, or the series take more than the budget allows
     """
     series: dict[str, Array] = {}
     singles: dict[str, float] = {}
     left_out: list[str] = []
-    for name, value in variables:
-        for part, values in _series(name, value, left_out):
-            if values.size == 1:
-                singles[part] = float(values[0])
-            else:
-                series[part] = values
+    try:
+        for name, value in variables:
+            for part, values in _series(name, value, left_out, budget):
+                if values.size == 1:
+                    singles[part] = float(values[0])
+                else:
+                    series[part] = values
+    except RefusedFile as error:
+        raise ValueError(one_line(f"{file}: {error}")) from None
     if not series:
-        raise ValueError("; ".join([f"{file} holds no series of numbers", *left_out]))
+        raise ValueError(one_line("; ".join([f"{file} holds no series of numbers", *left_out])))
     length, _ = max(Counter(len(values) for values in series.values()).items(), key=lambda each: (each[1], each[0]))
     kept = {name: values for name, values in series.items() if len(values) == length}
     others = [f"{name} ({len(values)})" for name, values in series.items() if len(values) != length]
@@ -54,25 +64,28 @@ def table_of(file: str, variables: Iterable[tuple[str, Any]]) -> ArrayTable:
     return ArrayTable(file, "", [label_of(name) for name in kept], list(kept.values()), left_out, singles)
 
 
-def _series(name: str, value: Any, left_out: list[str], depth: int = DEPTH) -> Iterator[tuple[str, Array]]:
+def _series(name: str, value: Any, left_out: list[str], budget: Budget, depth: int = DEPTH) -> Iterator[tuple[str, Array]]:
     """The series that a variable holds."""
+    budget.take_node()
+    budget.take_bytes(len(name), "the names of its variables")
     if isinstance(value, Unreadable):
-        left_out.append(f"{name} is left out: {value.what}")
+        left_out.append(f"{name or 'its array'} is left out: {value.what}")
     elif isinstance(value, Mapping):
         for key, each in value.items() if depth else ():
-            yield from _series(f"{name}.{key}" if name else str(key), each, left_out, depth - 1)
+            yield from _series(f"{name}.{key}" if name else str(key), each, left_out, budget, depth - 1)
     elif isinstance(value, list) or (isinstance(value, np.ndarray) and value.dtype == object):
         if depth:
-            yield from _several(name, list(value.ravel()) if isinstance(value, np.ndarray) else value, left_out, depth - 1)
+            values = list(value.ravel()) if isinstance(value, np.ndarray) else value
+            yield from _several(name, values, left_out, budget, depth - 1)
     else:
-        yield from _matrix(name.removesuffix(NUMBERS_OF_SCOPE), value)
+        yield from _matrix(name.removesuffix(NUMBERS_OF_SCOPE), value, budget)
 
 
-def _several(name: str, values: Sequence[Any], left_out: list[str], depth: int) -> Iterator[tuple[str, Array]]:
+def _several(name: str, values: Sequence[Any], left_out: list[str], budget: Budget, depth: int) -> Iterator[tuple[str, Array]]:
     """The series in a list: of structures that are alike the longest, of signals each by its label, else each by its number."""
     structures = [each for each in values if isinstance(each, Mapping)]
     if len(structures) > 1 and len({tuple(each) for each in structures}) == 1 and "values" not in structures[0]:
-        read = [list(_series(name, each, [], depth)) for each in structures]
+        read = [list(_series(name, each, [], budget, depth)) for each in structures]
         longest = max(range(len(read)), key=lambda place: max((len(found) for _, found in read[place]), default=0))
         taken = f"of which number {longest + 1} is taken, the first of the longest"
         left_out.append(f"{name} holds {len(read)} recordings, {taken}; save each in a file of its own")
@@ -81,18 +94,21 @@ def _several(name: str, values: Sequence[Any], left_out: list[str], depth: int) 
     for number, each in enumerate(values, start=1):
         if isinstance(each, Mapping) and "values" in each:
             label = each.get("label")
-            yield from _matrix(label if isinstance(label, str) and label else f"{name}_{number}", each["values"])
+            yield from _matrix(label if isinstance(label, str) and label else f"{name}_{number}", each["values"], budget)
         else:
-            yield from _series(name if len(values) == 1 else f"{name}_{number}", each, left_out, depth)
+            yield from _series(name if len(values) == 1 else f"{name}_{number}", each, left_out, budget, depth)
 
 
-def _matrix(name: str, value: Any) -> Iterator[tuple[str, Array]]:
+def _matrix(name: str, value: Any, budget: Budget) -> Iterator[tuple[str, Array]]:
     """The series that an array of numbers holds."""
     array = np.asarray(value)
     if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size == 0:
         return
-    matrix = np.atleast_2d(array.astype(float))
+    if array.dtype != float:
+        budget.take_bytes(8 * array.size, "its numbers")
+    matrix = np.atleast_2d(array.astype(float, copy=False))
     columns = matrix.T if matrix.shape[0] < matrix.shape[1] else matrix
+    budget.take_bytes(min(columns.shape[1], MANY) * len(name), "the names of its columns")
     if columns.shape[1] == 1:
         yield name or "column_1", columns[:, 0]
     elif columns.shape[1] <= MANY:
