@@ -303,7 +303,8 @@ def load(name_or_path: str | Path) -> Any:
     """What a file holds: the drive, where it has a motor and a load, else the gear.
 
     What was saved is what is loaded: a gear, or a drive. Where the type must be known beforehand, `GearSet.read(path).gear`
-    is the gear of any file, and `GearSet.read(path).drive` the drive.
+    is the gear of any file, and `GearSet.read(path).drive` the drive. Neither has ratings; yet the ratings of a file, a data
+    sheet among them, are remembered: `simulate` compares with them every drive that has this gear unchanged.
 
     Args:
         name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder
@@ -318,6 +319,10 @@ def load(name_or_path: str | Path) -> Any:
     (50000.0, 2.0)
     """
     gear_set = GearSet.read(name_or_path)
+    if gear_set.ratings and _file(name_or_path).parent not in FOLDERS.values():
+        from strainwave.files.ratings import remember
+
+        remember(gear_set)
     return gear_set.gear if gear_set.motor is None or gear_set.load is None else gear_set.drive
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, arguments
+from strainwave import Drive, Gear, arguments
 from strainwave.files.entries import Quantity
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
@@ -21,7 +21,11 @@ Array = NDArray[np.float64]
 
 
 class RatingWarning(UserWarning):
-    """A simulation of a gear set exceeded what the set's `ratings` allow."""
+    """A simulation exceeded what the ratings of its gear set, or of the file its gear was loaded from, allow."""
+
+
+MAX_REMEMBERED = 100  # gears that were loaded last
+_REMEMBERED: dict[Gear, GearSet] = {}
 
 
 @dataclass(frozen=True)
@@ -105,12 +109,22 @@ def drive_of(model: object) -> Drive:
     return model.drive if isinstance(model, GearSet) else arguments.drive(model)
 
 
-def warn_of_ratings(model: object, run: Recording) -> None:
-    """Warns the caller of a simulation, if it was of a gear set, of every limit that the run exceeded."""
-    if isinstance(model, GearSet):
-        for check in check_ratings(model, run):
-            if check.exceeded:
-                warnings.warn(f"{model.name}: {check}", RatingWarning, stacklevel=3)
+def remember(gear_set: GearSet) -> None:
+    """Keeps the ratings of a gear that is handed out without them, for runs of drives that have it."""
+    _REMEMBERED.pop(gear_set.gear, None)
+    _REMEMBERED[gear_set.gear] = gear_set
+    if len(_REMEMBERED) > MAX_REMEMBERED:
+        del _REMEMBERED[next(iter(_REMEMBERED))]
+
+
+def warn_of_ratings(model: Drive | GearSet, run: Recording) -> None:
+    """Warns the caller of a simulation of a gear set, or with a gear of one, of every limit that the run exceeded."""
+    gear_set = model if isinstance(model, GearSet) else _REMEMBERED.get(model.gear) if _REMEMBERED else None
+    if gear_set is None:
+        return
+    for check in check_ratings(gear_set, run):
+        if check.exceeded:
+            warnings.warn(f"{gear_set.name}: {check}", RatingWarning, stacklevel=3)
 
 
 def _check(name: str, limit: Quantity, recording: Recording) -> RatingCheck | None:

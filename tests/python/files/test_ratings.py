@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from math import pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
+from strainwave.files import ratings
 from strainwave.files.entries import Quantity
 from strainwave.files.gear_set import GearSet
 
@@ -173,6 +175,34 @@ def test_adaptive_steps_that_stiff_bristles_ask_for_warn_once() -> None:
         run = sw.simulate(stiff, sw.scenario.step(amplitude=0.2, duration=0.02))
     assert "adaptive" in run.method
     assert len(warned) == 1
+
+
+SHEET = """name = "sheet"
+[datasheet]
+ratio = -100
+size = 25
+peak_torque = "74 N.m"
+"""
+
+
+def test_a_run_with_the_gear_of_a_data_sheet_warns_of_the_limits_of_the_sheet(tmp_path: Path) -> None:
+    (tmp_path / "sheet.toml").write_text(SHEET)
+    gear = sw.load(tmp_path / "sheet.toml")
+    drive = sw.Drive(gear=gear, load=sw.loads.Inertia(inertia=1.0))
+    held = sw.scenario.constant(0.0, 0.1)
+    with pytest.warns(sw.RatingWarning, match=r"^sheet: peak torque: .* exceeds the limit of 74 N\.m"):
+        sw.simulate(drive, held, load_torque=165.0)
+    sw.simulate(drive, held, load_torque=1.0)  # a warning would be an error
+    sw.simulate(drive.replace(gear=gear.replace(damping=1.01 * gear.damping)), held, load_torque=165.0)  # another gear
+
+
+def test_so_many_loaded_gears_are_remembered_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ratings, "_REMEMBERED", {})
+    sets = [rated(peak_torque=Quantity(value=1.0, unit="N.m", source="x")) for _ in range(ratings.MAX_REMEMBERED + 1)]
+    sets = [each.replace(gear=each.gear.replace(damping=1.0 + place)) for place, each in enumerate(sets)]
+    for each in sets:
+        ratings.remember(each)
+    assert list(ratings._REMEMBERED.values()) == sets[1:]
 
 
 def test_a_run_within_all_limits_warns_of_none() -> None:
