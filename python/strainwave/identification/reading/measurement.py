@@ -38,7 +38,6 @@ COLUMNS: dict[Kind, dict[str, Units]] = {  # each column with the units that are
     kind: {name: ("V", "rad") if name == "command" else (CHANNELS[ALIASES.get(name, name)].unit,) for name in names}
     for kind, names in TAKEN.items()
 }
-NOT_FITTED = ("temperature",)  # read, so that whoever has the recording has them too
 
 
 def read_measurement(
@@ -129,7 +128,7 @@ def unused_columns(kind: Kind, path: str | Path, columns: Mapping[str, str] | No
     """
     present = _labels(path)
     found = _found(kind, path, present, columns)
-    used = {place for name in found.keys() - {*NOT_FITTED} for place in places_of(present, found[name])}
+    used = {place for name in found for place in places_of(present, found[name])}
     return tuple(label.name for place, label in enumerate(present) if place not in used)
 
 
