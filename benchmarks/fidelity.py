@@ -26,9 +26,9 @@ from typing import Any
 
 import numpy as np
 import strainwave as sw
+from inverse_dynamics import regression
 from numpy.typing import NDArray
 from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks
-from strainwave.identification.dynamics.inverse_dynamics import regression
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 

@@ -30,7 +30,6 @@ from tests.strategies import made as usual_of
 MODULES = (
     *("files.units", "files.gear_set", "files.entries", "files.recording", "parameters", "simulation.scenario"),
     *(f"identification.experiments.{name}" for name in ("experiment", "friction_table", "torsion_loop", "drive_log")),
-    "identification.dynamics.inverse_dynamics",
 )
 LAWS = ("friction", "hysteresis", "kinematic_error", "stiffness")
 METHODS = ("__getitem__", "__contains__", "__eq__", "__add__", "__sub__", "__mul__", "__rmul__")
@@ -66,7 +65,6 @@ NOT_CALLED = {
     *(f"identification.experiments.torsion_loop.{name}" for name in ("TorsionLoop", "at_input")),
     "identification.experiments.drive_log.DriveLog",
     *(f"drive_log.DriveLog.{name}" for name in ("beginning", "stands_still")),
-    *(f"identification.dynamics.inverse_dynamics.{name}" for name in ("Regression", "RigidDrive")),
     *(f"{name}.predict" for name in ("drive_log.DriveLog", "friction_table.FrictionTable", "torsion_loop.TorsionLoop")),
     "torsion_loop.TorsionLoop.path",
     "fit.Fit.rms",
@@ -116,7 +114,6 @@ def valid() -> Mapping[str, Any]:
     """An argument that is right, by the name of the argument or of function and argument."""
     drive = sw.Drive(load=sw.loads.Inertia(inertia=0.1))
     command = sw.scenario.constant(1.0, 0.01)
-    time = np.arange(0.0, 4.0, 0.01)
     recording = sw.Recording({"time": [0.0, 1.0], "speed": [1.0, 2.0]}, {"time": "s", "speed": "rad/s"})
     return {
         "drive": drive, "command": command, "parameters": ["load.inertia"], "dt": 1e-3, "sample": 2e-3, "load_torque": 0.1,
@@ -130,16 +127,15 @@ def valid() -> Mapping[str, Any]:
         "model": drive.gear, "gear": drive.gear, "sources": {}, "number": 0, "ratings": {}, "motor": None, "control": None,
         "load": None, "maker": "", "note": "", "against": "time", "output": "torque", "recording": recording,
         "free": ["friction_input.viscous"], "channels": None, "training": None, "loss": "linear",
-        "position": np.sin(5.0 * time), "torque": np.cos(5.0 * time), "cutoff": None, "twist": [0.0, 1e-3, -1e-3],
-        "speed": 1.0, "angle": [0.0, 1.0], "held_out": False, "x": [1.0, 2.0], "y": [1.0, 2.0], "stretches": 10, "changes": {},
-        "factor": 2.0, "other": command, "level": [0.0], "slope": [0.0], "waves": (), "sweep": 0.0,
-        "which": ("torque", "load.inertia"), "sense": 1.0, "deflection": 0.0, "end": drive.rest(), "history": "cyclic",
+        "twist": [0.0, 1e-3, -1e-3], "speed": 1.0, "angle": [0.0, 1.0], "held_out": False, "x": [1.0, 2.0], "y": [1.0, 2.0],
+        "stretches": 10, "changes": {}, "factor": 2.0, "other": command, "level": [0.0], "slope": [0.0], "waves": (),
+        "sweep": 0.0, "which": ("torque", "load.inertia"), "sense": 1.0, "deflection": 0.0, "end": drive.rest(), "history": "cyclic",
         "torque_zero": 0.0, "twist_zero": 0.0, "nuisances": np.zeros(2), "numbers": [0], "measured": np.zeros((1, 3)),
         "failures": {}, "damping": 1.0, "step.start": 0.0, "ramp.start": 0.0, "pulse_train.start": 0.0, "between.start": 0.0,
         "Scenario.start": [0.0], "simulate_many.parameters": {"load.inertia": [0.1, 0.2]},
-        "simulate_to.parameters": {"load.inertia": [0.1, 0.2]}, "rigid_drive.time": time, "regression.time": time,
+        "simulate_to.parameters": {"load.inertia": [0.1, 0.2]},
         "__getitem__.name": "time", "to_csv.path": "file.csv", "value.time": [0.5], "rate.time": 0.5,
-        "value_before.time": [0.5], "rate_before.time": [0.5], "to_parquet.path": "file.parquet",
+        "value_before.time": [0.5], "to_parquet.path": "file.parquet",
         "fit.recording": friction_table(), "Quantity.unit": "N.m", "convert.unit": "s", "recording.unit": "V",
         "recording.dt": 0.1, "save.name": "mine", "of.name": "mine", "GearSet.name": "mine", "read.path": "nothing.csv",
         "of.recording": friction_table(), "with_column.values": [1.0, 2.0], "check.unit": "N.m",

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
+from inverse_dynamics import PARAMETERS, RigidDrive, regression, rigid_drive
 from numpy.typing import NDArray
 from strainwave.identification.candidates.motion import fit_motion
-from strainwave.identification.dynamics.inverse_dynamics import PARAMETERS, RigidDrive, regression, rigid_drive
 from strainwave.identification.experiments.motion_log import MotionLog
 
 Array = NDArray[np.float64]

@@ -121,10 +121,6 @@ class Scenario:
         """Left limit of the command at `time` [s]; at 0 the value there."""
         return self._at(time, before=True)[0]
 
-    def rate_before(self, time: ArrayLike) -> Array:
-        """Left limit of the rate at `time` [s]; at 0 the rate there."""
-        return self._at(time, before=True)[1]
-
     @cached_property
     def breaks(self) -> Array:
         """The times [s] in (0, duration) at which the command or its rate jumps, increasing."""

@@ -1,7 +1,8 @@
 """The motion of a drive from its measured angle: smoothed, differentiated, and where it rests.
 
 Torque and all that is compared with it then pass one and the same filter without phase shift. A filter common to both sides of
-an equation that is linear does not bias it (`dynamics.inverse_dynamics` says where this comes from).
+an equation that is linear does not bias it (Gautier, "Dynamic identification of robots with power model", ICRA 1997; Janot,
+Vandanjon & Gautier, IEEE Trans. Control Syst. Technol. 22 (2014) 132-145).
 """
 
 from __future__ import annotations

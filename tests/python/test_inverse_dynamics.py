@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from inverse_dynamics import Regression, RigidDrive, regression, rigid_drive
 from numpy.typing import NDArray
 from scipy import signal
-from strainwave.identification.dynamics.inverse_dynamics import Regression, RigidDrive, regression, rigid_drive
 
 Array = NDArray[np.float64]
 TRUTH = np.array([0.02, 0.05, 0.3, -0.1])  # kg.m2, N.m.s/rad, N.m, N.m

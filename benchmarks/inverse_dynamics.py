@@ -27,7 +27,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.experiments.motion import near_rest, spectra, widest_cutoff
