@@ -1,4 +1,4 @@
-"""What a developer does here, on a machine with Python 3.11 or later and its headers, git and a C++20 compiler.
+"""Tasks of a developer, on a machine with Python 3.11 or later and its headers, git and a C++20 compiler.
 
     python3 dev.py demo         run the demonstration; its reports are out/demo/*/report.html
     python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
@@ -118,7 +118,7 @@ def attempt(*command: str | Path, **variables: str) -> int:
 
 
 def call(*command: str | Path) -> None:
-    """Runs a command that must succeed; what went wrong, it has said itself."""
+    """Run a command and exit with its code if it fails."""
     if code := attempt(*command):
         sys.exit(code)
 
@@ -154,7 +154,7 @@ def lint(options: Sequence[str]) -> int:
     return max(attempt(*check, *options) for check in checks)
 
 
-# What each check needs: the compiler's libraries, what it is told, and the tests that are worth its time.
+# Of each check: the libraries of the compiler, environment variables, and the tests that are worth its time.
 CHECKS: dict[str, tuple[Sequence[str], dict[str, str], Sequence[str]]] = {
     "address": (
         ["libasan.so", "libubsan.so"],
@@ -190,7 +190,7 @@ def sanitized(check: str, tests: Sequence[str]) -> int:
     site = BUILD / f"sanitize-{check}" / "site"
     shutil.copytree(ROOT / "python" / "strainwave", site / "strainwave", dirs_exist_ok=True)
     packages = next(BIN.parent.glob("lib/python*/site-packages"))
-    libraries, told, worthwhile = CHECKS[check]
+    libraries, variables, worthwhile = CHECKS[check]
     bare = PYTHON, "-S"  # else the interpreter, of each worker too, would find the editable package first
     return attempt(
         *(*bare, "-m", "pytest"),
@@ -199,7 +199,7 @@ def sanitized(check: str, tests: Sequence[str]) -> int:
         LD_PRELOAD=":".join(library(name) for name in libraries),
         PYTHONPATH=f"{site}:{packages}",
         STRAINWAVE_IS_IN=str(site),
-        **told,
+        **variables,
     )
 
 
