@@ -22,7 +22,8 @@ from strainwave.messages import quoted
 
 METADATA = "metadata.yaml"  # names the files of a folder
 ROSBAG, MCAP, SQLITE, ZSTD = b"#ROSBAG V2.0\n", b"\x89MCAP0\r\n", b"SQLite format 3\0", b"\x28\xb5\x2f\xfd"
-MAX_SQL_STEPS = 1_000_000_000  # of the scan of one table
+BYTES_OF_RECORD = 64  # counted for each record besides its content, so that empty ones end, too
+MAX_SQL_STEPS = 200_000_000  # of the scan of one table
 STEPS_AT_A_TIME = 1_000_000
 UNPACKED_AT_A_TIME = 2**20  # bytes
 _PATHS = re.compile(r"relative_file_paths:[ \t]*(\[[^\]]*\]|(?:\n[ \t]*-[^\n]*)*)")
@@ -116,11 +117,11 @@ def _kind(name: str) -> str:
 
 def _of_rosbag(content: memoryview, kinds: Collection[str], budget: Budget) -> Iterator[Message]:
     connections: dict[bytes, tuple[str, str]] = {}
-    for header, data in _records(content[len(ROSBAG) :]):
+    for header, data in _records(content[len(ROSBAG) :], budget):
         inside: Iterable[tuple[Mapping[str, bytes], memoryview]] = [(header, data)]
         if header.get("op") == bytes([OF_ROSBAG["chunk"]]):
             packing, size = header["compression"].decode(), int.from_bytes(header["size"], "little")
-            inside = _records(_unpacked(data, packing, size, budget))
+            inside = _records(_unpacked(data, packing, size, budget), budget)
         for header, data in inside:
             if header.get("op") == bytes([OF_ROSBAG["connection"]]):
                 budget.take_node()
@@ -132,10 +133,11 @@ def _of_rosbag(content: memoryview, kinds: Collection[str], budget: Budget) -> I
                     yield Message(topic, kind, seconds * 1_000_000_000 + nanoseconds, data, is_ros1=True)
 
 
-def _records(content: memoryview) -> Iterator[tuple[Mapping[str, bytes], memoryview]]:
+def _records(content: memoryview, budget: Budget) -> Iterator[tuple[Mapping[str, bytes], memoryview]]:
     """Return the header and the data of each record."""
     place = 0
     while place < len(content):
+        budget.take_bytes(BYTES_OF_RECORD, "its records")
         header, place = _sized(content, place)
         data, place = _sized(content, place)
         yield _fields(header), data
@@ -165,10 +167,10 @@ def _sized(content: memoryview, place: int, form: str = "I") -> tuple[memoryview
 def _of_mcap(content: memoryview, kinds: Collection[str], budget: Budget) -> Iterator[Message]:
     types: dict[int, str] = {0: ""}
     channels: dict[int, tuple[str, str, bool]] = {}
-    for number, record in _mcap_records(content[len(MCAP) :]):
+    for number, record in _mcap_records(content[len(MCAP) :], budget):
         inside: Iterable[tuple[int, memoryview]] = [(number, record)]
         if number == OF_MCAP["chunk"]:
-            inside = _mcap_records(_chunk(record, budget))
+            inside = _mcap_records(_chunk(record, budget), budget)
         for number, record in inside:
             if number == OF_MCAP["schema"]:
                 budget.take_node()
@@ -186,10 +188,11 @@ def _of_mcap(content: memoryview, kinds: Collection[str], budget: Budget) -> Ite
                     yield Message(topic, kind, stamp, _content(record[22:], budget), is_ros1)
 
 
-def _mcap_records(content: memoryview) -> Iterator[tuple[int, memoryview]]:
+def _mcap_records(content: memoryview, budget: Budget) -> Iterator[tuple[int, memoryview]]:
     """Return the number and the content of each record up to the end of the data."""
     place = 0
     while place < len(content) and (number := content[place]) != OF_MCAP["end"]:
+        budget.take_bytes(BYTES_OF_RECORD, "its records")
         record, place = _sized(content, place + 1, "Q")
         yield number, record
 
@@ -227,6 +230,7 @@ def _of_sqlite(path: Path, content: memoryview | None, size: int, kinds: Collect
             for number, name, kind, coding in opened.execute("SELECT id, name, type, serialization_format FROM topics")
         }
         for number, stamp, data in opened.execute("SELECT topic_id, timestamp, data FROM messages"):
+            budget.take_bytes(BYTES_OF_RECORD, "its messages")
             topic, kind, is_ros1 = topics[number]
             if kind in kinds:
                 yield Message(topic, kind, stamp, _content(memoryview(data), budget), is_ros1)

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.json_table import open_json
 from strainwave.files.hdf5_table import open_hdf5
+from strainwave.files.json_table import open_json
 from strainwave.files.numpy_table import open_numpy
 from strainwave.files.text_table import open_csv
 
@@ -43,7 +43,7 @@ def test_one_array_has_numbered_columns_and_a_structured_one_its_names(tmp_path:
 
 def test_objects_are_not_loaded(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", np.array([{"t": 1.0}], object), allow_pickle=True)
-    with pytest.raises(ValueError, match=r"a\.npy holds no series of numbers; its array is left out: an array of Python objects"):
+    with pytest.raises(ValueError, match=r"a\.npy holds no series.*; its array is left out: an array of Python objects"):
         open_numpy(tmp_path / "a.npy")
 
 

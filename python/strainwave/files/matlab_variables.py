@@ -1,0 +1,165 @@
+"""Variables in MAT files of version 4 and 5 (5 is that of MATLAB 5 to 7), by MATLAB's description of these formats.
+
+They are read here and not by SciPy: it believes what the elements claim, unpacks without a bound, calls itself for each cell in
+a cell until the process ends, and a type that it does not know is a segmentation fault. Here one budget bounds all of it.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator, Sequence
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from strainwave.files.budget import Budget, RefusedFile
+from strainwave.files.variables import object_of_matlab
+
+HEADER = 128  # bytes, version 5
+MATRIX, COMPRESSED = 14, 15  # types of elements
+NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}  # types of elements
+TEXTS = {16: "utf-8", 17: "utf-16", 18: "utf-32"}  # types of elements; others hold a letter in each number
+CELL, STRUCTURE, OBJECT, TEXT, SPARSE, FUNCTION, OPAQUE = 1, 2, 3, 4, 5, 16, 17  # classes of arrays
+LAST_CLASS = 17  # the other ones hold numbers
+COMPLEX = 0x800  # flag
+NUMBERS_OF_VERSION_4 = {0: "f8", 1: "f4", 2: "i4", 3: "i2", 4: "u2", 5: "u1"}  # by the third digit of the type
+LARGEST_TYPE = 5000  # in version 4; a number beyond it has the other byte order
+BYTES_OF_VALUE = 64  # that a cell or field takes in memory as Python has it
+
+
+class _Element(NamedTuple):
+    kind: int
+    content: memoryview
+
+
+def variables_of_version_4(data: bytes, budget: Budget) -> Iterator[tuple[str, Any]]:
+    """Return the real matrices of a file of version 4 by their names.
+
+    Raises:
+        RefusedFile: the file claims more than it contains
+    """
+    place = 0
+    order = "<" if struct.unpack_from("<i", data)[0] in range(LARGEST_TYPE) else ">"
+    while place < len(data):
+        budget.take_node()
+        kind, rows, columns, imaginary, length = struct.unpack_from(f"{order}5i", data, place)
+        number = NUMBERS_OF_VERSION_4.get(kind // 10 % 10)
+        if min(rows, columns, length) < 0 or number is None:
+            raise RefusedFile("has a matrix of an unknown type or a negative size; it is damaged")
+        begin = place + 20 + length
+        place = begin + rows * columns * np.dtype(number).itemsize * (2 if imaginary else 1)
+        if place > len(data):
+            raise RefusedFile(f"claims {place} bytes, but has {len(data)}; it is damaged")
+        if not imaginary and kind % 10 == 0:  # no text, not sparse
+            values = np.frombuffer(data, f"{order}{number}", rows * columns, begin)
+            yield _text(data[begin - length : begin]), values.reshape(rows, columns, order="F")
+
+
+def variables_of_version_5(data: bytes, budget: Budget) -> Iterator[tuple[str, Any]]:
+    """Return the variables of a file of version 5 by their names: structures as mappings, cells as lists.
+
+    Raises:
+        RefusedFile: the file claims more than it contains, nests too deep, or would take more than the budget allows
+    """
+    order = "<" if data[126:128] == b"IM" else ">"
+    for element in _elements(memoryview(data)[HEADER:], order, is_padded=False):
+        if element.kind == COMPRESSED:
+            (element,) = _elements(_unpacked(element.content, budget), order, is_padded=False)
+        yield _array(element, order, budget, 0)
+
+
+def _unpacked(content: memoryview, budget: Budget) -> memoryview:
+    inflater = zlib.decompressobj()
+    found = inflater.decompress(content, budget.allowed_bytes + 1)
+    budget.take_bytes(len(found), "a packed variable")
+    return memoryview(found)
+
+
+def _elements(content: memoryview, order: str, is_padded: bool = True) -> Iterator[_Element]:
+    """Return the elements in the content of another one, each padded to eight bytes but for the outermost ones."""
+    place = 0
+    while place < len(content):
+        (word,) = struct.unpack_from(f"{order}I", content, place)
+        if word >> 16:  # a short one, with its content in the second half of the tag
+            kind, length, begin, end = word & 0xFFFF, word >> 16, place + 4, place + 8
+        else:
+            kind, length = word, struct.unpack_from(f"{order}I", content, place + 4)[0]
+            begin, end = place + 8, place + 8 + length + (-length % 8 if is_padded else 0)
+        if begin + length > len(content) or length > end - begin:
+            raise RefusedFile(f"an element claims {length} bytes, more than what contains it; it is damaged")
+        yield _Element(kind, content[begin : begin + length])
+        place = end
+
+
+def _array(element: _Element, order: str, budget: Budget, depth: int) -> tuple[str, Any]:
+    """Return name and content of an array; an empty one of numbers for what holds no series."""
+    budget.take_node(depth)
+    budget.take_bytes(BYTES_OF_VALUE, "its cells and fields")
+    if element.kind != MATRIX:
+        raise RefusedFile(f"has an element of type {element.kind} where a matrix stands; it is damaged")
+    if not len(element.content):
+        return "", np.array([])
+    flags, *parts = _elements(element.content, order)
+    (word,) = struct.unpack_from(f"{order}I", flags.content)
+    kind = word & 0xFF
+    if kind == OPAQUE:
+        name, _, kind_of_object = (_text(part.content) for part in parts[:3])
+        return name, object_of_matlab(kind_of_object)
+    dimensions, named, *rest = parts
+    shape = struct.unpack(f"{order}{len(dimensions.content) // 4}i", dimensions.content)
+    name = _text(named.content)
+    if min(shape, default=0) < 0 or kind > LAST_CLASS:
+        raise RefusedFile("has an array of an unknown class or a negative size; it is damaged")
+    if kind in (SPARSE, FUNCTION) or (word & COMPLEX and kind > SPARSE):
+        return name, np.array([])
+    if kind == TEXT:
+        return name, "".join(_letters(part, order) for part in rest[:1])
+    if kind not in (CELL, STRUCTURE, OBJECT):
+        return name, _numbers(rest, shape, order)
+    fields, rest = ([""], rest) if kind == CELL else _fields(rest[1:] if kind == OBJECT else rest, order)
+    if len(rest) != prod(shape) * len(fields):
+        raise RefusedFile(f"has an array of {len(rest)} parts where it claims {prod(shape) * len(fields)}; it is damaged")
+    values = [_array(part, order, budget, depth + 1)[1] for part in rest]
+    if kind == CELL:
+        return name, values
+    structures = [dict(zip(fields, each, strict=True)) for each in _grouped(values, len(fields))]
+    return name, structures[0] if len(structures) == 1 else structures
+
+
+def _fields(parts: Sequence[_Element], order: str) -> tuple[list[str], list[_Element]]:
+    """Return the names of the fields of a structure, and its other parts."""
+    width, names, *rest = parts
+    (length,) = struct.unpack(f"{order}i", width.content)
+    if length < 1:
+        raise RefusedFile(f"has names of {length} letters; it is damaged")
+    return [_text(names.content[place : place + length]) for place in range(0, len(names.content), length)], rest
+
+
+def _grouped(values: Sequence[Any], count: int) -> list[Sequence[Any]]:
+    return [values[place : place + count] for place in range(0, len(values), max(count, 1))]
+
+
+def _numbers(parts: Sequence[_Element], shape: Sequence[int], order: str) -> Any:
+    """Return the real part of an array of numbers."""
+    number = NUMBERS.get(parts[0].kind)
+    if number is None:
+        raise RefusedFile(f"has numbers of the type {parts[0].kind}, which MATLAB does not define; it is damaged")
+    values = np.frombuffer(parts[0].content, f"{order}{number}")
+    if len(values) != prod(shape):
+        raise RefusedFile(f"has an array of {len(values)} numbers where it claims {prod(shape)}; it is damaged")
+    return np.squeeze(values.reshape(shape, order="F"))
+
+
+def _letters(part: _Element, order: str) -> str:
+    """Return the letters of a text, which may be numbers of any type."""
+    if part.kind in TEXTS:
+        ending = "" if part.kind == min(TEXTS) else "-le" if order == "<" else "-be"
+        return bytes(part.content).decode(TEXTS[part.kind] + ending, "replace")
+    values = np.frombuffer(part.content, f"{order}{NUMBERS.get(part.kind, 'u1')}")
+    return "".join(chr(value) for value in values.tolist() if value in range(0x110000))
+
+
+def _text(content: memoryview | bytes) -> str:
+    return bytes(content).partition(b"\0")[0].decode("latin-1")
