@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import inf, radians
 from pathlib import Path
@@ -23,6 +24,8 @@ rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, a
 
 DOCUMENT_T = "document-t"  # the gears of document T's Table 2, as `gear_named` knows them
 POSITIONS = "0,60,120"
+MAX_SECONDS = 1e6  # of any time that is waited
+MAX_PICTURES = 1000  # that must agree
 
 RigOption = Annotated[str, typer.Option("--rig", help="The rig: a name that comes with the package, or a .toml file.")]
 PeakOption = Annotated[float, typer.Option("--torque", help="Peak torque in N.m; the nearest that the masses make is taken.")]
@@ -247,7 +250,9 @@ def watch(
     def look() -> list[Point]:
         return [Point(each.name, each.torque, each.look, each.warnings) for each in watched.new()]
 
-    points = live(Console(stderr=True), look, _positive("--idle", idle), _positive("--interval", interval))
+    points = live(
+        Console(stderr=True), look, idle if idle == inf else _positive("--idle", idle), _positive("--interval", interval)
+    )
     told = sum(not point.look.fault for point in points)
     print(f"{len(points)} photographs, {told} of them told an angle")
 
@@ -353,21 +358,23 @@ def _plan(bench: Rig, torque: float, step: float | None, positions: str, units: 
 
 
 def _numbers(option: str, text: str) -> list[float]:
+    from strainwave.number_texts import number_in
+
     try:
-        return [float(each) for each in text.split(",")]
+        return [number_in(each.strip()) for each in text.split(",")]
     except ValueError:
         raise ValueError(f"{option} {text}: write numbers with commas between, as 0,60,120") from None
 
 
 def _positive(option: str, value: float) -> float:
-    if not value > 0.0:
-        raise ValueError(f"{option} {value:g} s must be above 0")
+    if not 0.0 < value <= MAX_SECONDS:
+        raise ValueError(f"{option} {value:g} s must be above 0 and at most {MAX_SECONDS:g}")
     return value
 
 
 def _count(option: str, value: int) -> int:
-    if value < 1:
-        raise ValueError(f"{option} {value} must be 1 or more")
+    if not 1 <= value <= MAX_PICTURES:
+        raise ValueError(f"{option} {value} must be 1 to {MAX_PICTURES}")
     return value
 
 
@@ -378,7 +385,7 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Sour
     if camera == "virtual":
         return rehearsal(bench, steps, gear_named(gear))
     try:
-        return Device(int(camera)) if camera.isdecimal() else Filled(Path(camera))
+        return Device(int(camera)) if re.fullmatch("[0-9]{1,4}", camera) else Filled(Path(camera))
     except ImportError as error:
         raise ValueError(f"--camera {camera}: {error}") from None
 

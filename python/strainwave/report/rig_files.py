@@ -31,6 +31,8 @@ MARKER_COLUMNS = {
     "arc": "",
 }
 
+MAX_NAME_PART = 40  # characters of a specimen in the name of a file, which has at most 255 bytes
+
 
 def loop_names(loops: Sequence[Loop]) -> list[str]:
     """A name for each loop, as its files have it: unit, position and, where several are alike, a number.
@@ -48,7 +50,7 @@ def loop_names(loops: Sequence[Loop]) -> list[str]:
 
 def _file_part(text: str) -> str:
     """A text as part of a file's name."""
-    kept = "".join(each if each.isalnum() or each in "._" else "-" for each in text)
+    kept = "".join(each if each.isalnum() or each in "._" else "-" for each in text[:MAX_NAME_PART])
     return f"{kept.strip('-.')}-" if kept.strip("-.") else ""
 
 

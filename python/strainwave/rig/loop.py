@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.messages import shortened
 
 Array = NDArray[np.float64]
+# Sizes of all numbers of loops, rigs and steps in SI units, unless they are 0: beyond, products of a few overflow.
+MIN_SIZE, MAX_SIZE = 1e-30, 1e12
 Side = Literal["input", "output"]
 COLUMNS: dict[Side, tuple[str, str]] = {"input": ("input_angle", "input_torque"), "output": ("twist", "torque")}
 
@@ -99,10 +102,12 @@ class Loop(ComparedByFields):
         shared = {"angle_scale": (angle_scale, "1"), "torque_scale": (torque_scale, "1")}
         shared |= {"friction_sigma": (friction_sigma, "N.m"), "compliance_sigma": (compliance_sigma, "rad/(N.m)")}
         for key, (each, of) in shared.items():
-            object.__setattr__(self, key, arguments.number(key, each, of, brackets="[)", low=0.0))
-        object.__setattr__(self, "position", arguments.number("position", position, "rad"))
+            object.__setattr__(self, key, not_negative(key, each, of))
+        object.__setattr__(self, "position", signed("position", position, "rad"))
         for key, text in (("side", side), ("name", name), ("unit", unit)):
             object.__setattr__(self, key, arguments.text(key, text))
+            if not text.isprintable():
+                raise ValueError(f"{key} = {shortened(text)} must be one line of text")
         object.__setattr__(self, "input_friction", side == "input" if input_friction is None else bool(input_friction))
         object.__setattr__(self, "remarks", tuple(remarks))
 
@@ -120,6 +125,22 @@ class Loop(ComparedByFields):
         return Recording(columns, units, self.name)
 
 
+def positive(name: str, value: object, unit: str = "") -> float:
+    """Return a positive number of a test, from 1e-30 to 1e12, or refuse it."""
+    return arguments.number(name, value, unit, "[]", MIN_SIZE, MAX_SIZE)
+
+
+def not_negative(name: str, value: object, unit: str = "") -> float:
+    """Return a number of a test that is 0 or positive, or refuse it."""
+    given = arguments.number(name, value, unit, "[]", 0.0, MAX_SIZE)
+    return given if given == 0.0 else positive(name, given, unit)
+
+
+def signed(name: str, value: object, unit: str = "") -> float:
+    """Return a number of a test of either sign, up to 1e12, or refuse it."""
+    return arguments.number(name, value, unit, "[]", -MAX_SIZE, MAX_SIZE)
+
+
 def _series(name: str, values: Sequence[float] | Array, n: int) -> Array:
     array = arguments.numbers(name, values).copy()
     if array.shape != (n,):
@@ -127,5 +148,8 @@ def _series(name: str, values: Sequence[float] | Array, n: int) -> Array:
     if not np.all(np.isfinite(array)):
         row = int(np.flatnonzero(~np.isfinite(array))[0])
         raise ValueError(f"{name}[{row}] = {array[row]} must be finite")
+    size = float(np.abs(array).max())
+    if size and not MIN_SIZE <= size <= MAX_SIZE:
+        raise ValueError(f"{name}: the largest is {size:g} in SI units; it must be 0 or lie in [{MIN_SIZE:g}, {MAX_SIZE:g}]")
     array.flags.writeable = False
     return array

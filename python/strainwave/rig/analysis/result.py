@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import hypot, inf, isnan, nan
 
 CONFIDENCE = 0.95
@@ -61,16 +61,6 @@ def inverse(found: Result, unit: str) -> Result:
     value = 1.0 / found.value
     high = 1.0 / found.low if found.low > 0.0 else (found.low if isnan(found.low) else inf)
     return Result(value, unit, found.random * value**2, found.shared * value**2, 1.0 / found.high, high)
-
-
-def in_unit(found: Result, factor: float, unit: str) -> Result:
-    """The same in another unit, a positive factor smaller.
-
-    >>> in_unit(result(0.5, "rad"), 60.0, "x").value
-    30.0
-    """
-    parts = {name: factor * getattr(found, name) for name in ("value", "random", "shared", "low", "high")}
-    return replace(found, unit=unit, **parts)
 
 
 def student(freedom: float, confidence: float = CONFIDENCE) -> float:

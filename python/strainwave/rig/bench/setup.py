@@ -9,10 +9,11 @@ from typing import Literal, get_args
 
 from strainwave import arguments
 from strainwave.files.entries import NOT_GIVEN, check_line
-from strainwave.rig.loop import COLUMNS, Side
+from strainwave.rig.loop import COLUMNS, Side, not_negative, positive, signed
 
 STANDARD_GRAVITY = 9.80665  # m/s2: CGPM 1901
 Cord = Literal["wound", "fixed point"]
+MAX_PIECES = 10_000  # masses of one size
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class Value:
     source: str = NOT_GIVEN
 
     def __post_init__(self) -> None:
-        arguments.number("value", self.value)
-        arguments.number("sigma", self.sigma, brackets="[)", low=0.0)
+        signed("value", self.value)
+        not_negative("sigma", self.sigma)
         check_line("source", self.source)
 
 
@@ -58,9 +59,9 @@ class Masses:
     source: str = NOT_GIVEN
 
     def __post_init__(self) -> None:
-        arguments.number("mass", self.mass, "kg", low=0.0)
-        arguments.whole("count", self.count, low=1)
-        arguments.number("sigma", self.sigma, "kg", brackets="[)", low=0.0)
+        positive("mass", self.mass, "kg")
+        arguments.whole("count", self.count, low=1, high=MAX_PIECES)
+        not_negative("sigma", self.sigma, "kg")
         check_line("source", self.source)
 
 
@@ -90,14 +91,14 @@ class Camera:
     sources: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        arguments.number("aspect", self.aspect, low=0.0)
+        positive("aspect", self.aspect)
         arguments.number("tilt", self.tilt, "rad", low=-0.5 * math.pi, high=0.5 * math.pi)
-        arguments.number("tilt_direction", self.tilt_direction, "rad")
+        signed("tilt_direction", self.tilt_direction, "rad")
         if self.distance is not None:
-            arguments.number("distance", self.distance, "px", low=0.0)
+            positive("distance", self.distance, "px")
         for name, values in (("centre", self.centre or ()), ("radial", self.radial)):
             for index, each in enumerate(values):
-                arguments.number(f"{name}[{index}]", each)
+                signed(f"{name}[{index}]", each)
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ class Rig:
         arguments.text("note", self.note)
         for name, unit in (("disk_radius", "m"), ("gravity", "m/s2"), ("markers_diameter", "m"), ("markers_distance", "m")):
             if (number := getattr(self, name)) is not None:
-                arguments.number(name, number.value, unit, low=0.0)
+                positive(name, number.value, unit)
         for name, unit in (("pulley_torque", "N.m"), ("compliance", "rad/(N.m)")):
-            arguments.number(name, getattr(self, name).value, unit, brackets="[)", low=0.0)
+            not_negative(name, getattr(self, name).value, unit)
         arguments.number("pulley_share", self.pulley_share.value, brackets="[)", low=0.0, high=1.0)

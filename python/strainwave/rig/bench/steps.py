@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from strainwave import arguments
 from strainwave.messages import shortened
+from strainwave.rig.loop import not_negative, positive, signed
+
+MAX_NAME = 200  # characters of a name of a photograph or a specimen
 
 
 @dataclass(frozen=True)
@@ -31,7 +34,7 @@ class Step:
     0.3
     >>> Step(3, mass_positive=-0.3)
     Traceback (most recent call last):
-    ValueError: mass_positive = -0.3 kg must lie in [0, inf)
+    ValueError: mass_positive = -0.3 kg must lie in [0, 1e+12]
     """
 
     number: int
@@ -48,18 +51,19 @@ class Step:
     def __post_init__(self) -> None:
         arguments.whole("number", self.number, low=1)
         for name in ("mass_positive", "mass_negative"):
-            arguments.number(name, getattr(self, name), "kg", brackets="[)", low=0.0)
-        arguments.number("position", self.position, "rad")
+            not_negative(name, getattr(self, name), "kg")
+        signed("position", self.position, "rad")
         _check_name("unit", self.unit)
         if self.image is not None:
             _check_name("image", self.image)
         for name, unit in (("angle", "rad"), ("torque", "N.m"), ("time", "s")):
             if (value := getattr(self, name)) is not None:
-                arguments.number(name, value, unit)
+                signed(name, value, unit)
         if self.temperature is not None:
-            arguments.number("temperature", self.temperature, "K", low=0.0)
+            positive("temperature", self.temperature, "K")
 
 
 def _check_name(name: str, text: str) -> None:
-    if text != arguments.text(name, text).strip() or not text.isprintable():
-        raise ValueError(f"{name} = {shortened(text)} must be one line of text without spaces around it")
+    if text != arguments.text(name, text).strip() or not text.isprintable() or len(text) > MAX_NAME:
+        limits = f"of at most {MAX_NAME} characters"
+        raise ValueError(f"{name} = {shortened(text)} must be one line of text without spaces around it, {limits}")

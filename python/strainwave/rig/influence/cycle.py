@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
-from strainwave.rig.loop import COLUMNS, Side
+from strainwave.rig.loop import COLUMNS, Side, positive
 
 Array = NDArray[np.float64]
 
@@ -146,7 +146,7 @@ def cycle(gear: Gear, amplitude: float, *, side: Side = "output", factors: Facto
     0.5
     """
     _check(gear, side)
-    return _cycle(gear, arguments.number("amplitude", amplitude, "N.m", "()", 0.0), side, factors, POINTS)
+    return _cycle(gear, positive("amplitude", amplitude, "N.m"), side, factors, POINTS)
 
 
 def _cycle(gear: Gear, amplitude: float, side: Side, factors: Factors, points: int) -> Cycle:
@@ -196,7 +196,7 @@ def cycle_to(gear: Gear, peak: float, *, side: Side = "output", factors: Factors
     from scipy.optimize import brentq
 
     _check(gear, side)
-    peak = arguments.number("peak", peak, "N.m", "()", 0.0)
+    peak = positive("peak", peak, "N.m")
     if side == "output":
         return _cycle(gear, peak, side, factors, POINTS)
     most = peak * abs(float(gear.kinematics.ratio))

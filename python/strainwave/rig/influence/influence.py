@@ -11,14 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, catalogue
 from strainwave.rig.influence.cycle import Cycle, Factors, cycle_to
 from strainwave.rig.influence.series import Series, analyse_series
 from strainwave.rig.influence.trend import Slope, Trend, regress
-from strainwave.rig.loop import Side
+from strainwave.rig.loop import Side, positive
 from strainwave.rig.virtual.printed import PEAK, printed_gear
 
 Array = NDArray[np.float64]
@@ -191,7 +190,7 @@ def influence(
     (87.0, True)
     """
     gear = gear_set.gear
-    torque = arguments.number("torque", _rated(gear_set) if torque is None else torque, "N.m", "()", 0.0)
+    torque = positive("torque", _rated(gear_set) if torque is None else torque, "N.m")
     peak, rates, held = torque / abs(float(gear.kinematics.ratio)), rates_of(gear), held_at_rest(gear)
     _check_turns(torque, peak, held)
     trends = tuple(analyse_series(series)) if series is not None else ()

@@ -12,14 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.files.folder import inside
+from strainwave.files.gear_file import at
 from strainwave.files.recording import Recording
 from strainwave.files.text_table import open_csv
 from strainwave.files.units import convert
 from strainwave.messages import listed, quoted
+from strainwave.number_texts import NUMBER, number_in
 from strainwave.rig.analysis.analysis import analyse
 from strainwave.rig.analysis.regimes import RegimeName
 from strainwave.rig.influence.trend import Design, Law, Trend, trends
-from strainwave.rig.loop import Loop
+from strainwave.rig.loop import MAX_SIZE, MIN_SIZE, Loop
 from strainwave.rig.reading.recorded import read_loop
 
 Array = NDArray[np.float64]
@@ -53,7 +56,6 @@ QUANTITIES = {
     "friction": ("friction", ""),
 }
 TEXTS = ("file", "unit")
-AGES = ("cycles", "hours")
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +128,9 @@ def _column(name: str, values: Sequence[float] | Array, n: int) -> Array:
         raise ValueError(f"{name} has shape {column.shape}; all columns of the series must be of shape ({n},)")
     if not np.all(np.isfinite(column)):
         raise ValueError(f"{name} must be finite in every row")
+    size = float(np.abs(column).max(initial=0.0))
+    if size and not MIN_SIZE <= size <= MAX_SIZE:
+        raise ValueError(f"{name}: the largest is {size:g}; it must be 0 or lie in [{MIN_SIZE:g}, {MAX_SIZE:g}]")
     if name in FACTORS and FACTORS[name].law == "power" and not np.all(column > 0.0):
         row = int(np.argmin(column))
         raise ValueError(f"{name} in row {row + 1} is {column[row]:g} {FACTORS[name].unit}; it must be positive")
@@ -152,8 +157,8 @@ def read_series(path: str | Path) -> Series:
     """Reads a table of a series: a row for each loop.
 
     Columns are those of `FACTORS`, which were varied, and of `QUANTITIES`, which were measured, each with its unit in brackets
-    as `torque_max [N.m]`; `unit` names the specimen. With a column `file`, which names a file with the points of the loop
-    relative to the table, area, width and stiffnesses are taken from it. Columns with other names are refused, but for `note`.
+    as `torque_max [N.m]`; `unit` names the specimen. With a column `file`, which names a file with the points of the loop in
+    the folder of the table, area, width and stiffnesses are taken from it. Other columns are refused, but for `note`.
 
     Raises:
         ValueError: a file cannot be read, a column or a number in it is wrong, or a unit is none of its quantity
@@ -177,10 +182,16 @@ def read_series(path: str | Path) -> Series:
     texts = {name: [cells[names.index(name)] for _, cells in table.texts()] for name in TEXTS if name in names}
     factors = {name: _values(numbers, name, FACTORS[name].unit) for name in numeric if name in FACTORS}
     quantities = {name: _values(numbers, name, QUANTITIES[name][1]) for name in numeric if name in QUANTITIES}
-    files = [Path(path).parent / each for each in texts.get("file", [])]
+    files = [_named(Path(path), each) for each in texts.get("file", [])]
     measured = figures_of([read_loop(each) for each in files]) if files else {}
     quantities = {**{name: np.array(values) for name, values in measured.items()}, **quantities}
     return Series(factors, quantities, texts.get("unit", ()), Path(path).name, (Path(path), *files))
+
+
+def _named(table: Path, name: str) -> Path:
+    """The path of a loop that a table names, which lies in the folder of the table."""
+    with at(f"{table}:"):
+        return inside(table.parent, name)
 
 
 def series_of(loops: Sequence[str]) -> Series:
@@ -205,10 +216,10 @@ def _with_condition(text: str) -> tuple[Path, dict[str, float]]:
     path, *said = [each.strip() for each in text.split(",")]
     condition = {}
     for each in said:
-        found = re.fullmatch(r"(\w+)\s*=\s*([-+.\deE]*\d\.?)\s*(\D.*)?", each)
+        found = re.fullmatch(rf"(\w+)\s*=\s*({NUMBER})\s*(\D.*)?", each)
         if found is None or found[1] not in FACTORS:
             raise ValueError(f"{quoted(each)} of the loop {path} must be name=number, with one of {listed(FACTORS)}")
-        value, unit = float(found[2]), FACTORS[found[1]].unit
+        value, unit = number_in(found[2]), FACTORS[found[1]].unit
         condition[found[1]] = convert(value, found[3], unit) if found[3] and unit else value
     return Path(path), condition
 

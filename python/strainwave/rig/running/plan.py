@@ -23,6 +23,7 @@ from strainwave.rig.bench.steps import Step
 Pans = Literal["equal", "unequal"]
 SIDES = ("positive", "negative")
 STAGES = ("peak", "positive unloading", "negative loading", "negative unloading", "positive loading")
+MAX_STEPS = 100_000  # of a plan: a month at 25 seconds a step
 _NEXT = 1e-6  # of the smallest mass: two totals nearer than this are the same
 Laid = tuple[Counter[float], Counter[float]]  # how many of each mass lie on the two pans of a pair
 
@@ -117,9 +118,13 @@ def plan(
         raise ValueError(f"{rig.name} has no masses; write [[masses]] with mass and count in its file")
     quantum = _quantum(rig, pans)
     unit = quantum * _torque_of_mass(rig)
-    top = max(1, round(peak / unit))
+    most = sum(masses.mass * masses.count for masses in rig.masses)
+    top = max(1, round(min(peak / unit, 2.0 * most / quantum)))
     _check_reach(rig, pans, peak, top * quantum)
-    stride = 1 if step is None else max(1, round(arguments.number("step", step, "N.m", low=0.0) / unit))
+    stride = 1 if step is None else max(1, round(min(arguments.number("step", step, "N.m", low=0.0) / unit, top)))
+    count = 4 * (top // stride + 1) * cycles * len(positions) * len(units)
+    if count > MAX_STEPS:
+        raise ValueError(f"peak = {peak:g} N.m: the plan has some {count} steps, and at most {MAX_STEPS}; take larger or fewer")
     with at(f"peak = {peak:g} N.m:"):
         stacks = _stacks(rig, pans, quantum, top, stride)
     up = [*stacks]

@@ -49,9 +49,12 @@ def test_a_step_whose_torque_was_measured_needs_no_masses(tmp_path: Path) -> Non
     [
         ("number,", "", "steps.csv has no column number, which counts the steps"),
         ("250", "", 'steps.csv line 2 column "mass_positive": is empty; write 0 where nothing lies on the pans'),
-        ("250", "-250", "steps.csv line 2 mass_positive = -0.25 kg must lie in [0, inf)"),
+        ("250", "-250", "steps.csv line 2 mass_positive = -0.25 kg must lie in [0, 1e+12]"),
         ("250", "nan", 'steps.csv line 2 column "mass_positive": "nan" is no number; write digits with a decimal point'),
         ("250", "inf", 'steps.csv line 2 column "mass_positive": "inf" is no number'),
+        ("250", "1e300", "steps.csv line 2 mass_positive = 1e+297 kg must lie in [0, 1e+12]"),
+        ("250", "1e-320", "steps.csv line 2 mass_positive = "),
+        ("21.5", "1e300", "steps.csv line 2 temperature = 1e+300 K must lie in [1e-30, 1e+12]"),
         ("250", "much", 'steps.csv line 2 column "mass_positive": "much" is no number'),
         ("250", "1e999", 'steps.csv line 2 column "mass_positive": "1e999" is too large a number'),
         ("250", "1_0", 'steps.csv line 2 column "mass_positive": "1_0" is no number'),
@@ -93,10 +96,9 @@ def test_a_record_without_what_is_needed_is_refused(tmp_path: Path, text: str, m
 
 
 numbers = st.floats(-1e6, 1e6)
+masses = st.just(0.0) | st.floats(1e-30, 5.0)
 names = st.none() | st.from_regex(r"[a-z][a-z ,\"]{0,8}\.png", fullmatch=True)
-bodies = st.tuples(
-    st.floats(0.0, 5.0), st.floats(0.0, 5.0), names, *[st.none() | numbers] * 3, st.none() | st.floats(200.0, 400.0)
-)
+bodies = st.tuples(masses, masses, names, *[st.none() | numbers] * 3, st.none() | st.floats(200.0, 400.0))
 records = st.lists(st.tuples(bodies, numbers, st.sampled_from(["", "A", "unit 2"])), min_size=1, max_size=8)
 
 
@@ -168,7 +170,9 @@ def test_no_steps_are_no_record(tmp_path: Path) -> None:
         write_steps([], tmp_path)
 
 
-@pytest.mark.parametrize("members", [{"image": " 1.png"}, {"image": "1\n.png"}, {"unit": "A "}])
+@pytest.mark.parametrize(
+    "members", [{"image": " 1.png"}, {"image": "1\n.png"}, {"unit": "A "}, {"unit": "a\nb"}, {"unit": 201 * "a"}]
+)
 def test_a_name_that_no_record_can_hold_is_refused(members: dict[str, str]) -> None:
     with pytest.raises(ValueError, match="must be one line of text without spaces around it"):
         Step(1, mass_positive=0.1, **members)  # type: ignore[arg-type]

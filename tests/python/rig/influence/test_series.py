@@ -89,6 +89,12 @@ def test_document_t_rows_are_read_from_a_loop_at_the_input(tmp_path: Path) -> No
         ("torque_max [N.m],area [J]\n1,2\n0,2\n", "torque_max in row 2 is 0 N.m; it must be positive"),
         ("torque_max [s],area [J]\n1,2\n", 'cannot convert "s" to "N.m"'),
         ("torque_max [N.m],file\n1,none.csv\n", "none.csv"),
+        ("torque_max [N.m],file\n1,../a.csv\n", '"../a.csv" does not lie in the folder'),
+        ("torque_max [N.m],file\n1,/dev/zero\n", '"/dev/zero" does not lie in the folder'),
+        (
+            "torque_max [N.m],area [J]\n1,2\n1e300,2\n",
+            "torque_max: the largest is 1e+300; it must be 0 or lie in [1e-30, 1e+12]",
+        ),
     ],
 )
 def test_a_table_that_makes_no_sense_is_refused(tmp_path: Path, text: str, message: str) -> None:
@@ -103,6 +109,8 @@ def test_a_table_that_makes_no_sense_is_refused(tmp_path: Path, text: str, messa
     [
         ("torque=2", '"torque=2" of the loop .*a.csv must be name=number, with one of torque_max'),
         ("torque_max=much", "must be name=number"),
+        ("torque_max=\u0663", "must be name=number"),
+        ("torque_max=1e999", "is too large a number"),
         ("temperature=20 N.m", 'cannot convert "N.m" to "K"'),
     ],
 )
