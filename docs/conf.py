@@ -16,7 +16,7 @@ version = release = metadata.version("strainwave")
 
 extensions = ["myst_parser"]
 myst_enable_extensions = ["dollarmath"]
-myst_heading_anchors = 3
+myst_heading_anchors = 4
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["formulas.css", "layout.css", "tables.css"]
