@@ -35,6 +35,7 @@ from strainwave.rig.influence.influence import OWN, SPECIMEN, CatalogueRow, Infl
 Array = NDArray[np.float64]
 
 FAR_BELOW = 0.5  # ratio of stiffnesses: "remains low relative to", where document T speaks of an order of magnitude
+ONE_VALUE = 80  # ratio from which on the catalogue states one stiffness of a size for all ratios
 ARCMIN = 180.0 * 60.0 / np.pi
 
 
@@ -163,7 +164,7 @@ def _torque_high(found: Influence) -> tuple[str, str]:
     return verdict, (
         f"From {percent(study.USUAL)} of {nm(found.torque)} on, the unloading slope goes from {stiff(high[0])} to "
         f"{stiff(high[-1])}, its power of the torque falling from {number(float(local.max()), 2)} to "
-        f"{number(float(local[-1]), 2)}, while in the smallest loop, where nothing slips, it is "
+        f"{number(float(local[-1]), 2)}, while in the smallest loop, of {nm(sweep.levels[0])}, it is "
         f"{stiff(sweep['high_stiffness'][0])}, and document T’s row, one torque, tells one slope only ({stiff(law)})."
     )
 
@@ -186,29 +187,16 @@ def _torque_area(found: Influence) -> tuple[str, str]:
     if sweep["area"].max() == 0.0:
         return UNDECIDABLE, f"{_LOSSLESS} up to {nm(found.torque)}; loops of it at three torques would decide."
     slope = sweep.exponent("area", study.USUAL * found.torque)
-    still, other = _greatest_still(sweep), _greatest_still(tested)
-    begin = f"nothing is lost up to {nm(still)}, then " if still > 0.0 else ""
+    still, other = found.lossless[OWN], found.lossless[SPECIMEN]
+    begin = f"Nothing is lost up to {quantity(still, 'N.m', 4)}; the" if still > 0.0 else "The"
     return CONFIRMED if _rises(usual(sweep, "area")) else CONTRADICTED, (
-        f"Over the torque {begin}the area grows with a power of up to {number(float(_steepest(sweep)), 3)}, and of "
-        f"{number(slope.value, 3)} ± {number(slope.half_width, 2)} from {percent(study.USUAL)} of {nm(found.torque)} on; "
-        f"document T’s gear loses nothing up to {nm(other)} and no more than {quantity(float(tested['area'].max()), 'J', 4)} "
-        "once its soft range is used up."
+        f"{begin} area grows with the power {number(slope.value, 3)} ± {number(slope.half_width, 2)} of the torque from "
+        f"{percent(study.USUAL)} of {nm(found.torque)} on; document T’s gear loses nothing up to {quantity(other, 'N.m', 4)} "
+        f"and no more than {quantity(float(tested['area'].max()), 'J', 4)} once its soft range is used up."
     )
 
 
 _LOSSLESS = "The gear’s model loses 0 J at every torque"
-
-
-def _steepest(sweep: Sweep) -> float:
-    """The largest power between neighbouring levels."""
-    local = sweep.local_exponents("area")
-    return float(np.nanmax(local)) if np.any(np.isfinite(local)) else float("nan")
-
-
-def _greatest_still(sweep: Sweep) -> float:
-    """The largest level at which nothing is lost; 0 if there is none."""
-    still = sweep.levels[sweep["area"] == 0.0]
-    return float(still.max()) if len(still) else 0.0
 
 
 # ---- Ratio and size --------------------------------------------------------------------------------------------------
@@ -221,8 +209,12 @@ def by_size(rows: tuple[CatalogueRow, ...]) -> dict[int, list[CatalogueRow]]:
 
 
 def steps_and_falls(rows: tuple[CatalogueRow, ...]) -> tuple[int, int]:
-    """Steps to the next ratio of a size, for K1, K2 and K3, and how many of them fall by more than rounding."""
-    steps = [pair for each in by_size(rows).values() for pair in pairwise(each)]
+    """Comparisons of K1, K2 and K3 at the next ratio of a size, and how many of them fall by more than rounding.
+
+    From `ONE_VALUE` on the catalogue has one value for all ratios, which is not compared with itself.
+    """
+    stated = [[row for row in each if row.ratio <= ONE_VALUE] for each in by_size(rows).values()]
+    steps = [pair for each in stated for pair in pairwise(each)]
     falls = [getattr(after, k) < 0.999 * getattr(before, k) for before, after in steps for k in ("k1", "k2", "k3")]
     return len(falls), sum(falls)
 
@@ -233,7 +225,8 @@ def _ratio_high(found: Influence) -> tuple[str, str]:
     seen = power(np.array([float(r.ratio) for r in sized]), np.array([r.k1 / r.ratio**2 for r in sized]))
     first, last = sized[0], sized[-1]
     return CONTRADICTED if falls == 0 else IN_PART, (
-        f"Of one size the catalogue’s stiffness at the output falls in {falls} of {steps} steps to a higher ratio (E-T10; "
+        f"Of one size the catalogue’s stiffness at the output falls in {falls} of {steps} comparisons of ratios 30, 50 and "
+        f"{ONE_VALUE}, from which on it states one value for all ratios (E-T10; "
         f"size 25, ratio {first.ratio} to {last.ratio}: K₁ {stiff(first.k1)} to {stiff(last.k1)}); what falls is K/i² at the "
         f"input, with the power {number(seen.value, 3)} ± {number(seen.half_width, 2)} of the ratio."
     )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, catalogue
-from strainwave.rig.influence.cycle import Cycle, Factors, cycle_to
+from strainwave.rig.influence.cycle import Cycle, Factors, cycle, cycle_to
 from strainwave.rig.influence.series import Series, analyse_series
 from strainwave.rig.influence.trend import Slope, Trend, regress
 from strainwave.rig.loop import Side, positive
@@ -26,6 +26,8 @@ Progress = Callable[[str], None]
 SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)  # of the largest torque
 USUAL = 0.2  # share from which document T's sweep of amplitudes is taken to begin
 DRAWN = (0.2, 0.4, 0.6, 0.8, 1.0)  # shares whose loops are drawn
+HALVINGS = 50  # of the interval in which a threshold of the torque lies: then it is as narrow as rounding
+MIN_LOSSLESS = 1e-3  # of the largest torque: below, a loss that grows with the torque is not told from rounding
 NOTHING = 1e-9  # of the largest torque times the largest angle: a smaller area is that of rounding
 PRELOADS = (0.5, 0.7, 0.85, 1.0, 1.15, 1.3, 1.5, 2.0)  # of the friction at the input
 SAFELY = 1.5  # times its friction, which the input must turn at for the table's numbers
@@ -135,6 +137,7 @@ class Influence(ComparedByFields):
         gear_set: the gear
         torque: largest torque at the output [N.m]
         amplitude: loops over the torque at the output, and those of document T's gear at the input
+        lossless: the torque up to which a loop loses nothing, of both gears [N.m]
         drawn: the loops that are drawn of both
         rows: what the catalogue states
         material: loops over the modulus, all springs made of it
@@ -150,6 +153,7 @@ class Influence(ComparedByFields):
     gear_set: GearSet
     torque: float
     amplitude: Mapping[str, Sweep]
+    lossless: Mapping[str, float]
     drawn: Mapping[str, tuple[Cycle, ...]] = field(repr=False)
     rows: tuple[CatalogueRow, ...] = field(repr=False)
     material: Sweep
@@ -186,8 +190,8 @@ def influence(
             `cycle` and `analyse_series`
 
     >>> found = influence(GearSet.read("csg-25-100"))
-    >>> found.torque, bool(found.amplitude["gear"]["area"][-1] > 0.0)
-    (87.0, True)
+    >>> found.torque, round(found.lossless["gear"], 3)
+    (87.0, 2.104)
     """
     gear = gear_set.gear
     torque = positive("torque", _rated(gear_set) if torque is None else torque, "N.m")
@@ -206,6 +210,7 @@ def influence(
         gear_set,
         torque,
         amplitude,
+        {OWN: lossless_torque(gear, torque), SPECIMEN: _lossless_of_document_t()},
         drawn,
         rows,
         _over(MODULI, lambda e: cycle_to(gear, torque, factors=Factors(e, 1.0, 1.0))),
@@ -225,6 +230,44 @@ def _document_t() -> tuple[Sweep, tuple[Cycle, ...]]:
     tested = printed_gear(0)
     loops = tuple(cycle_to(tested, share * PEAK, side="input") for share in DRAWN)
     return over_torque(tested, PEAK, "input"), loops
+
+
+@cache
+def _lossless_of_document_t() -> float:
+    """The torque at the input up to which a loop of document T's gear loses nothing [N.m]; it has no friction there."""
+    tested = printed_gear(0)
+    ratio = abs(float(tested.kinematics.ratio))
+    return lossless_torque(tested, PEAK * ratio) / ratio
+
+
+def lossless_torque(gear: Gear, torque: float) -> float:
+    """Return the largest torque at the output up to which a loop loses nothing [N.m], by bisection.
+
+    Args:
+        gear: the gear, without stages
+        torque: the largest torque that is looked at [N.m]
+
+    Returns:
+        `torque` if no loop up to it loses anything, 0 if all but loops of less than a thousandth of it do.
+
+    >>> import strainwave as sw
+    >>> slips = sw.hysteresis.MaxwellSlip(stiffness=[5e3], breakaway=[2.0])
+    >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4), hysteresis=slips)
+    >>> round(lossless_torque(gear, 100.0), 6)  # 2 N.m (1e4 + 5e3) / 5e3
+    6.0
+    """
+
+    def loses(amplitude: float) -> bool:
+        loop = cycle(gear, amplitude)
+        return loop.area > NOTHING * loop.peak * float(np.ptp(loop.angle))
+
+    low, high = 0.0, torque
+    if not loses(high):
+        return torque
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if loses(middle) else (middle, high)
+    return low if low > MIN_LOSSLESS * torque else 0.0
 
 
 def over_torque(gear: Gear, torque: float, side: Side = "output") -> Sweep:

@@ -21,6 +21,7 @@ from strainwave.rig.influence.influence import (
     compliance_shares,
     held_at_rest,
     influence,
+    lossless_torque,
     over_torque,
     rates_of,
 )
@@ -66,8 +67,8 @@ def test_the_catalogue_is_that_of_the_printed_table() -> None:
 
 
 def test_no_higher_ratio_is_softer_at_the_output() -> None:
-    """By the printed tables of ratio 30, 50 and above 50: of 47 gears of 9 sizes, 3 x 38 steps."""
-    assert claims.steps_and_falls(tuple(catalogue_rows())) == (3 * (47 - 9), 0)
+    """By the printed tables of ratio 30, 50 and above 50: 5 sizes have all three, 4 have two; none is compared with itself."""
+    assert claims.steps_and_falls(tuple(catalogue_rows())) == (3 * (5 * 2 + 4), 0)
 
 
 def test_shares_of_the_staged_gear_are_those_of_its_static_compliance() -> None:
@@ -100,13 +101,34 @@ def test_steel_and_a_joint_stand_in_where_the_gear_knows_nothing(found: Influenc
 
 
 def test_document_t_gear_loses_nothing_in_small_loops_and_no_more_beyond_its_stops(found: Influence) -> None:
-    """The rising branch gives way where T0 + H w/2 is reached; beyond the stops the area is that of row 0 degrees."""
+    """The branches give way once the soft twists at both ends, (T - T0)/H, add up to w; the area ends at that of row 0."""
     sweep = found.amplitude[SPECIMEN]
-    hardening = 4.51 * 0.30 / (4.51 - 0.30)
-    onset = 0.03 + hardening * 0.8813912722571364 / 2.0
-    assert (sweep["area"][sweep.levels < 0.98 * onset] == 0.0).all()
+    rising, falling = (stiff * soft / (stiff - soft) for stiff, soft in ((4.51, 0.30), (4.85, 0.31)))
+    onset = 0.03 + 0.8813912722571364 / (1.0 / rising + 1.0 / falling)
+    assert ((sweep["area"] == 0.0) == (sweep.levels < onset)).all()
+    assert found.lossless[SPECIMEN] == pytest.approx(onset, rel=1e-6)
     assert sweep["area"][-1] == pytest.approx(0.3063483432, rel=1e-5)
     assert sweep["area"][-2] == pytest.approx(0.3063483432, rel=1e-4)
+
+
+def test_the_torque_without_loss_is_where_the_first_element_slips(found: Influence) -> None:
+    """All three elements of csg-25-100 hold 0.64724 N.m; the stiffest slips first, with K1 and the others beside it."""
+    gear = found.gear_set.gear
+    elements, first = gear.hysteresis.stiffness, gear.hysteresis.breakaway[0]
+    onset = (gear.stiffness.k1 + sum(elements)) * first / max(elements)
+    assert found.lossless[OWN] == pytest.approx(onset, rel=1e-6)
+    assert onset == pytest.approx(2.1036, abs=1e-4)
+    answer = next(
+        each.answer for each in claims.entries(found) if (each.parameter, each.regime) == (claims.TORQUE, claims.HYSTERESIS)
+    )
+    assert answer.startswith("Nothing is lost up to 2.104 N·m; the area grows with the power 0.86")
+    assert "document T’s gear loses nothing up to 0.1738 N·m" in answer
+
+
+def test_a_gear_that_never_loses_or_always_has_the_ends_as_its_threshold() -> None:
+    assert lossless_torque(linear().gear, 50.0) == 50.0
+    smooth = sw.hysteresis.BoucWen(stiffness=5e3, saturation=2.0)
+    assert lossless_torque(linear(hysteresis=smooth).gear, 50.0) == 0.0
 
 
 def test_friction_at_the_input_acts_under_a_given_torque_as_a_spring_with_friction_does() -> None:
