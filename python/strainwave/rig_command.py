@@ -236,6 +236,7 @@ def watch(
     """Follow a folder while a test is being run, and draw its loop as it grows; Ctrl-C ends."""
     from rich.console import Console
 
+    from strainwave.files.folder import inside
     from strainwave.report.rig_live import Point, live
     from strainwave.rig.bench.steps_file import read_steps
     from strainwave.rig.reading.measurement import PLAN
@@ -244,7 +245,8 @@ def watch(
     if not folder.is_dir():
         raise FileNotFoundError(f"{folder}: there is no such folder")
     bench = _rig_of_test(folder, name)
-    planned = folder / PLAN if plan is None and (folder / PLAN).exists() else plan
+    kept = inside(folder, PLAN)
+    planned = kept if plan is None and kept.exists() else plan
     watched = Watch(folder, bench, read_steps(planned) if planned is not None else ())
 
     def look() -> list[Point]:
@@ -340,7 +342,9 @@ def _rig(name: str) -> Rig:
 
 def _rig_of_test(folder: Path, name: str | None) -> Rig:
     """The rig that was named, or that of the folder, or the one of document T."""
-    there = folder / "rig.toml"
+    from strainwave.files.folder import inside
+
+    there = inside(folder, "rig.toml")
     if name is None and there.exists():
         return _rig(str(there))
     return _rig("couple-rig" if name is None else name)
@@ -392,13 +396,15 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Sour
 
 def _keep_plan(made: Plan, out: Path) -> None:
     """Writes the plan beside the test, or refuses another one than a test that was broken off has."""
+    from strainwave.files.folder import inside
     from strainwave.rig.bench.steps_file import read_steps, write_steps
     from strainwave.rig.reading.measurement import PLAN
 
-    if not (out / PLAN).exists():
-        write_steps(made.steps, out / PLAN)
-    elif tuple(read_steps(out / PLAN)) != made.steps:
-        raise ValueError(f"{out / PLAN} holds another plan; repeat the options that it was begun with, or give another --out")
+    kept = inside(out, PLAN)
+    if not kept.exists():
+        write_steps(made.steps, kept)
+    elif tuple(read_steps(kept)) != made.steps:
+        raise ValueError(f"{kept} holds another plan; repeat the options that it was begun with, or give another --out")
 
 
 def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source, settling: Settling) -> int:

@@ -132,7 +132,7 @@ def append_step(step: Step, path: str | Path) -> None:
 
 
 def _file(path: str | Path) -> Path:
-    return Path(path, FILE) if Path(path).is_dir() else Path(path)
+    return inside(Path(path), FILE) if Path(path).is_dir() else Path(path)
 
 
 def photograph_of(step: Step, folder: Path) -> Path:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.files.folder import inside
 from strainwave.messages import listed, one_line, quoted
 from strainwave.rig.analysis.regimes import cycles
 from strainwave.rig.bench.rig_file import load
@@ -95,7 +96,7 @@ def read_test(
             test, or no step has torque and angle
     """
     folder = Path(folder)
-    rig = load(folder / RIG) if rig is None else rig
+    rig = load(inside(folder, RIG)) if rig is None else rig
     rig = rig if camera is None else replace(rig, camera=camera)
     steps = read_steps(folder)
     _check_masses(folder, steps, rig)
@@ -136,7 +137,7 @@ def _check_masses(folder: Path, steps: Sequence[Step], rig: Rig) -> None:
 
 
 def _deviations(folder: Path, steps: Sequence[Step]) -> tuple[str, ...] | None:
-    plan = folder / PLAN
+    plan = inside(folder, PLAN)
     return tuple(map(str, check(steps, read_steps(plan)))) if plan.exists() else None
 
 

@@ -341,6 +341,19 @@ def test_a_photograph_outside_of_the_folder_is_refused(tmp_path: Path, image: st
         read_test(test)
 
 
+@pytest.mark.parametrize("name", ["rig.toml", "steps.csv", "plan.csv"])
+def test_a_record_outside_of_the_folder_is_refused(tmp_path: Path, name: str) -> None:
+    test = tmp_path / "test"
+    test.mkdir()
+    write_steps(of_spring(MASSES), test)
+    write_steps(of_spring(MASSES), test / "plan.csv")
+    write_rig(RIG, test / "rig.toml")
+    (test / name).rename(tmp_path / name)
+    (test / name).symlink_to(f"../{name}")
+    with pytest.raises(ValueError, match=re.escape(f'"{name}" does not lie in the folder {test}; copy it there')):
+        read_test(test)
+
+
 def test_a_photograph_that_is_no_file_is_told(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "a.png")
     write_steps([*of_spring(MASSES), Step(30, image="a.png")], tmp_path)
