@@ -84,7 +84,7 @@ def find_markers(
         camera: what it does to lengths
 
     Raises:
-        ValueError: a radius out of order; a camera that cannot have taken this picture
+        ValueError: a radius out of order; a camera that cannot have taken this picture; more than 1000 spots of this size
 
     >>> from strainwave.rig.virtual.render import Scene, render
     >>> scene = Scene(size=(320, 240), radius=20.0, distance=150.0, blur=1.0)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from strainwave.rig.vision.frame import look
 from strainwave.rig.vision.image import as_image
 from strainwave.rig.vision.marker import Marker, find_markers
 
@@ -150,3 +151,10 @@ def test_nothing_is_found_where_nothing_is() -> None:
 def test_radii_out_of_order_are_refused(radius: tuple[float, float], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         found(picture([], shape=SMALL), radius=radius)
+
+
+def test_a_picture_of_a_thousand_discs_is_refused_before_their_edges_are_sought() -> None:
+    rows, columns = np.mgrid[:20, :20]
+    disc = np.where(np.hypot(rows - 10, columns - 10) < 7.0, 30, 220).astype(np.uint8)
+    frame = look(as_image("many", np.tile(disc, (35, 35))))
+    assert "spots may be markers, and 1000 can be looked at; say which by radius=(least, most) in px" in frame.fault
