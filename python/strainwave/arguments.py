@@ -13,6 +13,7 @@ from strainwave import Drive, _core
 from strainwave.messages import listed, quoted, shortened
 
 MIN_RATIO, MAX_RATIO = 0.1, 1e4  # size of the ratio of a gear
+MIN_PROBABILITY = 1e-12  # of an error: no measurement shows less
 
 
 def number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
@@ -55,6 +56,11 @@ def sized(name: str, value: object, unit: str = "", low: float = 0.0, high: floa
 def ratio(name: str, value: object) -> float:
     """The ratio of a gear, signed."""
     return sized(name, value, low=MIN_RATIO, high=MAX_RATIO)
+
+
+def probability(name: str, value: object) -> float:
+    """The largest probability of an error that is allowed."""
+    return number(name, value, brackets="[)", low=MIN_PROBABILITY, high=1.0)
 
 
 def seconds(name: str, value: object) -> float:

@@ -215,6 +215,13 @@ def test_steps_that_no_clock_could_tell_apart_are_refused() -> None:
                 call()
 
 
+def test_a_number_of_either_sign_has_a_size_in_its_range() -> None:
+    assert (arguments.ratio("ratio", -100), arguments.ratio("ratio", 0.1)) == (-100.0, 0.1)
+    for wrong in (0.0, -0.05, 1e300, np.inf, np.nan):
+        with pytest.raises(ValueError, match=rf"^ratio = {re.escape(str(wrong))} must lie in \[-?[0-9.]+, 10000\]"):
+            arguments.ratio("ratio", wrong)
+
+
 def test_a_whole_number_beyond_all_others_is_refused_by_its_name() -> None:
     with pytest.raises(ValueError, match=r"^dt = 1000.* is too large a number$"):
         sw.simulate(sw.Drive(), sw.scenario.constant(0.0, 0.1), 10**400)

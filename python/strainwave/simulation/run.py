@@ -388,7 +388,7 @@ def differentiate(
     temperature = excitation.first()[TEMPERATURE]
     beginning_numbers(drive, None, initial, excitation.first())  # refuses what is no beginning
     instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
-    excitation.check_laid_out(dt)
+    excitation.check_laid_out(dt if isinstance(samples, np.ndarray) else min(dt, samples))
     time_grid = excitation.time_grid(dt, samples, instants)
     check_resolution(drive, time_grid.longest, 0.0, temperature)
     inputs = excitation.over(time_grid)

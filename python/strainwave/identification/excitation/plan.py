@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 KINDS = ("friction", "torsion", "motion")
 DURATIONS = {"friction": 20.0, "torsion": 300.0}  # s: to settle and be averaged; of a slow loop (assumed)
 IN_A_LOOP = ("stiffness", "hysteresis", "friction_input")  # what a torsion loop may depend on
+MAX_MEASUREMENTS = 5000  # of a plan: beyond, comparing them takes minutes
+MAX_SPEED, MAX_TORQUE = 1e6, 1e9  # rad/s at the input and N.m at the output: no gear reaches them
 SLOWEST = 1e-3  # of the largest speed: the lowest that is held steady, if it is not given
 SAMPLE = 2e-3  # s, of the samples of a run
 POOR = 0.1  # relative: what is known less well is named
@@ -164,7 +166,8 @@ def plan_experiments(
 
     Raises:
         TypeError: an argument is not of its kind
-        ValueError: an unknown path or kind of experiment, no limit where one is needed, motion without drive or commands
+        ValueError: an unknown path or kind of experiment, no limit where one is needed, time for too many measurements,
+            motion without drive or commands
 
     >>> import strainwave as sw
     >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
@@ -193,6 +196,11 @@ def plan_experiments(
     reach = np.isfinite(np.diag(covariance_of(everything)))  # what cannot be told at all must not stop the rest
     places = [place for place, each in enumerate(unknowns) if each.path in asked and reach[place]]
     cost = np.array([each.duration for each in found])
+    if budget > MAX_MEASUREMENTS * cost.min():
+        raise ValueError(
+            f"time = {budget:g} s is enough for more than {MAX_MEASUREMENTS} measurements of {cost.min():g} s; give less time, "
+            "or longer durations"
+        )
     taken = best(information, cost, budget, before, places, criterion) if places else []
     after = before + information[taken].sum(axis=0)
     expectations = _expectations(unknowns, scale, before, after, everything, asked, kinds)
@@ -245,8 +253,8 @@ def _noise(noise: Mapping[str, float], whole: Any) -> dict[str, float]:
 def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: float | None, torque: float | None) -> Limits:
     """The limits that are given, or those of the ratings where they are smaller."""
     ratings = model.ratings if isinstance(model, GearSet) else {}
-    speeds = [] if speed is None else [arguments.number("speed_limit", speed, "rad/s", low=0.0)]
-    torques = [] if torque is None else [arguments.number("torque_limit", torque, "N.m", low=0.0)]
+    speeds = [] if speed is None else [arguments.number("speed_limit", speed, "rad/s", "(]", 0.0, MAX_SPEED)]
+    torques = [] if torque is None else [arguments.number("torque_limit", torque, "N.m", "(]", 0.0, MAX_TORQUE)]
     steady = ("maximum_input_speed", "average_input_speed")  # a table runs at each speed for long
     speeds += [ratings[name].to("rad/s").value for name in steady if name in ratings]
     strong = ("peak_torque", "momentary_torque", "ratcheting_torque", "buckling_torque")

@@ -18,6 +18,7 @@ from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
 BLOCK = 4.0  # correlation lengths that a block is long (assumed; bias of the variance falls with it, its scatter grows)
+MAX_DRAWS = 100_000
 LEAST = 20  # draws of which an interval can be told
 
 
@@ -87,7 +88,7 @@ def bootstrap(
     >>> bool(abs(drawn.sigma[0] / found.estimates[0].sigma - 1.0) < 0.3)
     True
     """
-    draws = arguments.whole("draws", draws, LEAST)
+    draws = arguments.whole("draws", draws, LEAST, MAX_DRAWS)
     random = np.random.default_rng(arguments.whole("seed", seed, 0))
     problem, best = solved_problem(found)
     loss = LOSSES[found.loss]

@@ -18,6 +18,7 @@ from strainwave.messages import listed
 Array = NDArray[np.float64]
 ELSEWHERE = 2.0  # largest factor between where a fit ended and where another starts
 STARTS = 8
+MAX_STARTS = 10_000
 TRIALS = 15  # steps of a fit that starts elsewhere
 AS_GOOD = 9.0  # rise of the cost: what lies three standard deviations off, were the model linear
 APART = 5.0  # standard deviations: with a rise that small, no linear model has it
@@ -104,7 +105,7 @@ def minima(found: Fit, starts: int = STARTS, *, seed: int = 0) -> Minima:
     >>> print(minima(found, 3))
     4 of 4 starts ended at friction_input.coulomb = 0.019979 N.m, friction_input.viscous = 0.00030112 N.m.s/rad
     """
-    starts, random = arguments.whole("starts", starts, 1), np.random.default_rng(arguments.whole("seed", seed, 0))
+    starts, random = arguments.whole("starts", starts, 1, MAX_STARTS), np.random.default_rng(arguments.whole("seed", seed, 0))
     problem, given = solved_problem(found)
     loss, unknowns = LOSSES[found.loss], found.plan.unknowns
     weights = problem.weights(given, problem.first_weights(), loss)

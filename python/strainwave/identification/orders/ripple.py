@@ -167,7 +167,7 @@ def ripple(
     check_recording("recording", recording)
     arguments.text("column", column)
     arguments.one_of("side", side, ("input", "output"))
-    false_alarm = arguments.number("false_alarm", false_alarm, low=0.0, high=1.0)
+    false_alarm = arguments.probability("false_alarm", false_alarm)
     size = None if ratio is None else abs(arguments.ratio("ratio", ratio))
     record, told = _moved(recording, column, angle, rate)
     lowest, top = _range(told, side, size, highest)

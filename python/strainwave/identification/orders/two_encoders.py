@@ -152,7 +152,7 @@ def transmission_error(
     wanted = np.unique(arguments.numbers("orders", orders))
     if wanted.ndim != 1 or not wanted.size or not (wanted > 0.0).all():
         raise ValueError("orders must be one series of positive numbers")
-    false_alarm = arguments.number("false_alarm", false_alarm, low=0.0, high=1.0)
+    false_alarm = arguments.probability("false_alarm", false_alarm)
     load = next((name for name in ("torque", "current") if name in recording), None)
     pair = _pair(recording, load, rate)
     told = ratio_of(pair, ratio)

@@ -57,5 +57,7 @@ def test_what_makes_no_sense_is_refused() -> None:
     found = sw.fit(START, table(1e-3 * np.random.default_rng(0).normal(size=800)), FREE)
     with pytest.raises(ValueError, match=r"^draws = 3 must be 20 or more$"):
         bootstrap(found, 3)
+    with pytest.raises(ValueError, match=r"^draws = 1000000000 must be 100000 or less$"):
+        bootstrap(found, 10**9)
     with pytest.raises(ValueError, match=r'^there is no estimate of "damping"; there are friction_input.coulomb'):
         bootstrap(found, 20).interval("damping")

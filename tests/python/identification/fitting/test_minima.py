@@ -110,5 +110,7 @@ def test_what_makes_no_sense_is_refused() -> None:
     found = of_table(LAW, 1e-3)
     with pytest.raises(ValueError, match="starts"):
         minima(found, 0)
+    with pytest.raises(ValueError, match=r"^starts = 1000000000 must be 10000 or less$"):
+        minima(found, 10**9)
     with pytest.raises(TypeError, match="must be a Fit"):
         minima(3)  # type: ignore[arg-type]

@@ -141,6 +141,13 @@ def test_what_cannot_show_orders_is_refused_with_the_reason() -> None:
     columns = joint("to and fro")
     with pytest.raises(ValueError, match="torque does not change"):
         found({**columns, "torque": np.ones(len(columns["time"]))})
+    for options, message in (
+        ({"highest": 1e300}, r"^highest = 1e\+300 must lie in \(.*, 100000\]$"),
+        ({"ratio": 0.0}, r"^ratio = 0\.0 must lie in \[0\.1, 10000\] or "),
+        ({"false_alarm": 5e-324}, r"^false_alarm = 5e-324 must lie in \[1e-12, 1\)$"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            found(columns, **options)
 
 
 def arm(seed: int, ratio: float, ripple: dict[float, float], jitter: float = 0.0) -> dict[str, Array]:
