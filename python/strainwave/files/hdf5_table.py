@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.array_table import ArrayTable
-from strainwave.files.budget import MIN_ALLOWED_BYTES, Budget, RefusedFile, budget_of
+from strainwave.files.budget import Budget, RefusedFile, budget_of
 from strainwave.files.labels import read_by_others
 from strainwave.files.variables import DEPTH, MANY, Unreadable, object_of_matlab, table_of
 from strainwave.messages import one_line, quoted
@@ -44,7 +44,7 @@ def hdf5_variables(path: Path, kind: str, budget: Budget) -> Iterator[tuple[str,
     except ImportError:
         raise ImportError(f"{path.name}: HDF5, as of MAT 7.3, is read by h5py: pip install strainwave[formats]") from None
     with read_by_others(path, kind), h5py.File(path, "r") as opened:
-        found = _Walk(opened, budget).content(opened, DEPTH + 1)
+        found = _Walk(opened, budget).root()
     yield from found.items()
 
 
@@ -56,6 +56,13 @@ class _Walk:
         self.budget = budget
         self.known: dict[tuple[int, int], Any] = {}  # by address in the file and depth
         self.begun: set[int] = set()  # addresses of what contains the node that is read
+
+    def root(self) -> dict[str, Any]:
+        """Return what the file contains, by names."""
+        import h5py
+
+        self.begun.add(h5py.h5o.get_info(self.opened.id).addr)
+        return self._members(self.opened, DEPTH + 1)
 
     def content(self, node: Any, depth: int) -> Any:
         """Return the content of a group or dataset, nothing beyond the depth."""
@@ -73,15 +80,20 @@ class _Walk:
         return self.known[address, depth]
 
     def _group(self, group: Any, depth: int) -> Any:
+        """Return what a group contains: a list of structures if each name in it stands for as many values."""
+        found = self._members(group, depth)
+        lists = [each for each in found.values() if isinstance(each, list)]
+        if found and len(lists) == len(found) and len({len(each) for each in lists}) == 1:
+            return [dict(zip(found, each, strict=True)) for each in zip(*lists, strict=True)]
+        return found
+
+    def _members(self, group: Any, depth: int) -> dict[str, Any]:
         """Return what a group contains, by names; what begins with # is MATLAB's own."""
         found = {}
         for name in group if depth else ():
             if not name.startswith("#"):
                 node = self._followed(group, name, MAX_SOFT_LINKS)
                 found[name] = MISSING if node is None else self.content(node, depth - 1)
-        lists = [each for each in found.values() if isinstance(each, list)]
-        if found and len(lists) == len(found) and len({len(each) for each in lists}) == 1:  # an array of structures
-            return [dict(zip(found, each, strict=True)) for each in zip(*lists, strict=True)]
         return found
 
     def _followed(self, group: Any, name: str, links: int) -> Any:
@@ -129,7 +141,7 @@ class _Walk:
         if node.chunks is not None:
             size = prod(node.chunks) * node.dtype.itemsize
             self.budget.take_bytes(size, f"a chunk of {what}")
-            _check_packing(node, size)
+            _check_packing(node, size, self.budget.allowed_bytes - self.budget.expanded_bytes)
         return node[()]
 
 
@@ -157,8 +169,8 @@ def _check_storage(node: Any) -> None:
         raise RefusedFile(f"{node.name} has its values in another file, {quoted(name)}; copy them here")
 
 
-def _check_packing(node: Any, chunk_bytes: int) -> None:
-    """Refuse a chunk that would unpack to more than it claims: HDF5 itself goes on without a bound."""
+def _check_packing(node: Any, chunk_bytes: int, left: int) -> None:
+    """Refuse a chunk that unpacks to more than it claims, if that may be more than is `left` [bytes]; HDF5 has no bound."""
     import h5py
 
     creation = node.id.get_create_plist()
@@ -168,9 +180,7 @@ def _check_packing(node: Any, chunk_bytes: int) -> None:
     if h5py.h5z.FILTER_DEFLATE not in filters:
         return
     large: list[tuple[int, ...]] = []
-    node.id.chunk_iter(
-        lambda chunk: large.append(chunk.chunk_offset) if chunk.size > MIN_ALLOWED_BYTES // MAX_DEFLATE else None
-    )
+    node.id.chunk_iter(lambda chunk: large.append(chunk.chunk_offset) if chunk.size * MAX_DEFLATE > left else None)
     for place in large:
         _, packed = node.id.read_direct_chunk(place)
         with suppress(zlib.error):  # which HDF5 reports

@@ -6,6 +6,7 @@ import json
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -148,4 +149,4 @@ def _numbers(value: Any, name: str) -> Any:
 def _types(values: list[Any]) -> set[type]:
     """The types of values in a list, and in the lists in it."""
     found = set(map(type, values))
-    return found.union(*(map(type, each) for each in values if isinstance(each, list))) if list in found else found
+    return found | set(map(type, chain.from_iterable(each for each in values if isinstance(each, list))))

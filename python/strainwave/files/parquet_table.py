@@ -99,7 +99,7 @@ def read_columns(path: Path, names: Sequence[str] | None = None) -> pyarrow.Tabl
 
     with read_by_others(path, "Parquet"), open_regular(path) as file:
         budget = budget_of(path)
-        with ParquetFile(file, page_checksum_verification=True) as opened:
+        with ParquetFile(path, page_checksum_verification=True) as opened:
             check_columns(file, opened.metadata, names, budget)
             return opened.read(columns=names, use_threads=False)  # threads: apache/arrow#34314
 

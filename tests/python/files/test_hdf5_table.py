@@ -83,9 +83,13 @@ def test_groups_and_references_that_contain_themselves(path: Path) -> None:
     assert {each.partition(" ")[0] for each in open_hdf5(path).left_out} == {"g.again", "g.up", "r"}
 
 
-def test_references_that_multiply(path: Path) -> None:
+@pytest.mark.parametrize("is_alone", [False, True])
+def test_references_that_multiply(path: Path, is_alone: bool) -> None:
     with h5py.File(path, "a") as file:
-        target = file["t"]
+        file["#t"] = TIME
+        if is_alone:
+            del file["t"]
+        target = file["#t"]
         for level in range(6):
             cells = file.create_dataset(f"#r{level}", (100,), h5py.ref_dtype)
             cells[:] = np.array([target.ref] * 100, h5py.ref_dtype)
@@ -122,7 +126,7 @@ def test_what_is_no_series_is_not_read(path: Path) -> None:
 def test_a_chunk_that_unpacks_to_more_than_it_claims(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import zlib
 
-    monkeypatch.setattr("strainwave.files.hdf5_table.MIN_ALLOWED_BYTES", 2**20)
+    monkeypatch.setattr("strainwave.files.budget.MIN_ALLOWED_BYTES", 2**20)
     with h5py.File(path, "a") as file:
         made = file.create_dataset("q", (20,), "f8", chunks=(20,), compression="gzip")
         made.id.write_direct_chunk((0,), zlib.compress(bytes(2**21)))
