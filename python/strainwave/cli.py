@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -17,7 +16,7 @@ import typer
 from strainwave.file_options import number_option
 from strainwave.identify_command import identify
 from strainwave.messages import listed, one_line, pairs, quoted, unquoted, with_options
-from strainwave.number_texts import number_in
+from strainwave.number_texts import is_whole, number_in
 from strainwave.orders_command import orders
 from strainwave.plan_command import plan_experiments
 from strainwave.rank_command import rank
@@ -312,7 +311,7 @@ def _change(given: str) -> tuple[str, float | str]:
     path, equals, value = given.partition("=")
     if not (path and equals and value):
         raise ValueError(f"--set {given}: write it as --set load.inertia=0.6")
-    if re.fullmatch("[+-]?[0-9]{1,18}", value):
+    if is_whole(value):
         return path, int(value)
     try:
         float(value)  # nan and other digits than ASCII are no words of a model either

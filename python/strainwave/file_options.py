@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from strainwave.identification.reading.kind import KINDS
-from strainwave.number_texts import number_in
+from strainwave.messages import quoted
+from strainwave.number_texts import is_whole, number_in
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
@@ -43,6 +44,19 @@ def number_option(value: str | float) -> float:
         return number_in(value)
     except ValueError as error:
         raise typer.BadParameter(str(error)) from None
+
+
+def whole_option(value: str | int) -> int:
+    """Return the whole number of an option; one that is not given stands for itself.
+
+    Raises:
+        typer.BadParameter: it is no whole number
+    """
+    if isinstance(value, int):
+        return value
+    if not is_whole(value):
+        raise typer.BadParameter(f"{quoted(value)} is no whole number; write digits, at most 18")
+    return int(value)
 
 
 def said_of(

@@ -19,6 +19,11 @@ def is_number(text: str) -> bool:
     return re.fullmatch(NUMBER, text) is not None
 
 
+def is_whole(text: str) -> bool:
+    """True if a text is a whole number of at most 18 digits and nothing else."""
+    return re.fullmatch("[+-]?[0-9]{1,18}", text) is not None
+
+
 def number_in(text: str) -> float:
     """Return the number that a text contains.
 

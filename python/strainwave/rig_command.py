@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from strainwave.file_options import number_option, whole_option
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -28,13 +30,18 @@ MAX_SECONDS = 1e6  # of any time that is waited
 MAX_PICTURES = 1000  # that must agree
 
 RigOption = Annotated[str, typer.Option("--rig", help="The rig: a name that comes with the package, or a .toml file.")]
-PeakOption = Annotated[float, typer.Option("--torque", help="Peak torque in N.m; the nearest that the masses make is taken.")]
+PeakOption = Annotated[
+    float, typer.Option("--torque", parser=number_option, help="Peak torque in N.m; the nearest that the masses make is taken.")
+]
 StepOption = Annotated[
-    float | None, typer.Option("--step", help="Step of the torque in N.m; the smallest that the masses make, if not given.")
+    float | None,
+    typer.Option(
+        "--step", parser=number_option, help="Step of the torque in N.m; the smallest that the masses make, if not given."
+    ),
 ]
 PositionsOption = Annotated[str, typer.Option(help="Positions of the flexspline in its mount in degrees, as 0,60,120.")]
 UnitsOption = Annotated[str, typer.Option(help="Names of the specimens, as A,B; one without a name, if not given.")]
-CyclesOption = Annotated[int, typer.Option(help="Cycles at each position, one after the other.")]
+CyclesOption = Annotated[int, typer.Option(parser=whole_option, help="Cycles at each position, one after the other.")]
 UnequalOption = Annotated[
     bool, typer.Option("--unequal", help="Let both pans of a pair differ by one mass: half the step, but no pure couple.")
 ]
@@ -80,7 +87,7 @@ def simulate(
     units: UnitsOption = "",
     cycles: CyclesOption = 1,
     unequal: UnequalOption = False,
-    seed: Annotated[int, typer.Option(help="Of the noise of the photographs.")] = 0,
+    seed: Annotated[int, typer.Option(parser=whole_option, help="Of the noise of the photographs.")] = 0,
 ) -> None:
     """Make a virtual test: photographs, masses and rig as a real test leaves them, and the truth beside them."""
     import sys
@@ -120,9 +127,13 @@ def measure(
     cycles: CyclesOption = 1,
     unequal: UnequalOption = False,
     gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = DOCUMENT_T,
-    pictures: Annotated[int, typer.Option(help="Photographs in a row that must agree before a step counts as at rest.")] = 5,
-    interval: Annotated[float, typer.Option(help="Time between two photographs in s.")] = 0.5,
-    patience: Annotated[float, typer.Option(help="Time in s after which a shaft that still moves is told.")] = 60.0,
+    pictures: Annotated[
+        int, typer.Option(parser=whole_option, help="Photographs in a row that must agree before a step counts as at rest.")
+    ] = 5,
+    interval: Annotated[float, typer.Option(parser=number_option, help="Time between two photographs in s.")] = 0.5,
+    patience: Annotated[
+        float, typer.Option(parser=number_option, help="Time in s after which a shaft that still moves is told.")
+    ] = 60.0,
 ) -> None:
     """Guide a test step by step, and write each step down as soon as it is done.
 
@@ -159,7 +170,8 @@ def analyse(
     ] = None,
     gear: Annotated[str | None, typer.Option(help="The gear on the rig: a set by name, or a gear file.")] = None,
     rated_torque: Annotated[
-        float | None, typer.Option(help="Rated torque at the loaded shaft in N.m, instead of that of the gear.")
+        float | None,
+        typer.Option(parser=number_option, help="Rated torque at the loaded shaft in N.m, instead of that of the gear."),
     ] = None,
     reference: Annotated[
         str | None, typer.Option(help="Photograph whose angle is 0; the first at the positive peak, if not given.")
@@ -230,8 +242,10 @@ def watch(
         Path | None,
         typer.Option(help="Steps that are to be made, .csv, where steps.csv lacks them; plan.csv of the folder, if not given."),
     ] = None,
-    idle: Annotated[float, typer.Option(help="End when no photograph came for so many s; never, if not given.")] = inf,
-    interval: Annotated[float, typer.Option(help="Time between two looks in s.")] = 0.5,
+    idle: Annotated[
+        float, typer.Option(parser=number_option, help="End when no photograph came for so many s; never, if not given.")
+    ] = inf,
+    interval: Annotated[float, typer.Option(parser=number_option, help="Time between two looks in s.")] = 0.5,
 ) -> None:
     """Follow a folder while a test is being run, and draw its loop as it grows; Ctrl-C ends."""
     from rich.console import Console
@@ -263,7 +277,10 @@ def watch(
 def influence(
     gear: Annotated[str, typer.Argument(help="A set by name, or a gear file.")] = "csg-25-100",
     torque: Annotated[
-        float | None, typer.Option(help="Largest torque at the output in N.m; the rated torque of the set, if not given.")
+        float | None,
+        typer.Option(
+            parser=number_option, help="Largest torque at the output in N.m; the rated torque of the set, if not given."
+        ),
     ] = None,
     measured: Annotated[
         Path | None,
