@@ -54,6 +54,10 @@ class TwoPartTime:
     def contents(self) -> Sequence[Content]:
         return ["other" if place == self.part else content for place, content in enumerate(self.table.contents)]
 
+    @property
+    def left_out(self) -> Sequence[str]:
+        return self.table.left_out
+
     def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
         """The columns wanted, all of them numbers."""
         return self._added(self.table.numbers(self._with_part(sources)), sources)
