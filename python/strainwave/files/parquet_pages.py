@@ -1,44 +1,48 @@
-"""What the columns of a Parquet file expand to, by the headers of their pages.
+"""What the columns of a Parquet file expand to, by its footer and the headers of their pages.
 
-Arrow allocates what these headers claim, and unpacks a page to it, before it compares anything.
+Arrow allocates what these headers claim, and unpacks a page to it, before it compares anything. The footer is not asked for by
+Arrow either: an error in it ends the process.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 from strainwave.files.budget import MAX_DEPTH, Budget, RefusedFile
 
-if TYPE_CHECKING:
-    import pyarrow.parquet
-
+END = 8  # bytes at the end of the file: length of the footer, and PAR1
 MAX_HEADER = 2**16  # bytes of the header of a page, statistics included
-UNPACKED, PACKED, DICTIONARY = 2, 3, 7  # fields of a page header; field 1 of the last is the number of its values
+GROUPS = 4  # field of the footer: the row groups
+COLUMNS, ROWS = 1, 3  # of a row group
+OTHER_FILE, COLUMN = 1, 3  # of a column in it
+PATH, SIZE, PAGE, DICTIONARY_PAGE = 3, 7, 9, 11  # of its description: name by name, bytes, and where its pages begin
+UNPACKED, PACKED, DICTIONARY = 2, 3, 7  # of the header of a page; field 1 of the last is the number of its values
 STOP, TRUE, FALSE, BYTE, DOUBLE, TEXT, LIST, SET, MAP, STRUCTURE = 0, 1, 2, 3, 7, 8, 9, 10, 11, 12  # types of Thrift
 
 
-def check_columns(
-    file: BinaryIO, metadata: pyarrow.parquet.FileMetaData, names: Collection[str] | None, budget: Budget
-) -> None:
+def check_columns(file: BinaryIO, names: Collection[str] | None, budget: Budget) -> None:
     """Take from the budget what columns expand to: those of these names and what is nested in them, or all.
 
     Raises:
         RefusedFile: they expand to more than the budget allows, or a page claims what cannot be
         Exception: the file is damaged; any kind
     """
-    budget.take_bytes(metadata.serialized_size, "its footer")
-    paths = [metadata.schema.column(place).path for place in range(metadata.num_columns)]
-    chosen = [place for place, path in enumerate(paths) if names is None or path in names or path.partition(".")[0] in names]
-    for number in range(metadata.num_row_groups):
-        group = metadata.row_group(number)
-        if group.num_rows < 0:
-            raise RefusedFile(f"claims {group.num_rows} rows in a row group; it is damaged")
-        for place in chosen:
-            budget.take_bytes(8 * group.num_rows, f"column {paths[place]}")
-            column = group.column(place)
-            begin = min(offset for offset in (column.dictionary_page_offset, column.data_page_offset) if offset)
-            _check_pages(file, begin, begin + column.total_compressed_size, f"column {paths[place]}", budget)
+    file.seek(-END, 2)
+    length = int.from_bytes(file.read(4), "little")
+    file.seek(-END - length, 2)
+    for group in _Reader(file.read(length)).structure()[GROUPS]:
+        for chunk in group[COLUMNS]:
+            if OTHER_FILE in chunk:
+                raise RefusedFile("has a column in another file")
+            column = chunk[COLUMN]
+            path = b".".join(column[PATH]).decode()
+            if names is None or path in names or path.partition(".")[0] in names:
+                if min(group[ROWS], column[SIZE]) < 0:
+                    raise RefusedFile(f"claims {group[ROWS]} rows in {column[SIZE]} bytes; it is damaged")
+                budget.take_bytes(8 * group[ROWS], f"column {path}")
+                begin = min(column[PAGE], column.get(DICTIONARY_PAGE) or column[PAGE])
+                _check_pages(file, begin, begin + column[SIZE], f"column {path}", budget)
 
 
 def _check_pages(file: BinaryIO, place: int, end: int, what: str, budget: Budget) -> None:
@@ -64,8 +68,6 @@ class _Reader:
 
     def structure(self, depth: int = 0) -> dict[int, Any]:
         """Return the fields of a structure by their numbers."""
-        if depth > MAX_DEPTH:
-            raise RefusedFile(f"nests structures more than {MAX_DEPTH} deep")
         found: dict[int, Any] = {}
         number = 0
         while (head := self._byte()) != STOP:
@@ -74,6 +76,8 @@ class _Reader:
         return found
 
     def _value(self, kind: int, depth: int) -> Any:
+        if depth > MAX_DEPTH:
+            raise RefusedFile(f"nests structures more than {MAX_DEPTH} deep")
         if kind in (TRUE, FALSE):
             return kind == TRUE
         if kind == BYTE:
@@ -84,11 +88,15 @@ class _Reader:
         if kind == TEXT:
             length = self._unsigned()
             self.place += length
-            return None
+            return self.data[self.place - length : self.place]
         if kind == STRUCTURE:
             return self.structure(depth + 1)
-        if kind in (LIST, SET, MAP):
-            raise RefusedFile("a page has a list in its header, which Parquet does not define; it is damaged")
+        if kind in (LIST, SET):
+            head = self._byte()
+            count = head >> 4 if head >> 4 < 15 else self._unsigned()
+            return [self._value(BYTE if head & 15 in (TRUE, FALSE) else head & 15, depth + 1) for _ in range(count)]
+        if kind == MAP:
+            raise RefusedFile("has a map in its footer, which Parquet does not define; it is damaged")
         return self._integer()
 
     def _byte(self) -> int:

@@ -47,6 +47,7 @@ class ParquetTable:
     labels: Sequence[Label]
     path: Path
     schema: pyarrow.Schema
+    left_out: Sequence[str] = ()
 
     @property
     def contents(self) -> list[Content]:
@@ -98,9 +99,8 @@ def read_columns(path: Path, names: Sequence[str] | None = None) -> pyarrow.Tabl
     from pyarrow.parquet import ParquetFile
 
     with read_by_others(path, "Parquet"), open_regular(path) as file:
-        budget = budget_of(path)
+        check_columns(file, names, budget_of(path))
         with ParquetFile(path, page_checksum_verification=True) as opened:
-            check_columns(file, opened.metadata, names, budget)
             return opened.read(columns=names, use_threads=False)  # threads: apache/arrow#34314
 
 

@@ -41,6 +41,10 @@ class OpenTable(Protocol):
     def labels(self) -> Sequence[Label]: ...
 
     @property
+    def left_out(self) -> Sequence[str]:
+        """What of the file is not among the columns, and why."""
+
+    @property
     def contents(self) -> Sequence[Content]:
         """What each column holds, as its beginning tells."""
 
@@ -122,7 +126,10 @@ def open_table(path: str | Path) -> OpenTable:
 
 def read_table(opened: OpenTable, columns: Mapping[str, str] | None, units: Mapping[str, str] | None) -> Table:
     """The columns wanted of a file; all if none are named."""
-    sources = sources_of(opened.file, opened.labels, columns, units)
+    try:
+        sources = sources_of(opened.file, opened.labels, columns, units)
+    except ValueError as error:
+        raise ValueError(one_line("; ".join([str(error), *opened.left_out]))) from None
     numbers = opened.numbers(sources)
     stated = {source.name: source.unit for source in sources}
     return Table(numbers, stated, {source.name: source.label for source in sources}, opened.title, opened.place)

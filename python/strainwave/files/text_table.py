@@ -147,6 +147,7 @@ class CsvTable:
     body: memoryview
     line: int
     above: int = 0
+    left_out: Sequence[str] = ()
 
     def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
         """The columns wanted; a cell that is no number is refused with its place."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from strainwave import Recording
 from strainwave.files.array_table import GridTable
 from strainwave.files.labels import Source
 from strainwave.files.mdf_table import open_mdf
@@ -130,6 +131,10 @@ def test_a_formula_is_never_evaluated_and_its_channel_is_named(tmp_path: Path, v
     assert values["q"].tolist() == RAW.tolist()
     (remark,) = remarks
     assert remark.startswith('tau is left out: its conversion is a formula, "f')
+    with pytest.raises(
+        ValueError, match=r'has no column "tau"; it has time, q; tau is left out: its conversion is a formula'
+    ):
+        Recording.read(tmp_path / name, {"torque": "tau"})
     assert not (tmp_path / "made").exists()
 
 
