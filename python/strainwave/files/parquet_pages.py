@@ -41,7 +41,7 @@ def check_columns(file: BinaryIO, names: Collection[str] | None, budget: Budget)
                 if min(group[ROWS], column[SIZE]) < 0:
                     raise RefusedFile(f"claims {group[ROWS]} rows in {column[SIZE]} bytes; it is damaged")
                 budget.take_bytes(8 * group[ROWS], f"column {path}")
-                begin = min(column[PAGE], column.get(DICTIONARY_PAGE) or column[PAGE])
+                begin = min((column[page] for page in (PAGE, DICTIONARY_PAGE) if column.get(page)), default=0)
                 _check_pages(file, begin, begin + column[SIZE], f"column {path}", budget)
 
 
