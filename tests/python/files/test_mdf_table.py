@@ -15,6 +15,8 @@ from strainwave.files.array_table import GridTable
 from strainwave.files.labels import Source
 from strainwave.files.mdf_table import open_mdf
 from strainwave.files.tables import open_table
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import recognise
 
 asammdf = pytest.importorskip("asammdf")
 
@@ -136,6 +138,12 @@ def test_a_formula_is_never_evaluated_and_its_channel_is_named(tmp_path: Path, v
     ):
         Recording.read(tmp_path / name, {"torque": "tau"})
     assert not (tmp_path / "made").exists()
+
+
+def test_a_file_that_is_no_measurement_without_its_formula_names_the_channel(tmp_path: Path) -> None:
+    save(tmp_path / "a.mf4", "4.10", {"q": None, "tau": {"formula": "X1*2"}})
+    with pytest.raises(ValueError, match=r"a\.mf4: it holds time, q, .*; tau is left out: its conversion is a formula"):
+        recognise(tmp_path / "a.mf4", FileMapping(units={"q": "rad"}))
 
 
 def test_a_file_of_formulas_alone_is_refused_by_their_names(tmp_path: Path) -> None:

@@ -105,7 +105,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     try:
         found = kind_of([column for column in columns if column.own], said)
     except UndecidedError as undecided:
-        left = "".join(f"; {remark}" for remark in _of_unused(_unused(table, columns)))
+        left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns))))
         raise ValueError(one_line(f"{table.file}: {undecided}{left}")) from None
     remarks += found.remarks
     series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
