@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from strainwave.file_options import number_option, whole_option
+from strainwave.number_texts import number_in
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -243,8 +244,8 @@ def watch(
         typer.Option(help="Steps that are to be made, .csv, where steps.csv lacks them; plan.csv of the folder, if not given."),
     ] = None,
     idle: Annotated[
-        float, typer.Option(parser=number_option, help="End when no photograph came for so many s; never, if not given.")
-    ] = inf,
+        float | None, typer.Option(parser=number_option, help="End when no photograph came for so many s; never, if not given.")
+    ] = None,
     interval: Annotated[float, typer.Option(parser=number_option, help="Time between two looks in s.")] = 0.5,
 ) -> None:
     """Follow a folder while a test is being run, and draw its loop as it grows; Ctrl-C ends."""
@@ -266,9 +267,8 @@ def watch(
     def look() -> list[Point]:
         return [Point(each.name, each.torque, each.look, each.warnings) for each in watched.new()]
 
-    points = live(
-        Console(stderr=True), look, idle if idle == inf else _positive("--idle", idle), _positive("--interval", interval)
-    )
+    longest = inf if idle is None else _positive("--idle", idle)
+    points = live(Console(stderr=True), look, longest, _positive("--interval", interval))
     told = sum(not point.look.fault for point in points)
     print(f"{len(points)} photographs, {told} of them told an angle")
 
@@ -379,8 +379,6 @@ def _plan(bench: Rig, torque: float, step: float | None, positions: str, units: 
 
 
 def _numbers(option: str, text: str) -> list[float]:
-    from strainwave.number_texts import number_in
-
     try:
         return [number_in(each.strip()) for each in text.split(",")]
     except ValueError:

@@ -30,7 +30,7 @@ LONGEST = 2e-4  # s, of a step
 STIFFER = 0.7  # a twisted gear may be stiffer than one at rest: steps are shorter by this factor
 SAMPLE = 1e-3  # s, between rows at the most
 ROWS = 64  # of a turn of the input at the least: orders up to 10 are told apart
-MOST_TIME = 600.0  # s
+MIN_TIME, MAX_TIME = 1e-6, 600.0  # s, of the ramp
 MOST_TURNS = 1e4  # of the input
 KEPT = 0.9  # share of the ramp's speed that a drive which follows it has on average
 CHANNELS = ("torque", "current", "output_angle", "input_angle")
@@ -62,11 +62,11 @@ class ActuatorRamp:
         """Whose steps are as short as the drive asks for.
 
         Raises:
-            ValueError: the stroke or the time is not positive or too large, the ramp is less than three turns of the input, or
+            ValueError: the stroke or the time is too small or too large, the ramp is less than three turns of the input, or
                 the drive has no position loop that closes on both sides, or an output that is moved from outside
         """
         arguments.number("stroke", float(np.degrees(stroke)), "deg", low=0.0)
-        duration = arguments.number("time", duration, "s", "(]", low=0.0, high=MOST_TIME)
+        duration = arguments.number("time", duration, "s", "[]", low=MIN_TIME, high=MAX_TIME)
         if not hasattr(drive.load, "inertia"):
             raise ValueError(
                 f"the load {quoted(drive.load.name)} of the drive moves its output from outside; the study needs one that the "

@@ -224,6 +224,7 @@ def test_noise_is_found_and_taken_away(ramp: ActuatorRamp) -> None:
         ("tilt-actuator-lumped", 0.1, 5.0, "1.6 turns of the input; take 11.9 deg or more"),
         ("tilt-actuator-lumped", -0.1, 5.0, "stroke = -5.7"),
         ("tilt-actuator-lumped", 1.5, 0.0, "time = 0.0 s"),
+        ("tilt-actuator-lumped", 1.5, 1e-320, r"time = .* s must lie in \[1e-06, 600\]"),
     ],
 )
 def test_what_cannot_be_run_is_refused(name: str, stroke: float, time: float, message: str) -> None:
