@@ -25,11 +25,11 @@ UNITS = {
 RATINGS = (*(name for name in UNITS if name.endswith("_torque") and name.split("_")[0] in
              ("rated", "average", "peak", "momentary", "ratcheting", "buckling")),
            "maximum_input_speed", "average_input_speed", "lost_motion")  # fmt: skip
-RANGES = {  # of the figures of a strain wave gear, and far beyond, by their unit
+FIGURE_RANGES = {  # of the figures of a strain wave gear, and far beyond, by their unit
     "N.m/rad": (1e-6, 1e12), "N.m": (1e-9, 1e9), "rad": (1e-12, 1.0), "rad/s": (1e-9, 1e6), "1": (1e-3, 1e3),
     "kg.m2": (1e-15, 1e3),
 }  # fmt: skip
-SIZES = (1.0, 1000.0)  # as in the makers' names
+SIZE_RANGE = (1.0, 1000.0)  # as in the makers' names
 MAX_SPREAD = 10.0  # relative
 TABLE = "datasheet"
 
@@ -81,7 +81,8 @@ def from_datasheet(
 
     Raises:
         TypeError: a figure is no number, text or quantity; an unknown figure
-        ValueError: a figure has the wrong unit, lies outside of `RANGES`, or contradicts another so that no gear can have both
+        ValueError: a figure has the wrong unit, lies outside of `FIGURE_RANGES`, or contradicts another so that no gear can
+            have both
 
     >>> found = from_datasheet(-100, size=25, k1="31e3 N.m/rad", t1="14 N·m", hysteresis_loss="1 arcmin")
     >>> round(found.gear.stiffness.k1, 1), found.gear.kinematics.ratio
@@ -94,7 +95,7 @@ def from_datasheet(
         raise TypeError(f"{unquoted(unknown[0])} is no figure of a data sheet; there are {', '.join(UNITS)}")
     given = {each: quantity_of(each, figure, UNITS[each], source) for each, figure in figures.items() if figure is not None}
     for each, quantity in given.items():
-        arguments.number(each, quantity.to(UNITS[each]).value, UNITS[each], "[]", *RANGES[UNITS[each]])
+        arguments.number(each, quantity.to(UNITS[each]).value, UNITS[each], "[]", *FIGURE_RANGES[UNITS[each]])
     sheet = _Sheet.of(
         _kinematics(ratio, fixed),
         abs(float(ratio)),
@@ -152,7 +153,7 @@ class _Sheet:
         cls, moves: Any, nominal: float, given: Mapping[str, Quantity], size: float | None, spread: float, source: str
     ) -> _Sheet:
         if size is not None:
-            value = arguments.number("size", size, "", "[]", *SIZES)
+            value = arguments.number("size", size, "", "[]", *SIZE_RANGE)
             return cls(moves, nominal, given, value, f"size {value:g}", 0.0, spread, source)
         for names in typical.SIZED_BY:
             told = {name: given[name].to(UNITS[name]).value for name in names if name in given}

@@ -11,7 +11,7 @@ from strainwave.files.budget import MAX_DEPTH
 from strainwave.messages import one_line, quoted
 
 MAX_ENTRIES = 20_000  # files and folders below one folder
-LINK = "it is a symbolic link in a folder, which is not followed; name the file itself"
+LINK_NOT_FOLLOWED = "it is a symbolic link in a folder, which is not followed; name the file itself"
 
 
 class FolderFiles(NamedTuple):

@@ -28,7 +28,7 @@ class Unreadable(NamedTuple):
 
 
 def object_of_matlab(kind: str) -> Unreadable:
-    """What to do with an object of a class of MATLAB, as a table, a timetable, a timeseries or a Simulink data set."""
+    """Return the reason why an object of MATLAB is left out, as a table, a timetable, a timeseries or a Simulink data set."""
     save = "save its numbers instead, as with s = struct('t', x.Time, 'q', x.Data), or write a .csv with writetable"
     return Unreadable(f"an object of MATLAB ({kind}), which MATLAB alone reads: {save}")
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from strainwave import kinematics
 from strainwave.files.entries import Entry
-from strainwave.files.folder import LINK, FolderFiles, files_below
+from strainwave.files.folder import LINK_NOT_FOLLOWED, FolderFiles, files_below
 from strainwave.files.gear_set import GearSet
 from strainwave.files.tables import FORMATS
 from strainwave.identification import steady_runs
@@ -93,7 +93,7 @@ def identify(
     folders = [measurements_of(Path(path)) for path in files]
     each_read = {path: _recognised(path, mapping) for folder in folders for path in folder.files}
     for link in (link for folder in folders for link in folder.links):
-        each_read.setdefault(link, Finding(link.name, refused=LINK))
+        each_read.setdefault(link, Finding(link.name, refused=LINK_NOT_FOLLOWED))
     recognised = joined([each for each in each_read.values() if isinstance(each, Recognised)])
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, Finding)}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from strainwave.files.folder import LINK
+from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, check_arguments, identify, measurements_of
 from strainwave.identification.reading.mapping import FileMapping
@@ -54,7 +54,7 @@ def identify_joints(
     said = mapping or (lambda path: FileMapping())
     by_joint, left_out = dict[str, list[Path]](), dict[str, str]()
     folders = [measurements_of(Path(each)) for each in files]
-    left_out |= {link.name: LINK for folder in folders for link in folder.links}
+    left_out |= {link.name: LINK_NOT_FOLLOWED for folder in folders for link in folder.links}
     for path in (file for folder in folders for file in folder.files):
         try:
             joints = joints_of(path, replace(said(path), joint=None))

@@ -35,7 +35,7 @@ from strainwave.rig.influence.influence import OWN, SPECIMEN, CatalogueRow, Infl
 Array = NDArray[np.float64]
 
 FAR_BELOW = 0.5  # ratio of stiffnesses: "remains low relative to", where document T speaks of an order of magnitude
-ONE_VALUE = 80  # ratio from which on the catalogue states one stiffness of a size for all ratios
+FIRST_SHARED_RATIO = 80  # ratio from which on the catalogue states one stiffness of a size for all ratios
 ARCMIN = 180.0 * 60.0 / np.pi
 
 
@@ -211,9 +211,9 @@ def by_size(rows: tuple[CatalogueRow, ...]) -> dict[int, list[CatalogueRow]]:
 def steps_and_falls(rows: tuple[CatalogueRow, ...]) -> tuple[int, int]:
     """Comparisons of K1, K2 and K3 at the next ratio of a size, and how many of them fall by more than rounding.
 
-    From `ONE_VALUE` on the catalogue has one value for all ratios, which is not compared with itself.
+    From `FIRST_SHARED_RATIO` on the catalogue has one value for all ratios, which is not compared with itself.
     """
-    stated = [[row for row in each if row.ratio <= ONE_VALUE] for each in by_size(rows).values()]
+    stated = [[row for row in each if row.ratio <= FIRST_SHARED_RATIO] for each in by_size(rows).values()]
     steps = [pair for each in stated for pair in pairwise(each)]
     falls = [getattr(after, k) < 0.999 * getattr(before, k) for before, after in steps for k in ("k1", "k2", "k3")]
     return len(falls), sum(falls)
@@ -226,7 +226,7 @@ def _ratio_high(found: Influence) -> tuple[str, str]:
     first, last = sized[0], sized[-1]
     return CONTRADICTED if falls == 0 else IN_PART, (
         f"Of one size the catalogue’s stiffness at the output falls in {falls} of {steps} comparisons of ratios 30, 50 and "
-        f"{ONE_VALUE}, from which on it states one value for all ratios (E-T10; "
+        f"{FIRST_SHARED_RATIO}, from which on it states one value for all ratios (E-T10; "
         f"size 25, ratio {first.ratio} to {last.ratio}: K₁ {stiff(first.k1)} to {stiff(last.k1)}); what falls is K/i² at the "
         f"input, with the power {number(seen.value, 3)} ± {number(seen.half_width, 2)} of the ratio."
     )

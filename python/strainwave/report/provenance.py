@@ -13,7 +13,7 @@ from pathlib import Path
 
 from strainwave.files.budget import MAX_ALLOWED_BYTES, RefusedFile, open_regular
 
-BLOCK = 2**20  # bytes read at a time
+BLOCK_BYTES = 2**20  # bytes read at a time
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Provenance:
 
 
 def _digest(file: Path) -> str:
-    """Of a file, or of all that a folder contains, as a bag is one; empty if it is nothing that is read."""
+    """Return the SHA-256 of a file, or of the files of a folder, as a bag is one; empty for what no command reads."""
     parts = [file] if not file.is_dir() else sorted(each for each in file.iterdir() if each.is_file() and not each.is_symlink())
     digest = hashlib.sha256()
     for part in parts:
@@ -60,7 +60,7 @@ def _digest(file: Path) -> str:
                 if content.seek(0, os.SEEK_END) > MAX_ALLOWED_BYTES:
                     return ""
                 content.seek(0)
-                while block := content.read(BLOCK):
+                while block := content.read(BLOCK_BYTES):
                     digest.update(block)
         except RefusedFile:
             return ""

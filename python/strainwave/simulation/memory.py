@@ -1,4 +1,4 @@
-"""What takes too much memory is refused in one line: how much there is of it, how large it is, and what to do."""
+"""Limits on memory and on the length of runs. A message names what is too large, its count and size, and the remedy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ACTION = 120.0  # bytes: a sample of a controller, found in a few goes together 
 
 @contextmanager
 def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None]:
-    """Refuses what takes more than `MAX_BYTES`, and says what takes the memory that is not there.
+    """Refuses what takes more than `MAX_BYTES`; a MemoryError within names it, its size, and the remedy.
 
     Args:
         what: takes it, in the plural

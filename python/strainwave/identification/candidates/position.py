@@ -257,7 +257,7 @@ def readings(table: FrictionTable, law: PositionDependent, reduction: float | No
 
 
 def _against_slope(slope: Estimate, law: PositionDependent) -> tuple[str, ...]:
-    """What a slope contradicts in the law, in words; empty if it fits."""
+    """Return the contradiction of a slope to the law, in words; empty if it fits."""
     if abs(slope.value - law.viscous) <= APART * slope.sigma:
         return ()
     times = f"is {slope.value / law.viscous:.3g} times" if law.viscous > 0.0 else "stands against"

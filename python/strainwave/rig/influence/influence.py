@@ -26,8 +26,8 @@ Progress = Callable[[str], None]
 SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)  # of the largest torque
 USUAL = 0.2  # share from which document T's sweep of amplitudes is taken to begin
 DRAWN = (0.2, 0.4, 0.6, 0.8, 1.0)  # shares whose loops are drawn
-HALVINGS = 50  # of the interval in which a threshold of the torque lies: then it is as narrow as rounding
-MIN_LOSSLESS = 1e-3  # of the largest torque: below, a loss that grows with the torque is not told from rounding
+MAX_HALVINGS = 50  # of the interval in which a threshold of the torque lies: then it is as narrow as rounding
+MIN_LOSSLESS = 1e-3  # of the largest torque: below, a loss that grows with the torque cannot be separated from rounding
 NOTHING = 1e-9  # of the largest torque times the largest angle: a smaller area is that of rounding
 PRELOADS = (0.5, 0.7, 0.85, 1.0, 1.15, 1.3, 1.5, 2.0)  # of the friction at the input
 SAFELY = 1.5  # times its friction, which the input must turn at for the table's numbers
@@ -264,7 +264,7 @@ def lossless_torque(gear: Gear, torque: float) -> float:
     low, high = 0.0, torque
     if not loses(high):
         return torque
-    for _ in range(HALVINGS):
+    for _ in range(MAX_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if loses(middle) else (middle, high)
     return low if low > MIN_LOSSLESS * torque else 0.0

@@ -124,7 +124,8 @@ def plan(
     stride = 1 if step is None else max(1, round(min(arguments.number("step", step, "N.m", low=0.0) / unit, top)))
     count = 4 * (top // stride + 1) * cycles * len(positions) * len(units)
     if count > MAX_STEPS:
-        raise ValueError(f"peak = {peak:g} N.m: the plan has some {count} steps, and at most {MAX_STEPS}; take larger or fewer")
+        allowed = f"at most {MAX_STEPS} are allowed; take larger steps, or fewer cycles"
+        raise ValueError(f"peak = {peak:g} N.m: the plan has about {count} steps; {allowed}")
     with at(f"peak = {peak:g} N.m:"):
         stacks = _stacks(rig, pans, quantum, top, stride)
     up = [*stacks]

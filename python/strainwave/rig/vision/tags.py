@@ -1,4 +1,4 @@
-"""Tags of a picture, as TIFF 6.0 and EXIF 2.3 have them: how it stands, and when it was taken."""
+"""Tags of a picture by TIFF 6.0 and EXIF 2.3: its orientation, and when it was taken."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DIRECTORIES = (34665, 34853, 40965)  # tags that point to further ones: EXIF, GP
 
 
 class Tags(NamedTuple):
-    """What the tags of a picture contain.
+    """Orientation and time of a picture, by its tags.
 
     Attributes:
         orientation: 1 to 8 as EXIF has it; 1 is upright

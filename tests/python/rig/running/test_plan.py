@@ -85,7 +85,7 @@ def test_too_few_small_masses_are_told() -> None:
         (math.nan, {}, "peak = nan N.m must lie in (0, inf)"),
         (0.36, {"step": 0.0}, "step = 0.0 N.m must lie in (0, inf)"),
         (1e300, {}, "at most 1200 g"),
-        (0.36, {"cycles": 10**6}, "the plan has some 96000000 steps, and at most 100000; take larger or fewer"),
+        (0.36, {"cycles": 10**6}, "the plan has about 96000000 steps; at most 100000 are allowed; take larger"),
         (0.36, {"cycles": 0}, "cycles = 0 must be 1 or more"),
         (0.36, {"pans": "one"}, 'pans = "one" must be one of equal, unequal'),
     ],
