@@ -12,7 +12,7 @@ import pytest
 MAX_NAMED = 5  # further values that fail, named in a note
 
 
-def each(names: str | Sequence[str], values: Iterable[Any], ids: object = None) -> Callable[[Callable[..., None]], Any]:
+def each(names: str | Sequence[str], values: Iterable[Any]) -> Callable[[Callable[..., None]], Any]:
     """Run a test for every value, as `pytest.mark.parametrize` does, but as one item; the values that fail are named.
 
     Fixtures are made once for all values.

@@ -1,6 +1,6 @@
-"""Files that claim more than they hold, refer to themselves or to other files, or hold something that could be run.
+"""Files that claim more than they contain, refer to themselves or to other files, or contain something that could be run.
 
-Beside each such file lies a secret, and a program that would leave a mark. No result holds the secret, and no mark is left.
+A secret lies next to each such file, and a program that would leave a mark. No result contains the secret, and no mark is left.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def _columns(table: OpenTable) -> Columns:
 
 
 def _check(read: list[tuple[OpenTable, Columns]], folder: Path) -> None:
-    assert not list(folder.rglob(MARK)), "runs what a file holds"
+    assert not list(folder.rglob(MARK)), "runs what a file contains"
     for _, columns in read:
         assert not any((each == SECRET).any() for each in columns.values()), "reads another file"
 
@@ -199,10 +199,8 @@ def _json(random: Generator, place: Path) -> Made:
 
 def _parquet(random: Generator, place: Path) -> Made:
     path, size = place / "log.parquet", min(picked(random, SIZES), 10**8)
-    one = pyarrow.array(np.zeros(1))
-    table = pyarrow.table({"t": one, "q": one}).slice(0, 1)
-    with pyarrow.parquet.ParquetWriter(path, table.schema) as writer:
-        block = pyarrow.table({"t": np.zeros(min(size, 10**6)), "q": np.zeros(min(size, 10**6))})
+    block = pyarrow.table({"t": np.zeros(min(size, 10**6)), "q": np.zeros(min(size, 10**6))})
+    with pyarrow.parquet.ParquetWriter(path, block.schema) as writer:
         for _ in range(max(size // 10**6, 1)):
             writer.write_table(block)
     return f"{size}", path
@@ -259,7 +257,7 @@ def _bag(random: Generator, place: Path) -> Made:
 
 
 def _special(random: Generator, place: Path) -> Made:
-    """A FIFO, a device or a link under the name of a table; or a folder that holds one."""
+    """A FIFO, a device or a link under the name of a table; or a folder that contains one."""
     suffix = picked(random, tuple(FORMATS))
     path = place / f"log{suffix}"
     kind = picked(random, ("fifo", "zero", "link", "loop", "folder"))

@@ -50,7 +50,7 @@ def datasheets_case(random: Generator, folder: Path) -> Case:
 
     def check(found: sw.GearSet) -> None:
         found.save(folder / "again.toml")
-        assert sw.GearSet.read(folder / "again.toml") == found, "a file holds the set otherwise"
+        assert sw.GearSet.read(folder / "again.toml") == found, "a file contains another set"
         assert finite(found.gear.stiffness.torque(1e-6)), "a gear without a torque"
 
     return Case(described(data, 2000), lambda: sw.GearSet.read(path), check)

@@ -65,6 +65,6 @@ def rigs_case(random: Generator, folder: Path) -> Case:
     def check(read: TorsionTest) -> None:
         assert all(not digest for name, digest in read.hashes.items() if name != "a.png"), "a digest of another file"
         write_steps(read.steps, folder / "again.csv")
-        assert tuple(read_steps(folder / "again.csv")) == read.steps, "a file holds the steps otherwise"
+        assert tuple(read_steps(folder / "again.csv")) == read.steps, "a file contains other steps"
 
     return Case(f"{'rig' if in_rig else 'steps'} {described(changed, 2000)}", within_memory(attempt), check)

@@ -75,7 +75,7 @@ def _prepared(folder: Path) -> tuple[IO[bytes], Path]:
 
 
 def _limit_memory(more: int) -> None:
-    """Let this process take so much address space [bytes] more than it has: what asks for more must say so."""
+    """Let this process take so much address space [bytes] more than it has: what needs more gets a MemoryError."""
     has = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (has + more, hard))

@@ -28,7 +28,7 @@ VERBS = [
     for name in dir(law)
     if not name.startswith("_") and name not in ("replace", "State", "from_datasheet") and callable(getattr(law, name))
 ]
-every_whole = each("whole", WHOLE, ids=lambda whole: whole.name)
+every_whole = each("whole", WHOLE)
 every_verb = each("verb", VERBS)
 
 
@@ -67,7 +67,7 @@ def test_text_is_no_argument(verb: Any) -> None:
     one_line(lambda: verb("sideways"))
 
 
-@each("law", [law for law in LAWS if hasattr(law, "State")], ids=lambda law: law.name)
+@each("law", [law for law in LAWS if hasattr(law, "State")])
 def test_a_state_of_another_kind_is_refused(law: Any) -> None:
     time = {"speed": [0.0, 1.0]} if "speed" in law.trace.__doc__ else {}
     for wrong in (3, None, sw.Drive().rest(), law.State.__new__(law.State)):
@@ -140,7 +140,7 @@ def test_a_number_at_the_end_of_all_is_answered_with_a_number_or_refused(verb: A
         assert not np.isnan(answer).any()
 
 
-@each("hysteresis", [law for law in LAWS if hasattr(law, "work")], ids=lambda law: law.name)
+@each("hysteresis", [law for law in LAWS if hasattr(law, "work")])
 @each("torque", [1e-300, 5e-324, -1e-300, 1e300, -1e308])
 def test_a_gear_turns_any_torque_into_a_twist_or_refuses_it(hysteresis: Any, torque: float) -> None:
     gear = sw.Gear(hysteresis=hysteresis)

@@ -37,7 +37,7 @@ any_numbers = st.one_of(
     + [gears, drives]
 )
 any_value = st.one_of([models(family) for family in _core.families] + [gears, drives])
-every_model = each("model", EVERY_MODEL, ids=lambda model: model.name)
+every_model = each("model", EVERY_MODEL)
 
 
 def shown(model: type, field: Field, value: float) -> str:
