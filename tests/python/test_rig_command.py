@@ -105,7 +105,7 @@ def test_options_change_the_plan(tmp_path: Path) -> None:
         (("--cycles", "\u0663"), "'--cycles': \"\u0663\" is no whole number"),
         (("--cycles", 5000 * "9"), "is no whole number; write digits, at most 18"),
         (("--step", "1e-9", "--torque", "1e300"), "at most 1200 g"),
-        (("--cycles", "1000000"), "the plan has some 96000000 steps, and at most 100000"),
+        (("--cycles", "1000000"), "the plan has about 96000000 steps; at most 100000"),
         (("--positions", "0,0"), "must each name a thing once"),
         (("--cycles", "0"), "cycles = 0 must be 1 or more"),
         (("--out", "plan.txt"), "--out plan.txt must end in .csv"),
