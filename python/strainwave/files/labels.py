@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import gc
 import re
-import sys
-import traceback
-import warnings
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -158,29 +154,22 @@ def unreadable(path: str | Path, error: Exception) -> str:
 
 @contextmanager
 def read_by_others(path: str | Path, kind: str) -> Iterator[None]:
-    """Says in one line that a file cannot be read, whatever a library raises of it, and whatever its objects say when they end.
+    """Turn any error of a library that reads a file into one line.
 
-    Libraries for binary formats raise any error of a damaged file, in words that say nothing to who wrote it.
+    Libraries for binary formats raise any error of a damaged file, in words that mean nothing to who wrote the file.
+
+    Raises:
+        ValueError: the file is damaged, or refused, with the reason
+        ImportError: as the library raises it
     """
-    said, sys.unraisablehook = sys.unraisablehook, lambda unraisable: None
     try:
         yield
     except ImportError:
         raise
-    except RefusedFile as error:
-        raise ValueError(unreadable(path, error)) from None
     except Exception as error:
-        cause: BaseException | None = error
-        while cause is not None:
-            traceback.clear_frames(cause.__traceback__)
-            cause = cause.__context__
-        with warnings.catch_warnings(action="ignore"):
-            gc.collect()  # so that half-made objects end here
-        if isinstance(error, OSError) and error.strerror:
+        if isinstance(error, RefusedFile) or (isinstance(error, OSError) and error.strerror):
             raise ValueError(unreadable(path, error)) from None
         raise ValueError(one_line(f"{path} cannot be read: it is damaged, or no {kind} file")) from None
-    finally:
-        sys.unraisablehook = said
 
 
 def seconds_since_first(stamps: NDArray[np.datetime64]) -> NDArray[np.float64]:
