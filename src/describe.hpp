@@ -71,6 +71,8 @@ private:
         T::fields(part, inner);
     }
 };
+template <class Number, class Structure>
+Walk(Number, Structure) -> Walk<Number, Structure>;  // clang deduces none of an aggregate before version 17
 
 template <class M>
 Parts parts_of(const M& model) {

@@ -103,7 +103,18 @@ bool specialise(Sensors<S, Sensor>& sensors, const From& from) {
            specialise(sensors.current, from.current) && specialise(sensors.torque, from.torque);
 }
 
-/// Sets a part to the same law if it is among those that the part can be; says whether it is.
+/// Sets a part to a law if the part has the law's type or is a choice that has it; true if so. No lambda: in one, clang checks
+/// `part.model` of every part, even in a branch that is discarded.
+template <class Part, class Law>
+bool set_law(Part& part, const Law& law) {
+    if constexpr (std::is_same_v<Part, Law>)
+        part = law;
+    else if constexpr (holds<Part, Law>)
+        part.model = law;
+    return std::is_same_v<Part, Law> || holds<Part, Law>;
+}
+
+/// Sets a part to the same law if it is among those that the part can be; true if so.
 template <class Part, class From>
 bool specialise(Part& part, const From& from) {
     if constexpr (std::is_same_v<Part, From>) {
@@ -115,14 +126,7 @@ bool specialise(Part& part, const From& from) {
     } else if constexpr (requires { from.modulators; }) {
         return !from.modulates() && specialise(part, from.law);
     } else {
-        return from.visit([&]<class Chosen>(const Chosen& law) {
-            constexpr bool fits = std::is_same_v<Part, Chosen> || holds<Part, Chosen>;
-            if constexpr (std::is_same_v<Part, Chosen>)
-                part = law;
-            else if constexpr (fits)
-                part.model = law;
-            return fits;
-        });
+        return from.visit([&](const auto& law) { return set_law(part, law); });
     }
 }
 

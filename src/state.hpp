@@ -68,7 +68,7 @@ private:
         X::fields(names, [&]<class T>(const T& member, const Field& field) {
             if constexpr (is_storage<T>) {  // of the law that this one holds: as many numbers as there is room for
                 const int first = i;
-                law.law.visit([&](const auto& inner) { each<Holds::state>(inner, slot, i, part, before + field.name + "."); });
+                each_of_inner<T>(law, slot, i, part, before + field.name + ".");
                 i = first + member.slot.size();
             } else if constexpr (is_array<T>) {
                 for (int k = 0; k < member.size(); ++k) number(slot[i++], part, before + field.name, k, field);
@@ -76,6 +76,11 @@ private:
                 number(slot[i++], part, before + field.name, -1, field);
             }
         });
+    }
+    /// The same of the law that a law holds. It depends on `Kept`, or clang would check `law.law` of laws that hold none.
+    template <class Kept, class Law, class Slot>
+    void each_of_inner(const Law& law, Slot& slot, int& i, const std::string& part, const std::string& before) const {
+        law.law.visit([&](const auto& inner) { each<Holds::state>(inner, slot, i, part, before); });
     }
 };
 

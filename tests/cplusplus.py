@@ -47,6 +47,18 @@ def zig() -> tuple[str, ...]:
     return ZIG
 
 
+def checker(name: str) -> tuple[str, ...]:
+    """The command that goes through sources, templates and all, with warnings as errors, and writes no code: most of the time.
+
+    `zig c++` always writes code; the clang within it, called by itself, need not, and takes the standard library of g++.
+    """
+    command = compiler(name)
+    if command == ZIG:
+        (folder,) = find_spec("ziglang").submodule_search_locations  # type: ignore[union-attr]
+        command = (f"{folder}/zig", "clang", "--driver-mode=g++", "-resource-dir", f"{folder}/lib")
+    return (*command, *STRICT, "-fsyntax-only", "-Wno-unused-command-line-argument")  # which -c is
+
+
 def compilation(command: tuple[str, ...], folder: Path, sources: dict[str, str], *options: str) -> tuple[int, str]:
     """Compiles sources, by name, to objects in a folder: the exit status and what the compiler said."""
     for name, text in sources.items():

@@ -165,6 +165,8 @@ struct Write {
             member = source[count++];
     }
 };
+template <class S>
+Write(const S*) -> Write<S>;  // clang deduces none of an aggregate before version 17
 
 template <class S>
 struct Clear {

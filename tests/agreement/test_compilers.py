@@ -1,4 +1,4 @@
-"""The headers as they are, under two compilers with their warnings as errors."""
+"""Headers and sources as they are, under two compilers with their warnings as errors."""
 
 from __future__ import annotations
 
@@ -10,11 +10,14 @@ from pathlib import Path
 import nanobind
 import pytest
 
-from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, compilation, compiler, drives, zig
+from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, checker, compilation, compiler, drives, zig
 
-# Templates are made and warned of, but g++ writes no code, which takes the most time; the clang of ziglang always does.
-CHECKED = {"g++": (*STRICT, "-fsyntax-only"), "clang++": STRICT}
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
+
+SOURCES = sorted(path.name for path in (ROOT / "src").glob("*.cpp"))
+# Headers of other projects, whose warnings are no errors here.
+FOREIGN = (f"-isystem{nanobind.include_dir()}", f"-isystem{sysconfig.get_path('include')}")
+MODULE = ('-DSW_MODULE="_time"', "-DSW_INITIALISE=PyInit__time", '-DSW_INSTRUCTION_SETS=",baseline,"')
 
 RUN_TIME_CHOICE = """
 #include <strainwave/any.hpp>
@@ -43,14 +46,21 @@ def test_every_header_stands_on_its_own(name: str, tmp_path: Path) -> None:
 @both
 def test_every_model_steps_in_a_drive_of_static_type(name: str, tmp_path: Path) -> None:
     steps = [stepped(scalar, drive) for scalar in ("double", "float") for drive in drives(scalar)]
-    assert compilation(compiler(name), tmp_path, {"static.cpp": HEADERS + "".join(steps)}, *CHECKED[name]) == (0, "")
+    assert compilation(checker(name), tmp_path, {"static.cpp": HEADERS + "".join(steps)}) == (0, "")
 
 
 @both
 def test_models_chosen_at_run_time_step_in_every_scalar(name: str, tmp_path: Path) -> None:
     scalars = ("double", "strainwave::Dual<4>", "strainwave::Pack<8>")
     steps = [stepped(scalar, f"strainwave::AnyDrive<{scalar}>") for scalar in scalars]
-    assert compilation(compiler(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}, *CHECKED[name]) == (0, "")
+    assert compilation(checker(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}) == (0, "")
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_clang_compiles_every_source_of_the_extension(source: str, tmp_path: Path) -> None:
+    """With the warnings with which g++ compiles them whenever the package is built for the tests."""
+    including = {"source.cpp": f'#include "{ROOT / "src" / source}"\n'}
+    assert compilation(checker("clang++"), tmp_path, including, *FOREIGN, *MODULE) == (0, "")
 
 
 def test_a_pack_steps_in_the_vector_registers_of_neon(tmp_path: Path) -> None:
