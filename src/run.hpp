@@ -253,7 +253,12 @@ typename CompiledDrive<S>::State run(const CompiledDrive<S>& drive, const typena
             return run_stepwise<S>(special, from, schedule, record, pause, inlined_step<S, Special>);
         } else {
             integrate::Steps<S, Special> steps;
-            return run_stepwise<S>(special, from, schedule, record, pause, called_steps(steps));
+            const auto smooth = called_steps(steps);
+            const auto advance = [&](const Special& moved, const auto& at, const auto& u, const S& dt) {
+                steps.begin(dt);
+                return strainwave::step(moved, at, u, dt, smooth);
+            };
+            return run_compiled<S>(special, from, schedule, record, pause, advance);
         }
     });
 }

@@ -46,7 +46,10 @@ typename Compiled::State run_adaptively(const Compiled& drive, typename Compiled
     const bool has_bounds = drive.has_bounds();
     x = drive.consistent(x);
     integrate::Steps<double, Compiled> kept;
-    const auto smooth = called_steps(kept);
+    const auto smooth = [&](const Compiled& moved, const Evaluation& at, const auto& u, double h) {
+        kept.begin(h);
+        return called_step(moved, at, u, h, kept);
+    };
     integrate::Adaptive<double, Compiled, decltype(smooth), Unbroken> adaptive(drive, x, smooth, tolerance,
                                                                                1e-2 * (ends.at[1] - ends.at[0]));
     long taken = 0;

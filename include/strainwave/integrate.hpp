@@ -22,6 +22,7 @@ constexpr typename System::Evaluation step(const System& system, const typename 
 template <class S, class System>
 constexpr typename System::State step(const System& system, const typename System::State& before,
                                       const Interval<typename System::Input>& u, const S& dt, integrate::Steps<S, System>& steps) {
+    steps.begin(dt);
     const auto from = system.evaluate(before, u.start);
     if (!system::has_events(system)) return steps(system, from, u, dt);
     const auto smooth = [&](const System& moved, const auto& at, const auto& over, const S& h) {

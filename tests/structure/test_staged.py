@@ -409,6 +409,34 @@ def test_side_by_side_it_is_what_it_is_alone(fixed: str) -> None:
 
 
 @orientation
+@pytest.mark.parametrize(
+    ("changed", "speed", "path", "values"),
+    [
+        ({"friction_input": sw.friction.Coulomb(coulomb=0.1)}, 0.0, "gear.friction_input.coulomb", (0.1, 0.0, 0.3)),
+        ({"friction_output": sw.friction.Coulomb(coulomb=1.0)}, 0.0, "gear.friction_output.coulomb", (1.0, 0.0, 2.0)),
+        (
+            {"kinematic_error": MISALIGNED.replace(combine="max")},
+            1000.0,
+            "gear.kinematic_error.housing_direction",
+            (0.0, 0.4, 1.0),
+        ),
+    ],
+    ids=["stops at the input", "stops at the output", "jumps of the slope of an error"],
+)
+def test_events_of_one_member_change_no_bit_of_the_others(
+    fixed: str, changed: dict[str, Any], speed: float, path: str, values: tuple[float, ...]
+) -> None:
+    """Events divide the steps of a member, as jumps of the error's slope do. Those of the others keep their length."""
+    drive = DRIVE.replace(gear=GEAR.replace(kinematics=FIXED[fixed], **changed))
+    drives = [drive.replace({path: value}) for value in values]
+    course: dict[str, Any] = {"load_torque": PUSHED.scenario(0.005), "initial": {"input_speed": speed}, "sample": 1e-4}
+    together = side_by_side(drives, SHAKEN.scenario(0.005), 1e-5, **course)
+    for number, one in enumerate(drives):
+        alone = sw.simulate(one, SHAKEN.scenario(0.005), 1e-5, **course)
+        np.testing.assert_array_equal(together["torque"][number], alone["torque"])
+
+
+@orientation
 def test_derivatives_by_its_numbers_are_what_differences_show(fixed: str) -> None:
     drive = DRIVE.replace(gear=everywhere(GEAR.replace(kinematics=FIXED[fixed])))
     names = [

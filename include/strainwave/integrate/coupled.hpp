@@ -137,8 +137,12 @@ class Steps {
     Mode mode;
     S length;
     bool known = false;
+    S undivided{0.0};
 
 public:
+    /// Sets the length of a step [s] that events may divide. As times add up, steps of one length differ by their rounding: they
+    /// count as the first of them. Lengths of parts never do, so that no lane of a pack depends on events in the others.
+    constexpr void begin(const S& dt) { undivided = select(close(dt, undivided), undivided, detached(dt)); }
     constexpr State operator()(const System& system, const Evaluation& from, const Interval<Input>& u, const S& dt) {
         if (!system.couples()) return exponential_step(system, from, u, dt);
         prepare(system, from.state, dt);
@@ -152,21 +156,18 @@ public:
     }
 
 private:
-    /// As times add up, steps of one length differ by their rounding.
-    static constexpr double rounding = 1e-8;
+    static constexpr double rounding = 1e-8;  // relative
     /// Of a step: more than what the moment of a jump is missed by.
     static constexpr double brief = 1e-3;
 
+    static constexpr auto close(const S& dt, const S& to) { return abs(dt - to) < S(rounding) * to; }
     constexpr void prepare(const System& system, const State& x, const S& dt) {
         const Mode asked = system.coupled_mode(x);
-        S taken = dt;
+        const S taken = select(close(dt, undivided), undivided + (dt - detached(dt)), dt);
         if (known) {
-            const S off = dt - length;
-            auto same = abs(off) < S(rounding) * length;
+            auto same = taken == length;
             for (int i = 0; i < asked.size(); ++i) same = same & (mode[i] == asked[i]);
-            if (all(same) && !sought(off)) return;
-            // What other lanes and derivatives need anew has in this lane the length that it keeps alone, to the last bit.
-            taken = select(same, detached(length) + (dt - detached(dt)), dt);
+            if (all(same) && !sought(taken - length)) return;
         }
         coupling.set(coupled_matrix<S>(system, asked), taken);
         mode = asked;
@@ -195,6 +196,7 @@ private:
 template <class S, class System>
 class Steps<S, System, 0> {
 public:
+    constexpr void begin(const S&) {}
     constexpr typename System::State operator()(const System& system, const typename System::Evaluation& from,
                                                 const Interval<typename System::Input>& u, const S& dt) const {
         return exponential_step(system, from, u, dt);

@@ -31,7 +31,8 @@ constexpr void step_through_events(const System& system, const typename System::
         here = system.evaluate(chosen<S>(crosses, system::apply_event(system, reach(moment), then, crosses), there.state), then);
         done = moment;
         // A lane that has arrived takes no further step, not even of 0 s.
-        there = system.evaluate(chosen<S>(done < S(1.0), reach(S(1.0)).state, here.state), u.end);
+        const auto end = chosen<S>(done < S(1.0), reach(S(1.0)).state, here.state);
+        there = system.evaluate(chosen<S>(crosses, end, there.state), u.end);  // a lane without event stays as it was
     }
 }
 

@@ -35,14 +35,15 @@ constexpr typename System::State moreau_jean_parts(const System& system, const t
     balance(block);
     const S parts = clip(rint(S(2.0) * detached(largest_column(block)) + S(0.5)), S(1.0), S(most)), share = S(1.0) / parts;
     auto at = from;
+    auto end = from.state;
     for (S done{0.0};;) {
         const auto left = done < parts;
         const S next = min(done + S(1.0), parts);
         const auto part = u.part(done * share, next * share, dt);
-        at.state = chosen<S>(left, moreau_jean_part(system, at, part, share * dt), at.state);
+        end = chosen<S>(left, moreau_jean_part(system, at, part, share * dt), end);
         done = next;
-        if (!any(done < parts)) return at.state;
-        at = system.evaluate(at.state, part.end);
+        if (!any(done < parts)) return end;
+        at = system.evaluate(end, part.end);
     }
 }
 
