@@ -84,7 +84,10 @@ struct State {
         const S sense = sign(begin), bend = S(3.0) * (begin + end - S(2.0) * moved);
         const S slope = S(2.0) * (S(3.0) * moved - S(2.0) * begin - end);
         const S root = sqrt(max(slope * slope - S(4.0) * bend * begin, S(0.0)));
-        const S at = S(2.0) * abs(begin) / max(root - sense * slope, S(smallest));
+        // The smaller root of the cubic's slope, or the larger one: of each the form that subtracts nothing.
+        const auto grows = sense * slope > S(0.0);
+        const S at = select(grows, root + sense * slope, S(2.0) * abs(begin)) /
+                     max(select(grows, S(-2.0) * sense * bend, root - sense * slope), S(smallest));
         return held_twist + at * (begin + at * (S(0.5) * slope + at * bend * S(1.0 / 3.0)));
     }
 };

@@ -10,6 +10,7 @@ import pytest
 import strainwave as sw
 from hypothesis import given, settings
 from strainwave import _core
+from strainwave.simulation.signals import outputs
 from strainwave.simulation.state import Layout, State
 
 from tests.reference_drive import DRIVE, SMOOTH
@@ -93,3 +94,43 @@ def test_continuous_numbers_come_first() -> None:
     ]
     assert layout.places["friction_input"] == slice(layout.count - 1, layout.count)
     assert layout.places["friction_mesh"] == slice(0, 0)
+
+
+STIFFNESS, BREAKAWAY = 1e4, 1.0  # N.m/rad, N.m: of a joint that slips, so that its torque shows where it turned round
+SLIPPING = sw.Drive(
+    gear=sw.Gear(
+        stiffness=sw.stiffness.Linear(k=1e-30),
+        hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[STIFFNESS], breakaway=[BREAKAWAY]),
+    ),
+    motor=sw.motor.TorqueSource(inertia=1e-4),
+)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("begin", "moved", "end"),
+    [
+        (1e-4, 1e-6, -1e-4),
+        (1e-4, 3e-4, -5e-4),
+        (1e-4, -1e-5, -5e-4),
+        (1e-19, 3e-4, -5e-4),  # at rest but for rounding, and far on
+        (1.7e-29, 2.7e-12, -1.7e-25),  # a stretch of a step that is all rounding
+    ],
+)
+def test_hysteresis_turns_round_where_the_cubic_through_both_twists_and_rates_does(
+    begin: float, moved: float, end: float, sense: float
+) -> None:
+    """The rates are times the time between [rad]. The turning point is found among the roots of the cubic's slope."""
+    elapsed = 1e-4
+    begin, moved, end = sense * begin, sense * moved, sense * end
+    cubic = np.polynomial.Polynomial([0.0, begin, 3.0 * moved - 2.0 * begin - end, begin + end - 2.0 * moved])
+    bend, slope = 3.0 * cubic.coef[3], 2.0 * cubic.coef[2]
+    q = -0.5 * (slope + np.copysign(np.sqrt(slope**2 - 4.0 * bend * begin), slope))  # nothing is subtracted
+    turn = cubic(next(at for at in (q / bend, begin / q) if 0.0 <= at <= 1.0))
+    held = np.clip(STIFFNESS * turn, -BREAKAWAY, BREAKAWAY)
+    torque = np.clip(held + STIFFNESS * (moved - turn), -BREAKAWAY, BREAKAWAY)
+    state = SLIPPING.rest().replace(
+        transmission_error=moved, output_speed=-end / elapsed, held_rate=begin / elapsed, elapsed=elapsed
+    )
+    found = _core.now(SLIPPING, state.numbers, np.array([0.0, 0.0, 0.0, 0.0, 300.0, 0.0]))
+    assert found[outputs(SLIPPING)["torque"].channel, 0] == pytest.approx(torque, abs=1e-12 * BREAKAWAY)
