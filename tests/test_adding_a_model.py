@@ -71,7 +71,7 @@ ELSEWHERE = {
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
     "AccelerationSource": {"identification/experiments/driven_log.py": "the input of a log moves as it was measured"},
-    "CurrentSource": {"identification/taken.py": "whatever its motor, a log tells the current along a motion"},
+    "CurrentSource": {"identification/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
     "Coulomb": {
         "files/datasheet.py": SHEET,
         "specialised.hpp": USUAL,
@@ -94,7 +94,7 @@ ELSEWHERE = {
     "MixedLubrication": {},
     "MaxwellSlipFriction": {},
     "PositionDependent": {},
-    "DC": {"specialised.hpp": USUAL, "identification/taken.py": "of a log of voltage alone, less what a motor induces"},
+    "DC": {"specialised.hpp": USUAL, "identification/prepared_log.py": "of a log of voltage alone, less what a motor induces"},
     "OpenLoop": {
         "specialised.hpp": USUAL,
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
@@ -120,7 +120,7 @@ ELSEWHERE = {
     "ThermalSoftening": {"specialised.hpp": USUAL},
     "Inertia": {
         "specialised.hpp": USUAL,
-        "identification/taken.py": RIGID,
+        "identification/prepared_log.py": RIGID,
         "identification/experiments/motion_log.py": RIGID,
     },
     "StrainWave": {
