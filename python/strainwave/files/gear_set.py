@@ -319,6 +319,7 @@ def load(name_or_path: str | Path) -> Any:
     (50000.0, 2.0)
     """
     gear_set = GearSet.read(name_or_path)
+    # Not of the catalogue: hfuc-20-80 and csg-20-80 are the same gear with different ratings.
     if gear_set.ratings and _file(name_or_path).parent not in FOLDERS.values():
         from strainwave.files.ratings import remember
 
