@@ -1,4 +1,4 @@
-"""Messages of ROS that hold series of numbers: states of joints, and plain numbers, in the encodings of ROS 1 and ROS 2.
+"""Messages of ROS that contain series of numbers: states of joints, and plain numbers, in the encodings of ROS 1 and ROS 2.
 
 Their layout is part of ROS. The definitions that a bag contains are not read, as reading them means to run code made from them.
 """
@@ -16,7 +16,7 @@ UNITS = {"position": "rad", "velocity": "rad/s", "effort": "N.m"}  # of revolute
 
 
 class Message(NamedTuple):
-    """A message as its bag holds it.
+    """A message of a bag, not yet decoded.
 
     Args:
         topic, kind: where it was published, and its type, as `std_msgs/msg/Float64`

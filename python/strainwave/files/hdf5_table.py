@@ -133,7 +133,7 @@ class _Walk:
         return self._values(node) if is_series and node.dtype.kind in "fiub" else []
 
     def _values(self, node: Any) -> Any:
-        """Return what a dataset holds, if it fits into the budget: the file alone claims how much that is."""
+        """Return the content of a dataset, if it fits into the budget: the file alone claims how much that is."""
         if node.shape is None:
             return np.array([])
         what = f"dataset {node.name}"

@@ -20,9 +20,9 @@ from strainwave.files.variables import object_of_matlab
 HEADER = 128  # bytes, version 5
 MATRIX, COMPRESSED = 14, 15  # types of elements
 NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}  # types of elements
-TEXTS = {16: "utf-8", 17: "utf-16", 18: "utf-32"}  # types of elements; others hold a letter in each number
+TEXTS = {16: "utf-8", 17: "utf-16", 18: "utf-32"}  # types of elements; the others contain a letter in each number
 CELL, STRUCTURE, OBJECT, TEXT, SPARSE, FUNCTION, OPAQUE = 1, 2, 3, 4, 5, 16, 17  # classes of arrays
-LAST_CLASS = 17  # the other ones hold numbers
+LAST_CLASS = 17  # the other ones contain numbers
 COMPLEX = 0x800  # flag
 NUMBERS_OF_VERSION_4 = {0: "f8", 1: "f4", 2: "i4", 3: "i2", 4: "u2", 5: "u1"}  # by the third digit of the type
 LARGEST_TYPE = 5000  # in version 4; a number beyond it has the other byte order
@@ -94,7 +94,7 @@ def _elements(content: memoryview, order: str, is_padded: bool = True) -> Iterat
 
 
 def _array(element: _Element, order: str, budget: Budget, depth: int) -> tuple[str, Any]:
-    """Return name and content of an array; an empty one of numbers for what holds no series."""
+    """Return name and content of an array; an empty array of numbers for what contains no series."""
     budget.take_node(depth)
     budget.take_bytes(BYTES_OF_VALUE, "its cells and fields")
     if element.kind != MATRIX:

@@ -29,7 +29,7 @@ KINDS: dict[int, tuple[Any, bool | None]] = {  # data types: kind of number, and
     9: ("u", True), 10: ("i", True), 11: ("f", True), 12: ("f", True),
     13: ("u", False), 14: ("i", False), 15: ("f", False), 16: ("f", False),
 }  # fmt: skip
-TIME = 1  # type of a channel that holds the instants of its group
+TIME = 1  # type of a channel that contains the instants of its group
 FORMULA, TEXTS, NONE = 10, (11, 12), 65535  # types of conversions
 
 
@@ -58,7 +58,7 @@ def channel_groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
 
 
 def _channels(whole: memoryview, address: int, is_big_endian: bool, budget: Budget) -> Iterator[Channel]:
-    """Return the channels of a group that hold numbers."""
+    """Return the channels of a group that contain numbers."""
     while address:
         block = _block(whole, address, b"CN", budget)
         address, conversion, _, dependency, _, kind = _unpack("5IH", block, 4)

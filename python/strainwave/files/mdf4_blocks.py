@@ -35,12 +35,12 @@ BYTES_OF_REFERENCE = 64  # that a reference of a conversion takes in memory
 KINDS: dict[int, tuple[Any, bool]] = {  # data types of numbers: kind, and whether the highest byte comes first
     0: ("u", False), 1: ("u", True), 2: ("i", False), 3: ("i", True), 4: ("f", False), 5: ("f", True),
 }  # fmt: skip
-FIXED, MASTER, VIRTUAL_MASTER, VIRTUAL = 0, 2, 3, 6  # types of channels that hold numbers
+FIXED, MASTER, VIRTUAL_MASTER, VIRTUAL = 0, 2, 3, 6  # types of channels that contain numbers
 TIME = (0, 1)  # what a master is, where it is the time or nothing is stated
 ALL_INVALID, SOME_INVALID = 1, 2  # flags of a channel
 VARIABLE_LENGTH, REMOTE_MASTER = 1, 8  # flags of a channel group
 WITH_INVALIDATION = 2**31  # flag of a list of columns
-DATA = (b"##DT", b"##DV", b"##DI")  # kinds of blocks that hold records, values of a column, invalidation bytes
+DATA = (b"##DT", b"##DV", b"##DI")  # kinds of blocks that contain records, values of a column, invalidation bytes
 DEFLATE, TRANSPOSED_DEFLATE = 0, 1  # how a block is packed
 
 
@@ -120,7 +120,7 @@ class Mdf4File:
         return int(following)
 
     def _channels(self, address: int, depth: int = 0) -> Iterator[Channel]:
-        """Return the channels of a list that hold numbers, and those of the structures among them."""
+        """Return the channels of a list that contain numbers, and those of the structures among them."""
         while address:
             block = self._new_block(address, b"##CN", depth)
             address, composition, name, _, conversion, _, unit = block.links[:7]

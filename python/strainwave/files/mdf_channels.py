@@ -43,7 +43,7 @@ class NumberField(NamedTuple):
 
 @dataclass(frozen=True)
 class Channel:
-    """A channel that holds numbers.
+    """A channel that contains numbers.
 
     Args:
         name, unit: as the file has them
@@ -151,7 +151,7 @@ def records_of(
     """Return the records of each channel group of a data group, by the number that stands before each record.
 
     Raises:
-        RefusedFile: the data hold fewer records than the file claims, or other ones
+        RefusedFile: the data contain fewer records than the file claims, or other ones
     """
     wanted = {number: layout for number, layout in layouts.items() if layout.length is not None}
     if len(layouts) == 1 and len(wanted) == 1:
@@ -190,7 +190,7 @@ def _split(rows: Bytes, layout: RecordLayout) -> Records:
 
 def _check_count(found: int, claimed: int) -> None:
     if claimed > found:
-        raise RefusedFile(f"claims {claimed} records, but its data hold {found}; it is damaged or was not closed")
+        raise RefusedFile(f"claims {claimed} records, but its data contain {found}; it is damaged or was not closed")
 
 
 def _starts(data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, id_bytes_behind: int) -> dict[int, list[int]]:

@@ -27,7 +27,7 @@ MAGIC = (b"MDF ", b"UnFinMF ")  # at the beginning of every MDF file; the second
 
 
 def open_mdf(path: str | Path) -> GridTable:
-    """The channels of an MDF file that hold numbers, each group of them on a grid of its own.
+    """The channels of an MDF file that contain numbers, each group of them on a grid of its own.
 
     Linear, rational and table conversions are applied. A channel whose conversion is a formula is left out by its name.
     """

@@ -133,9 +133,7 @@ def test_a_formula_is_never_evaluated_and_its_channel_is_named(tmp_path: Path, v
     assert values["q"].tolist() == RAW.tolist()
     (remark,) = remarks
     assert remark.startswith('tau is left out: its conversion is a formula, "f')
-    with pytest.raises(
-        ValueError, match=r'has no column "tau"; it has time, q; tau is left out: its conversion is a formula'
-    ):
+    with pytest.raises(ValueError, match=r'has no column "tau"; it has time, q; tau is left out: its conversion is a formula'):
         Recording.read(tmp_path / name, {"torque": "tau"})
     assert not (tmp_path / "made").exists()
 
@@ -209,7 +207,7 @@ def refused(path: Path, told: str) -> None:
 def test_more_records_than_there_are(tmp_path: Path) -> None:
     save(tmp_path / "a.mf4", "4.10", {"q": None})
     patched(tmp_path / "a.mf4", b"##CG", 8, struct.pack("<Q", 10**12))
-    refused(tmp_path / "a.mf4", "claims 1000000000000 records, but its data hold 20")
+    refused(tmp_path / "a.mf4", "claims 1000000000000 records, but its data contain 20")
     save(tmp_path / "a.mdf", "3.30", {"q": None})
     whole = bytearray((tmp_path / "a.mdf").read_bytes())
     start = whole.index(b"CG\x1a") if b"CG\x1a" in whole else whole.index(b"CG\x1e")
