@@ -24,6 +24,7 @@ LAYERS = {
 TOP = {
     "__main__",
     "cli",
+    "file_options",
     "rig_command",
     "study_command",
     "orders_command",
