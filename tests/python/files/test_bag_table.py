@@ -31,8 +31,8 @@ def columns(table: GridTable) -> dict[str, list[float]]:
     return {name: values.tolist() for grid in table.grids for name, values in grid.columns.items()}
 
 
-def refused(path: Path, told: str) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{told}[^\n]*$"):
+def refused(path: Path, reason: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{reason}[^\n]*$"):
         open_bag(path)
 
 
@@ -116,12 +116,12 @@ PACKED = {
 
 @pytest.mark.parametrize("packing", ["zstd", "lz4"])
 @pytest.mark.parametrize(
-    ("size", "told"),
+    ("size", "reason"),
     [(1000, "does not have the 1000 bytes that it claims"), (2**62, "expands the file to"), (ZEROS + 1, "does not have")],
 )
-def test_chunks_that_do_not_keep_what_they_claim(tmp_path: Path, packing: str, size: int, told: str) -> None:
+def test_chunks_that_do_not_keep_what_they_claim(tmp_path: Path, packing: str, size: int, reason: str) -> None:
     (tmp_path / "run.mcap").write_bytes(mcap(chunk(size, packing.encode(), PACKED[packing])))
-    refused(tmp_path / "run.mcap", told)
+    refused(tmp_path / "run.mcap", reason)
 
 
 def test_many_chunks_that_expand_each_to_what_it_claims(tmp_path: Path) -> None:
@@ -163,7 +163,7 @@ COMPUTED = "data BLOB AS (zeroblob(900000000))"
 
 
 @pytest.mark.parametrize(
-    ("schema", "told"),
+    ("schema", "reason"),
     [
         (f"CREATE VIEW messages AS {WITHOUT_END};", '"messages" is no table of its own'),
         (
@@ -173,11 +173,11 @@ COMPUTED = "data BLOB AS (zeroblob(900000000))"
         ("CREATE VIRTUAL TABLE messages USING rtree(topic_id, timestamp, data);", '"messages" is no table of its own'),
     ],
 )
-def test_a_database_whose_messages_are_computed(tmp_path: Path, schema: str, told: str) -> None:
+def test_a_database_whose_messages_are_computed(tmp_path: Path, schema: str, reason: str) -> None:
     with sqlite3.connect(tmp_path / "run.db3") as made:
         made.executescript(NUMBERS + schema)
     made.close()
-    refused(tmp_path / "run.db3", told)
+    refused(tmp_path / "run.db3", reason)
 
 
 def test_no_file_is_made_beside_a_database_and_none_read(tmp_path: Path) -> None:

@@ -27,8 +27,8 @@ def names(path: Path) -> list[str]:
     return [label.name for label in open_hdf5(path).labels]
 
 
-def refused(path: Path, told: str) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{re.escape(told)}[^\n]*$"):
+def refused(path: Path, reason: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{re.escape(reason)}[^\n]*$"):
         open_hdf5(path)
 
 
@@ -99,17 +99,17 @@ def test_references_that_multiply(path: Path, is_alone: bool) -> None:
 
 
 @pytest.mark.parametrize(
-    ("made", "told"),
+    ("made", "reason"),
     [
         ({"shape": (10**10,), "chunks": (1000,), "dtype": "f8"}, "dataset /q expands the file to"),
         ({"shape": (10,), "maxshape": (None,), "chunks": (2**28,), "dtype": "f8"}, "a chunk of dataset /q expands the file to"),
         ({"shape": (10**11,), "chunks": (1000,), "dtype": h5py.ref_dtype}, "dataset /q expands the file to"),
     ],
 )
-def test_claims(path: Path, made: dict[str, Any], told: str) -> None:
+def test_claims(path: Path, made: dict[str, Any], reason: str) -> None:
     with h5py.File(path, "a") as file:
         file.create_dataset("q", **made)
-    refused(path, told)
+    refused(path, reason)
 
 
 def test_what_is_no_series_is_not_read(path: Path) -> None:

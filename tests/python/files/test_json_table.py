@@ -14,14 +14,14 @@ HUGE = "1" + 400 * "0"
 LONG = "1" + 5000 * "0"
 
 
-def refused(path: Path, text: str, told: str) -> None:
+def refused(path: Path, text: str, reason: str) -> None:
     path.write_text(text)
-    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{told}[^\n]*$"):
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{reason}[^\n]*$"):
         open_json(path)
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "reason"),
     [
         (f'{{"t": [0, 1], "q": [1.0, {HUGE}]}}', "q has an integer beyond the largest number, 1.8e308"),
         (f'{{"arm": {{"q": [[1.0, -{HUGE}]]}}}}', "arm.q has an integer beyond"),
@@ -32,8 +32,8 @@ def refused(path: Path, text: str, told: str) -> None:
         (f'{{"q": 1}}\n{{"q": 2}}\n{{"q": {LONG}}}\n', "line 3 has an integer of more than 4300 digits"),
     ],
 )
-def test_integers_beyond_all_numbers(tmp_path: Path, text: str, told: str) -> None:
-    refused(tmp_path / "a.json", text, told)
+def test_integers_beyond_all_numbers(tmp_path: Path, text: str, reason: str) -> None:
+    refused(tmp_path / "a.json", text, reason)
 
 
 def test_a_key_for_each_row_is_refused_by_what_it_takes(tmp_path: Path) -> None:

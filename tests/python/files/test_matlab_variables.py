@@ -29,9 +29,9 @@ def matrix(kind: int, shape: tuple[int, ...], *parts: bytes, name: bytes = b"") 
     )
 
 
-def refused(path: Path, content: bytes, told: str) -> None:
+def refused(path: Path, content: bytes, reason: str) -> None:
     path.write_bytes(content)
-    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{told}[^\n]*$"):
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{reason}[^\n]*$"):
         open_mat(path)
 
 
@@ -60,7 +60,7 @@ def test_arrays_in_arrays_without_end(tmp_path: Path, kind: int, is_packed: bool
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "reason"),
     [
         (matrix(CELL, (10**9, 4)), "has an array of 0 parts where it claims 4000000000"),
         (matrix(CELL, (3, 1), SERIES), "has an array of 1 parts where it claims 3"),
@@ -75,8 +75,8 @@ def test_arrays_in_arrays_without_end(tmp_path: Path, kind: int, is_packed: bool
         (SERIES[:-8], "more than what contains it"),
     ],
 )
-def test_claims(tmp_path: Path, content: bytes, told: str) -> None:
-    refused(tmp_path / "a.mat", HEAD + content, told)
+def test_claims(tmp_path: Path, content: bytes, reason: str) -> None:
+    refused(tmp_path / "a.mat", HEAD + content, reason)
 
 
 def test_a_variable_that_unpacks_to_gigabytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,7 +86,7 @@ def test_a_variable_that_unpacks_to_gigabytes(tmp_path: Path, monkeypatch: pytes
 
 
 @pytest.mark.parametrize(
-    ("head", "told"),
+    ("head", "reason"),
     [
         ((0, 2**30, 2**10, 0, 2), "claims 8796093022230 bytes, but has 54"),
         ((0, 10, 10, 0, 2), "claims 822 bytes, but has 54"),
@@ -94,8 +94,8 @@ def test_a_variable_that_unpacks_to_gigabytes(tmp_path: Path, monkeypatch: pytes
         ((90, 1, 1, 0, 2), "has a matrix of an unknown type or a negative size"),
     ],
 )
-def test_claims_of_version_4(tmp_path: Path, head: tuple[int, ...], told: str) -> None:
-    refused(tmp_path / "a.mat", struct.pack("<5i", *head) + b"t\0" + bytes(32), told)
+def test_claims_of_version_4(tmp_path: Path, head: tuple[int, ...], reason: str) -> None:
+    refused(tmp_path / "a.mat", struct.pack("<5i", *head) + b"t\0" + bytes(32), reason)
 
 
 @pytest.mark.parametrize("is_packed", [False, True])

@@ -146,8 +146,8 @@ def test_a_file_that_is_no_measurement_without_its_formula_names_the_channel(tmp
 
 def test_a_file_of_formulas_alone_is_refused_by_their_names(tmp_path: Path) -> None:
     save(tmp_path / "a.mf4", "4.10", {"tau": {"formula": "X1*2"}})
-    told = 'a.mf4 holds no series of numbers; tau is left out: its conversion is a formula, "X1*2", which is not evaluated'
-    with pytest.raises(ValueError, match=re.escape(told)):
+    reason = 'a.mf4 holds no series of numbers; tau is left out: its conversion is a formula, "X1*2", which is not evaluated'
+    with pytest.raises(ValueError, match=re.escape(reason)):
         open_mdf(tmp_path / "a.mf4")
 
 
@@ -199,8 +199,8 @@ def test_a_time_that_is_a_formula_leaves_out_its_group(tmp_path: Path) -> None:
 # Claims and loops
 
 
-def refused(path: Path, told: str) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{told}[^\n]*$"):
+def refused(path: Path, reason: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{reason}[^\n]*$"):
         open_mdf(path)
 
 

@@ -19,13 +19,13 @@ def array(shape: str, kind: str = "'<f8'", content: bytes = b"") -> bytes:
     return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text + content
 
 
-def refused(path: Path, told: str) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{told}[^\n]*$"):
+def refused(path: Path, reason: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}[^\n]*{reason}[^\n]*$"):
         open_numpy(path)
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "reason"),
     [
         (array("(10000000000,)"), "its array claims 80000000000 bytes, but has"),
         (array("(-1,)"), "damaged"),
@@ -36,9 +36,9 @@ def refused(path: Path, told: str) -> None:
         (array("(1,)", "'|O'", b"cos\nsystem\n(S'true'\ntR."), "an array of Python objects"),
     ],
 )
-def test_claims(tmp_path: Path, content: bytes, told: str) -> None:
+def test_claims(tmp_path: Path, content: bytes, reason: str) -> None:
     (tmp_path / "a.npy").write_bytes(content)
-    refused(tmp_path / "a.npy", told)
+    refused(tmp_path / "a.npy", reason)
 
 
 def archive(path: Path, members: dict[str, bytes], packing: int = zipfile.ZIP_DEFLATED) -> None:
