@@ -18,6 +18,7 @@ from strainwave.files.units import check as check_unit
 from strainwave.messages import as_option, listed, one_line, quoted
 
 Content = Literal["numbers", "dates", "other"]  # of a column
+MAX_COLUMNS = 4000  # of one file: each name and each unit is interpreted, which takes about a millisecond
 
 
 class Label(NamedTuple):
@@ -39,11 +40,10 @@ class Source(NamedTuple):
 
 def label_of(text: str) -> Label:
     """Split `speed [rad/s]` or `speed (rad/s)`. Round brackets around no unit are a part of the name."""
-    if square := re.fullmatch(r"(.*\S)\s*\[([^\[\]]*)\]", text):
-        return Label(text, square[1], square[2])
-    brackets = re.fullmatch(r"(.*\S)\s*\(((?:[^()]|\([^()]*\))*)\)", text)
-    if brackets and is_unit(brackets[2]):
-        return Label(text, brackets[1], brackets[2])
+    square = re.search(r"\[([^\[\]]*)\]\Z", text)
+    found = square or re.search(r"\(((?:[^()]|\([^()]*\))*)\)\Z", text)
+    if found and (name := text[: found.start()].rstrip()) and (square or is_unit(found[1])):
+        return Label(text, name, found[1])
     return Label(text, text, None)
 
 
@@ -61,6 +61,20 @@ def labels_of(texts: Sequence[str]) -> list[Label]:
         else label
         for label in labels
     ]
+
+
+def check_count(place: str, columns: int) -> None:
+    """Refuse more columns than can be interpreted in a few seconds.
+
+    Args:
+        place: the file or line, as the message names it
+        columns: how many it has
+
+    Raises:
+        ValueError: they are more than `MAX_COLUMNS`
+    """
+    if columns > MAX_COLUMNS:
+        raise ValueError(f"{place} has {columns} columns; at most {MAX_COLUMNS} are read: save those that are needed")
 
 
 def _is_index(text: str) -> bool:

@@ -10,8 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.budget import MAX_NODES, RefusedFile, budget_of, open_regular
-from strainwave.files.labels import Content, Label, Source, label_of, read_by_others, seconds_since_first, unreadable
+from strainwave.files.budget import RefusedFile, budget_of, open_regular
+from strainwave.files.labels import (
+    Content,
+    Label,
+    Source,
+    check_count,
+    label_of,
+    read_by_others,
+    seconds_since_first,
+    unreadable,
+)
 from strainwave.files.parquet_pages import check_columns
 from strainwave.messages import one_line, quoted
 
@@ -26,16 +35,16 @@ def open_parquet(path: str | Path) -> ParquetTable:
     import pyarrow
     from pyarrow.parquet import read_schema
 
+    file = one_line(str(path))
     try:
-        with open_regular(path) as file:
-            schema = read_schema(file)
-        if len(schema) > MAX_NODES:
-            raise RefusedFile(f"has {len(schema)} columns; at most {MAX_NODES} are read")
+        with open_regular(path) as opened:
+            schema = read_schema(opened)
+        check_count(file, len(schema))
         title = (schema.metadata or {}).get(b"title", b"").decode()
         labels = [_label(field) for field in schema]
     except (OSError, pyarrow.ArrowException, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
-    return ParquetTable(one_line(str(path)), title, labels, Path(path), schema)
+    return ParquetTable(file, title, labels, Path(path), schema)
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ CLOCK = re.compile(  # a time of day, or with a date as controllers and loggers 
 )
 DAY = 86400.0  # s
 SEEN = 100  # lines that show what the rows of a table look like
+MAX_LINE_BYTES = 2**20  # which is what Arrow reads at a time; a line must fit into it
 _NO_UNIT = ("", "-", "1")
 _NO_NUMBER = ("NA", "N/A")  # no newton times or per ampere, but what programs write for no value
 _LIST = re.compile(rb"""["']?(?:array\((?:'d', *)?)?[\[(](\s*(?:[-+.\d']|nan)[^\[\]()"\n]*)[\])]{1,2}["']?""")
@@ -33,7 +34,8 @@ def lines_above(data: bytes) -> int:
     >>> lines_above(b"Recorder: X\\n\\ntime,torque\\n0,1\\n1,2\\n")
     13
     """
-    lines = [(match.start(), match[0].decode()) for match in islice(re.finditer(rb"[^\n]+", data), SEEN)]
+    begin = data if len(data) <= MAX_LINE_BYTES else data[: data.rfind(b"\n", 0, MAX_LINE_BYTES) + 1]
+    lines = [(match.start(), match[0].decode()) for match in islice(re.finditer(rb"[^\n]+", begin), SEEN)]
     for mark in "\t;,":
         cells = [[cell.strip(' "') for cell in text.split(mark)] for _, text in lines]
         usual = len(cells[-1]) if cells else 0

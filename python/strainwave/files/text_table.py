@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.budget import RefusedFile, read_regular
-from strainwave.files.labels import Content, Label, Source, labels_of, seconds_since_first, unreadable
-from strainwave.files.text_layout import CLOCK, NUMBER, lines_above, lists_apart, seconds_of_clock, with_units
+from strainwave.files.labels import Content, Label, Source, check_count, labels_of, seconds_since_first, unreadable
+from strainwave.files.text_layout import CLOCK, MAX_LINE_BYTES, NUMBER, lines_above, lists_apart, seconds_of_clock, with_units
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -32,8 +32,6 @@ NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A",
 _SEEN = 1000  # rows that tell what a column holds
 
 _LONGEST_LABEL = 1000  # characters of a header cell: a bound for the work that a text from outside can cause
-
-_BLOCK = 2**20  # bytes that Arrow reads at a time; a line must fit into one
 
 
 def open_csv(path: str | Path) -> CsvTable:
@@ -54,10 +52,12 @@ def open_csv(path: str | Path) -> CsvTable:
     if not header:
         raise ValueError(f"{file} is empty")
     line = 1 + data.count(b"\n", 0, header.start(1))
+    if len(header[1]) > MAX_LINE_BYTES:
+        raise ValueError(f"{file} line {line} has {len(header[1])} bytes; at most {MAX_LINE_BYTES} can be read")
     first, second = header[1].decode(), (header[2] or b"").decode()
     delimiter = _delimiter(first, second)
     if delimiter == " ":
-        data = re.sub(rb"(?m) +", b" ", re.sub(rb"(?m)^ +| +$", b"", data))
+        data = re.sub(rb" +", b" ", re.sub(rb"(?m)^ +|(?<! ) +$", b"", data))
         header = re.match(rb"\n*([^\n]+)", data)
         assert header is not None
         first = re.sub(r" (?=[\[(])", "", header[1].decode())
@@ -73,6 +73,7 @@ def open_csv(path: str | Path) -> CsvTable:
         end = begins + below.end(1)
         labels, begins, line = with_units_below, end, line + data.count(b"\n", begins, end)
     labels, data = lists_apart(labels, data[begins:], delimiter)
+    check_count(f"{file} line {line}", len(labels))
     body = memoryview(data)
     if not re.search(rb"[^\n]", body):
         raise ValueError(f"{file} has a header but no rows")
@@ -106,7 +107,7 @@ def _delimiter(header: str, row: str) -> str:
     if found := next((mark for mark in "\t;," if mark in bare), None):
         return found
     cells = row.split() if row else header.split()
-    names = re.sub(r" +(?=[\[(])", "", header).split()
+    names = re.sub(r"(?<! ) +(?=[\[(])", "", header).split()
     apart = len(cells) > 1 and len(names) == len(cells) and all(NUMBER.fullmatch(cell) for cell in cells)
     return " " if apart and '"' not in header else ","
 
@@ -119,6 +120,7 @@ def _labels(place: str, text: str, delimiter: str) -> list[Label]:
     for cell in cells:
         if len(cell) > _LONGEST_LABEL:
             raise ValueError(f"{place}: {quoted(cell)} has {len(cell)} characters; a header cell has at most {_LONGEST_LABEL}")
+    check_count(place, len(cells))
     return labels_of([cell.strip() for cell in cells])
 
 
@@ -241,7 +243,7 @@ class CsvTable:
             pyarrow.BufferReader(pyarrow.py_buffer(self.body)),
             read_options=arrow_csv.ReadOptions(
                 use_threads=False,  # which the process may end before, and abort: apache/arrow#34314
-                block_size=_BLOCK,
+                block_size=MAX_LINE_BYTES,
                 column_names=[str(i) for i in range(len(self.labels))],
             ),
             parse_options=arrow_csv.ParseOptions(delimiter=self.delimiter),
@@ -271,8 +273,8 @@ class CsvTable:
         """The first row or cell that cannot be read."""
         marks = "." if self.delimiter == "," else ".,"
         for line, text in self._rows():
-            if (length := len(text.encode())) > _BLOCK:
-                return f" line {line} has {length} bytes; at most {_BLOCK} can be read"
+            if (length := len(text.encode())) > MAX_LINE_BYTES:
+                return f" line {line} has {length} bytes; at most {MAX_LINE_BYTES} can be read"
             cells = self._cells(line, text)
             if len(cells) != len(self.labels):
                 return f" line {line}: {self._miscounted(cells)}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 import time
 from collections.abc import Callable
@@ -16,7 +17,10 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from strainwave.files.array_table import Grid, grid_table
+from strainwave.files.labels import Source
 from strainwave.files.recording import Recording
+from strainwave.files.tables import open_table
 
 from tests.python.files.test_recording import EMPTY, RUN, exactly, untimed
 
@@ -266,6 +270,56 @@ def test_a_line_too_long_for_the_reader_is_refused(tmp_path: Path) -> None:
     path.write_text(f"a [1],remark\n1,x\n2,{2**22 * 'x'}\n3,x\n")
     with pytest.raises(ValueError, match=f"^{re.escape(str(path))} line 3 has 4194306 bytes; at most 1048576 can be read$"):
         Recording.from_csv(path, {"a": "a"})
+
+
+def test_a_header_too_long_for_the_reader_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(f"{2**21 * ';'}\n1;2\n")
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))} line 1 has 2097152 bytes; at most 1048576 can be read$"):
+        open_table(path)
+
+
+@pytest.mark.parametrize("header", ["a{}b", "a{}(b"])
+def test_blanks_without_end_in_a_header_take_linear_time(tmp_path: Path, header: str) -> None:
+    """A search that begins again at each blank would take minutes."""
+    path = tmp_path / "table.csv"
+    path.write_text(f"{header.format(100_000 * ' ')}\n0\n1\n")
+    with pytest.raises(ValueError, match=r" line 1: .* has 10000\d characters; a header cell has at most 1000$"):
+        open_table(path)
+
+
+def test_blanks_without_end_between_cells_take_linear_time(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(f"t q\n0 1\n1{900_000 * ' '}2\n")
+    table = open_table(path)
+    assert table.numbers([Source(1, "q", "q", "1")])["q"].tolist() == [1.0, 2.0]
+
+
+def _many_columns(suffix: str, path: Path, count: int) -> None:
+    """Write a file of so many columns."""
+    names = [f"q{place} [rad]" for place in range(count)]
+    if suffix == ".csv":
+        path.write_text(f"{','.join(names)}\n" + 2 * f"{','.join(count * ['1'])}\n")
+    elif suffix == ".parquet":
+        pq.write_table(pa.table({name: [1.0, 2.0] for name in names}), path)
+    else:
+        path.write_text(json.dumps({name: [1.0, 2.0] for name in names}))
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".json"])
+def test_a_table_has_at_most_four_thousand_columns(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"table{suffix}"
+    _many_columns(suffix, path, 4000)
+    assert len(open_table(path).labels) == 4000
+    _many_columns(suffix, path, 4001)
+    with pytest.raises(ValueError, match=r"has 4001 columns; at most 4000 are read: save those that are needed$"):
+        open_table(path)
+
+
+def test_channels_on_grids_are_at_most_four_thousand() -> None:
+    grid = Grid(np.arange(2.0), {f"q{place}": np.arange(2.0) for place in range(4001)})
+    with pytest.raises(ValueError, match=r"^log\.mf4 has 4001 columns; at most 4000 are read"):
+        grid_table("log.mf4", "", [grid], {})
 
 
 def test_two_million_rows_are_read_in_seconds(tmp_path: Path) -> None:

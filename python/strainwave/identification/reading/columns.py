@@ -74,18 +74,23 @@ def _told(table: OpenTable, mapping: FileMapping, said: Sequence[Column] = ()) -
 
 def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
     """The columns, without those numbers in their names that all of one channel have: of the robot, and of no joint."""
-    parts = {column.position: column.which.split(".") for column in columns}
+    groups: dict[Channel, list[list[str]]] = {}
+    for column in columns:
+        groups.setdefault(column.channel, []).append(column.which.split("."))
+    differing = {channel: _differing(group) for channel, group in groups.items()}
     found = []
     for column in columns:
-        group = [parts[each.position] for each in columns if each.channel == column.channel]
-        several = len(group) > 1 and all(len(each) == len(group[0]) and "".join(each).isdigit() for each in group)
-        own = (
-            [part for place, part in enumerate(parts[column.position]) if len({each[place] for each in group}) > 1]
-            if several
-            else []
-        )
+        parts = column.which.split(".")
+        own = [parts[place] for place in differing[column.channel]]
         found.append(replace(column, which=".".join(own)) if own else column)
     return found
+
+
+def _differing(group: Sequence[Sequence[str]]) -> list[int]:
+    """Which parts of names of numbers are not the same in all of them; none if the names are not of one form."""
+    if len(group) < 2 or not all(len(each) == len(group[0]) and "".join(each).isdigit() for each in group):
+        return []
+    return [place for place, parts in enumerate(zip(*group, strict=True)) if len(set(parts)) > 1]
 
 
 def _of_one_time(columns: Sequence[Column]) -> list[Column]:
