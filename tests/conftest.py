@@ -2,6 +2,8 @@
 
 import os
 import signal
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,14 @@ from hypothesis import settings
 settings.register_profile("strainwave", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None, derandomize=False)
 settings.load_profile("strainwave")
+
+
+@pytest.fixture(autouse=True)
+def no_ratings_remembered() -> Iterator[None]:
+    """Each test begins as a new process does: no gear was loaded from a file with ratings."""
+    yield
+    if ratings := sys.modules.get("strainwave.files.ratings"):
+        ratings.forget()
 
 
 def pytest_configure() -> None:

@@ -73,6 +73,7 @@ ELSEWHERE = {
     "AccelerationSource": {"identification/experiments/driven_log.py": "the input of a log moves as it was measured"},
     "CurrentSource": {"identification/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
     "Coulomb": {
+        "demo.py": "runs document P's experiment with each reading of its table",
         "files/datasheet.py": SHEET,
         "specialised.hpp": USUAL,
         "analysis/linear.py": "holds the input while the output vibrates",

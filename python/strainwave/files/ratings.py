@@ -117,6 +117,11 @@ def remember(gear_set: GearSet) -> None:
         del _REMEMBERED[next(iter(_REMEMBERED))]
 
 
+def forget() -> None:
+    """Drops all ratings that `remember` keeps."""
+    _REMEMBERED.clear()
+
+
 def warn_of_ratings(model: Drive | GearSet, run: Recording) -> None:
     """Warns the caller of a simulation of a gear set, or with a gear of one, of every limit that the run exceeded."""
     gear_set = model if isinstance(model, GearSet) else _REMEMBERED.get(model.gear) if _REMEMBERED else None

@@ -35,7 +35,7 @@ from strainwave.messages import listed, one_line, quoted, shortened
 from strainwave.number_texts import is_number, number_in
 
 
-class Constant(NamedTuple):
+class ConstantRange(NamedTuple):
     """A number that belongs to a recording: its unit, and the range of its size."""
 
     unit: str
@@ -45,15 +45,15 @@ class Constant(NamedTuple):
 
 
 CONSTANTS = {
-    "rate": Constant("Hz", 1e-6, 1e9),  # of rows without time
-    "ratio": Constant("1", arguments.MIN_RATIO, arguments.MAX_RATIO, signed=True),  # of the gear
-    "torque_constant": Constant("N.m/A", 1e-6, 1e3),
-    "resistance": Constant("Ohm", 1e-6, 1e6),
-    "motor_inertia": Constant("kg.m2", 0.0, 1e6),  # 0: the gear's input inertia contains it
-    "load_inertia": Constant("kg.m2", 1e-12, 1e9),
-    "load_torque": Constant("N.m", 0.0, 1e9, signed=True),  # at the output, constant
-    "speed": Constant("rad/s", 0.0, 1e6, signed=True),  # of a record at one speed without a column of it
-    "temperature": Constant("K", 1.0, 1e3),
+    "rate": ConstantRange("Hz", 1e-6, 1e9),  # of rows without time
+    "ratio": ConstantRange("1", arguments.MIN_RATIO, arguments.MAX_RATIO, signed=True),  # of the gear
+    "torque_constant": ConstantRange("N.m/A", 1e-6, 1e3),
+    "resistance": ConstantRange("Ohm", 1e-6, 1e6),
+    "motor_inertia": ConstantRange("kg.m2", 0.0, 1e6),  # 0: the gear's input inertia contains it
+    "load_inertia": ConstantRange("kg.m2", 1e-12, 1e9),
+    "load_torque": ConstantRange("N.m", 0.0, 1e9, signed=True),  # at the output, constant
+    "speed": ConstantRange("rad/s", 0.0, 1e6, signed=True),  # of a record at one speed without a column of it
+    "temperature": ConstantRange("K", 1.0, 1e3),
 }
 WILD = "*?[."  # a section with one of these in its name is a pattern of file names
 
