@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments, kinematic_error
+from strainwave import Drive, _core, arguments, kinematic_error, motor
 from strainwave.equality import ComparedByFields
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, check_temperature
 from strainwave.simulation.signals import TWIST, actuation, check_continuous, command_unit, controls_position
@@ -57,10 +57,9 @@ def equilibrium(
     Raises:
         TypeError: an argument is not of its kind
         ValueError: an input is not finite, `temperature` is not positive, there is no equilibrium, torques grow beyond all
-            numbers, or a part has none: a sampled controller, a load that prescribes or brakes, heating, a meter, noise, an
-            encoder; says why
+            numbers, or a part has none: a sampled controller, a load that prescribes or brakes, a motor that accelerates,
+            heating, a meter, noise, an encoder; says why
 
-    >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> held = sw.equilibrium(sw.Drive(load=arm), command=0.5)
     >>> held.input_speed, held.output_speed
@@ -71,7 +70,9 @@ def equilibrium(
     inputs = constant_inputs(command, load_torque, temperature)
     begin = _at_rest(drive, (drive.rest() if start is None else start_of(drive, start)).numbers)
     resting = _resting(drive, begin, inputs)
-    found = State.of(drive, _running(averaged(drive), begin, inputs) if resting is None else resting)
+    balanced = drive if resting is not None else averaged(drive)
+    found = State.of(drive, _running(balanced, begin, inputs) if resting is None else resting)
+    _check_prescribed(balanced, found.numbers, inputs)
     turns = round(found.input_angle / tau)
     return found.replace(input_angle=found.input_angle - tau * turns, turns=found.turns + turns)
 
@@ -87,6 +88,14 @@ def _check_uncounted(drive: Drive) -> None:
             raise ValueError(
                 f"equilibrium needs sensors that do not count; sensors.{field['name']} does. Put sw.sensor.Ideal() in its place"
             )
+
+
+def _check_prescribed(drive: Drive, state: Array, inputs: Array) -> None:
+    """Refuses a motor that keeps accelerating the input shaft, whatever torque that takes."""
+    if isinstance(drive.motor, motor.AccelerationSource):
+        place = Layout(drive).places["input_speed"]
+        if not Rates.of(drive, state, inputs).vanishes(place, 1e-9):
+            raise ValueError(_unsteady(drive, inputs, "the motor prescribes an acceleration that is not zero"))
 
 
 def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:

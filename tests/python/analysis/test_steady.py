@@ -207,6 +207,13 @@ def test_the_reference_drive_rests_there(command: float) -> None:
     stays(DRIVE, state, command)
 
 
+def test_a_motor_that_prescribes_an_acceleration_has_an_equilibrium_without_one_only() -> None:
+    drive = sw.Drive(motor=sw.motor.AccelerationSource(), control=sw.control.OpenLoop(), load=sw.loads.Inertia(inertia=0.1))
+    assert sw.equilibrium(drive, command=0.0, load_torque=0.1).input_speed == 0.0
+    with pytest.raises(ValueError, match=r"nor run steadily: the motor prescribes an acceleration that is not zero"):
+        sw.equilibrium(drive, command=0.01)
+
+
 @settings(max_examples=20)
 @given(smooth_drives)
 def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:
