@@ -60,6 +60,7 @@ def equilibrium(
             numbers, or a part has none: a sampled controller, a load that prescribes or brakes, a motor that accelerates,
             heating, a meter, noise, an encoder; says why
 
+    >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> held = sw.equilibrium(sw.Drive(load=arm), command=0.5)
     >>> held.input_speed, held.output_speed
@@ -93,8 +94,8 @@ def _check_uncounted(drive: Drive) -> None:
 def _check_prescribed(drive: Drive, state: Array, inputs: Array) -> None:
     """Refuses a motor that keeps accelerating the input shaft, whatever torque that takes."""
     if isinstance(drive.motor, motor.AccelerationSource):
-        place = Layout(drive).places["input_speed"]
-        if not Rates.of(drive, state, inputs).vanishes(place, 1e-9):
+        place = Layout(drive).places["input_speed"].start
+        if not Rates.of(drive, state, inputs).vanishes([place], 1e-9):
             raise ValueError(_unsteady(drive, inputs, "the motor prescribes an acceleration that is not zero"))
 
 
