@@ -83,7 +83,7 @@ def _hdf5(random: Generator, place: Path) -> Made:
     with h5py.File(path, "w", libver=picked(random, ("earliest", "latest"))) as file:
         file["t"], file["q"] = TIME, np.sin(TIME)
         if kind == "huge":
-            file.create_dataset("x", (size,), "f8", chunks=(1024,), fillvalue=1.0)
+            file.create_dataset("x", (size,), "f8", chunks=(min(size, 1024),), fillvalue=1.0)
         elif kind == "chunked":
             file.create_dataset("x", (min(size, 10**7),), "f8", data=np.zeros(min(size, 10**7)), compression="gzip")
         elif kind == "external":
