@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import Content, Label, Source, check_count
+from strainwave.files.labels import Content, Label, Source
 from strainwave.files.units import measures
 from strainwave.messages import listed, one_line, quoted
 
@@ -135,6 +135,5 @@ def grid_table(
     if not grids:
         raise ValueError(one_line("; ".join([f"{file} holds no series of numbers", *left_out])))
     names = [name for grid in grids for name in grid.columns]
-    check_count(file, len(names))
     labels = [Label("time", "time", "s"), *(Label(name, name, units.get(name) or None) for name in names)]
     return GridTable(file, title, labels, grids, [one_line(each) for each in left_out])

@@ -12,7 +12,7 @@ from strainwave.files.array_table import Grid, GridTable, grid_table
 from strainwave.files.bag_containers import bag_files, messages_of
 from strainwave.files.bag_messages import JOINTS, NUMBERS, UNITS, joint_states, plain_number
 from strainwave.files.budget import Budget
-from strainwave.files.labels import read_by_others
+from strainwave.files.labels import check_names, read_by_others
 from strainwave.messages import one_line
 
 
@@ -34,6 +34,7 @@ def open_bag(path: str | Path) -> GridTable:
                 own.add(message.stamp, message.stamp, {"": plain_number(message)})
         begin = min((each.begin for each in series.values()), default=0)
         several = sum(kind == JOINTS for _, kind in series) > 1
+        check_names([name for each in series.values() for name in each.columns])
         grids = [each.grid(begin, _prefix(topic, kind, several)) for (topic, kind), each in series.items()]
     names = [name for grid in grids for name in grid.columns]
     units = {name: UNITS[name.rpartition(".")[2]] for name in names if name.rpartition(".")[2] in UNITS}

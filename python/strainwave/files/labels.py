@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -19,6 +19,7 @@ from strainwave.messages import as_option, listed, one_line, quoted
 
 Content = Literal["numbers", "dates", "other"]  # of a column
 MAX_COLUMNS = 4000  # of one file: each name and each unit is interpreted, which takes about a millisecond
+MAX_NAME = 1000  # characters of the name of a column, or of a header cell
 
 
 class Label(NamedTuple):
@@ -63,18 +64,17 @@ def labels_of(texts: Sequence[str]) -> list[Label]:
     ]
 
 
-def check_count(place: str, columns: int) -> None:
-    """Refuse more columns than can be interpreted in a few seconds.
-
-    Args:
-        place: the file or line, as the message names it
-        columns: how many it has
+def check_names(names: Collection[str]) -> None:
+    """Refuse names of columns that cannot be interpreted in a few seconds.
 
     Raises:
-        ValueError: they are more than `MAX_COLUMNS`
+        RefusedFile: they are more than `MAX_COLUMNS`, or one has more than `MAX_NAME` characters
     """
-    if columns > MAX_COLUMNS:
-        raise ValueError(f"{place} has {columns} columns; at most {MAX_COLUMNS} are read: save those that are needed")
+    if len(names) > MAX_COLUMNS:
+        raise RefusedFile(f"has {len(names)} columns; at most {MAX_COLUMNS} are read: save those that are needed")
+    for name in names:
+        if len(name) > MAX_NAME:
+            raise RefusedFile(f"has a column {quoted(name)} of {len(name)} characters; a name has at most {MAX_NAME}")
 
 
 def _is_index(text: str) -> bool:

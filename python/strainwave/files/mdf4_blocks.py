@@ -70,7 +70,6 @@ class Mdf4File:
         self.data = data
         self.whole = data.data
         self.budget = budget
-        self.conversions: dict[tuple[int, bool], tuple[str, Convert | RefusedChannel | None]] = {}
 
     def channel_groups(self) -> Iterator[ChannelGroup]:
         """Return the channel groups, each with the instants of its samples."""
@@ -149,13 +148,11 @@ class Mdf4File:
         """Return unit and conversion; None if it gives texts."""
         if not address:
             return "", identity
-        if (address, of_integers) not in self.conversions:
-            unit = self._text(self._block(address, b"##CC").links[1])
-            try:
-                self.conversions[address, of_integers] = unit, self._convert(address, of_integers)
-            except RefusedChannel as refused:
-                self.conversions[address, of_integers] = unit, refused
-        return self.conversions[address, of_integers]
+        unit = self._text(self._block(address, b"##CC").links[1])
+        try:
+            return unit, self._convert(address, of_integers)
+        except RefusedChannel as refused:
+            return unit, refused
 
     def _convert(self, address: int, of_integers: bool, depth: int = 0) -> Convert | None:
         self.budget.take_node(depth)

@@ -15,6 +15,7 @@ from strainwave.files.mdf_conversion import Convert, RefusedChannel
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
 
+BYTES_OF_RECORD = 64  # that the place of an unsorted record takes in memory as Python has it
 MAX_UNSORTED_RECORDS = 5_000_000  # of a data group with several channel groups, whose records are sorted one by one
 FLOAT_BITS = (16, 32, 64)
 
@@ -157,8 +158,8 @@ def records_of(
     if len(layouts) == 1 and len(wanted) == 1:
         ((number, layout),) = wanted.items()
         return {number: _of_one(data, number, layout, id_bytes, id_bytes_behind)}
-    starts = _starts(data, layouts, id_bytes, id_bytes_behind)
     budget.take_bytes(len(data), "sorting its records")
+    starts = _starts(data, layouts, id_bytes, id_bytes_behind, budget)
     whole = data.tobytes()
     found = {}
     for number, layout in wanted.items():
@@ -193,7 +194,9 @@ def _check_count(found: int, claimed: int) -> None:
         raise RefusedFile(f"claims {claimed} records, but its data contain {found}; it is damaged or was not closed")
 
 
-def _starts(data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, id_bytes_behind: int) -> dict[int, list[int]]:
+def _starts(
+    data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, id_bytes_behind: int, budget: Budget
+) -> dict[int, list[int]]:
     """Return where the records of each channel group begin."""
     if not id_bytes and len(data):
         raise RefusedFile("has several channel groups in one data group, whose records have no number")
@@ -204,6 +207,7 @@ def _starts(data: Bytes, layouts: Mapping[int, RecordLayout], id_bytes: int, id_
         place += id_bytes
         if number not in layouts:
             raise RefusedFile(f"a record has the number {number}, which is that of no channel group")
+        budget.take_bytes(BYTES_OF_RECORD, "sorting its records")
         starts[number].append(place)
         length = layouts[number].length
         place += 4 + int.from_bytes(whole[place : place + 4], "little") if length is None else length

@@ -104,11 +104,14 @@ def range_finder(lower: Array, upper: Array, of_integers: bool) -> Callable[[Arr
 def piecewise(places: Callable[[Array], NDArray[np.intp]], pieces: Sequence[Convert | None]) -> Convert:
     """Return the conversion that differs between keys or ranges; the last is that of all other values, None gives nan."""
 
+    known = np.array([piece is not None for piece in pieces])
+
     def convert(raw: Array) -> Array:
         place = places(raw) % len(pieces)
         order = np.argsort(place, kind="stable")
+        order = order[known[place[order]]]
         found = np.full(len(raw), np.nan)
-        for rows in np.split(order, np.flatnonzero(np.diff(place[order])) + 1) if len(raw) else ():
+        for rows in np.split(order, np.flatnonzero(np.diff(place[order])) + 1) if len(order) else ():
             if piece := pieces[place[rows[0]]]:
                 found[rows] = piece(raw[rows])
         return found

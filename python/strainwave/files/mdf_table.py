@@ -7,7 +7,8 @@ and external files without a bound. Here a formula refuses its channel, and one 
 from __future__ import annotations
 
 import mmap
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.array_table import Grid, GridTable, grid_table
 from strainwave.files.budget import Budget, RefusedFile, open_regular
-from strainwave.files.labels import read_by_others
+from strainwave.files.labels import check_names, read_by_others
 from strainwave.files.mdf3_blocks import channel_groups
 from strainwave.files.mdf4_blocks import Mdf4File
 from strainwave.files.mdf_channels import Bytes, ChannelGroup, channel_values
@@ -36,9 +37,11 @@ def open_mdf(path: str | Path) -> GridTable:
     left_out: list[str] = []
     with read_by_others(path, "MDF"), open_regular(path) as file:
         data = np.frombuffer(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ), np.uint8)
-        budget = Budget(len(data))
+        budget, names, tries = Budget(len(data)), list[str](), Counter[tuple[str, int]]()
         for number, group in enumerate(_groups(data, budget)):
-            if len(group.records) and (grid := _grid(group, number, units, left_out, budget)):
+            names += [channel.name for channel in group.channels]
+            check_names(names)
+            if len(group.records) and (grid := _grid(group, number, units, tries, left_out, budget)):
                 grids.append(grid)
     return grid_table(one_line(str(path)), "", grids, units, left_out)
 
@@ -53,7 +56,14 @@ def _groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
     return Mdf4File(data, budget).channel_groups() if version >= 400 else channel_groups(data, budget)
 
 
-def _grid(group: ChannelGroup, number: int, units: dict[str, str], left_out: list[str], budget: Budget) -> Grid | None:
+def _grid(
+    group: ChannelGroup,
+    number: int,
+    units: dict[str, str],
+    tries: Counter[tuple[str, int]],
+    left_out: list[str],
+    budget: Budget,
+) -> Grid | None:
     """Return the channels of a group; add what they are measured in, and what of it is not read."""
     try:
         time = _time(group, budget)
@@ -64,7 +74,7 @@ def _grid(group: ChannelGroup, number: int, units: dict[str, str], left_out: lis
     for channel in group.channels:
         if channel.is_master:
             continue
-        name = _unique(channel.name, number, columns.keys() | units.keys())
+        name = _unique(channel.name, number, units, tries)
         try:
             columns[name] = channel_values(channel, group.records, budget)
             units[name] = channel.unit
@@ -85,10 +95,11 @@ def _time(group: ChannelGroup, budget: Budget) -> Array:
     return channel_values(channel, records, budget)
 
 
-def _unique(name: str, group: int, taken: set[str]) -> str:
-    """Return the name, with the number of its group behind it where the file has it already."""
-    found, count = name, 0
+def _unique(name: str, group: int, taken: Collection[str], tries: Counter[tuple[str, int]]) -> str:
+    """Return the name, with the number of its group behind it where the file has it already; `tries` counts these."""
+    found = name
     while found in taken:
-        found = f"{name}.{group}" if not count else f"{name}.{group}.{count}"
-        count += 1
+        count = tries[name, group]
+        tries[name, group] += 1
+        found = f"{name}.{group}.{count}" if count else f"{name}.{group}"
     return found

@@ -15,7 +15,7 @@ from strainwave.files.labels import (
     Content,
     Label,
     Source,
-    check_count,
+    check_names,
     label_of,
     read_by_others,
     seconds_since_first,
@@ -35,16 +35,15 @@ def open_parquet(path: str | Path) -> ParquetTable:
     import pyarrow
     from pyarrow.parquet import read_schema
 
-    file = one_line(str(path))
     try:
-        with open_regular(path) as opened:
-            schema = read_schema(opened)
-        check_count(file, len(schema))
+        with open_regular(path) as file:
+            schema = read_schema(file)
+        check_names(schema.names)
         title = (schema.metadata or {}).get(b"title", b"").decode()
         labels = [_label(field) for field in schema]
     except (OSError, pyarrow.ArrowException, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
-    return ParquetTable(file, title, labels, Path(path), schema)
+    return ParquetTable(one_line(str(path)), title, labels, Path(path), schema)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.budget import RefusedFile, read_regular
-from strainwave.files.labels import Content, Label, Source, check_count, labels_of, seconds_since_first, unreadable
+from strainwave.files.labels import MAX_NAME, Content, Label, Source, check_names, labels_of, seconds_since_first, unreadable
 from strainwave.files.text_layout import CLOCK, MAX_LINE_BYTES, NUMBER, lines_above, lists_apart, seconds_of_clock, with_units
 from strainwave.messages import one_line, quoted
 
@@ -30,8 +30,6 @@ TITLE = "# title: "
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
 NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
 _SEEN = 1000  # rows that tell what a column holds
-
-_LONGEST_LABEL = 1000  # characters of a header cell: a bound for the work that a text from outside can cause
 
 
 def open_csv(path: str | Path) -> CsvTable:
@@ -73,7 +71,7 @@ def open_csv(path: str | Path) -> CsvTable:
         end = begins + below.end(1)
         labels, begins, line = with_units_below, end, line + data.count(b"\n", begins, end)
     labels, data = lists_apart(labels, data[begins:], delimiter)
-    check_count(f"{file} line {line}", len(labels))
+    _check_names(f"{file} line {line}", [label.text for label in labels])
     body = memoryview(data)
     if not re.search(rb"[^\n]", body):
         raise ValueError(f"{file} has a header but no rows")
@@ -117,16 +115,20 @@ def _labels(place: str, text: str, delimiter: str) -> list[Label]:
         cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=True, strict=True))
     except csv.Error as error:
         raise ValueError(f"{place}: the header cannot be read: {one_line(str(error))}") from None
-    for cell in cells:
-        if len(cell) > _LONGEST_LABEL:
-            raise ValueError(f"{place}: {quoted(cell)} has {len(cell)} characters; a header cell has at most {_LONGEST_LABEL}")
-    check_count(place, len(cells))
+    _check_names(place, cells)
     return labels_of([cell.strip() for cell in cells])
+
+
+def _check_names(place: str, names: Sequence[str]) -> None:
+    try:
+        check_names(names)
+    except RefusedFile as error:
+        raise ValueError(f"{place} {error}") from None
 
 
 def _labels_above(comment: re.Match[bytes] | None, count: int, delimiter: str) -> list[Label] | None:
     """The names that a comment right above the first row gives to its columns, as programs write them that know no header."""
-    if comment is None or len(comment[1]) > _LONGEST_LABEL or comment[0].startswith(TITLE.encode()):
+    if comment is None or len(comment[1]) > MAX_NAME or comment[0].startswith(TITLE.encode()):
         return None
     text = re.sub(r"\s+(?=[\[(])", "", comment[1].decode().strip())
     names = [each.strip() for each in (text.split() if delimiter == " " else text.split(delimiter))]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.budget import Budget, RefusedFile
-from strainwave.files.labels import check_count, label_of
+from strainwave.files.labels import check_names, label_of
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
@@ -53,13 +53,13 @@ def table_of(file: str, variables: Iterable[tuple[str, Any]], budget: Budget) ->
                     singles[part] = float(values[0])
                 else:
                     series[part] = values
+        check_names(series)
     except RefusedFile as error:
         raise ValueError(one_line(f"{file}: {error}")) from None
     if not series:
         raise ValueError(one_line("; ".join([f"{file} holds no series of numbers", *left_out])))
     length, _ = max(Counter(len(values) for values in series.values()).items(), key=lambda each: (each[1], each[0]))
     kept = {name: values for name, values in series.items() if len(values) == length}
-    check_count(file, len(kept))
     others = [f"{name} ({len(values)})" for name, values in series.items() if len(values) != length]
     left_out += [f"of another length than {length}, and left out: {listed(others)}"] if others else []
     return ArrayTable(file, "", [label_of(name) for name in kept], list(kept.values()), left_out, singles)

@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 from strainwave import Recording
+from strainwave.files import budget
 from strainwave.files.array_table import GridTable
 from strainwave.files.labels import Source
+from strainwave.files.mdf_channels import RecordLayout, records_of
 from strainwave.files.mdf_table import open_mdf
 from strainwave.files.tables import open_table
 from strainwave.identification.reading.mapping import FileMapping
@@ -262,6 +264,41 @@ def test_a_conversion_that_contains_itself(tmp_path: Path) -> None:
     for link in (4, 5, 6):
         linked(path, b"##CC", link, start)
     refused(path, "nests structures more than 64 deep")
+
+
+def test_a_conversion_is_counted_for_each_channel_that_refers_to_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each applies all of it: 4000 channels with one table of 1000 conversions took 40 s."""
+    path = tmp_path / "a.mf4"
+    pieces = {f"val_{place}": place for place in range(20)} | {f"text_{place}": {"a": 2.0, "b": 0.0} for place in range(20)}
+    save(path, "4.10", {name: {**pieces, "default": b"none"} for name in ("q", "r")})
+    whole = path.read_bytes()
+    (first,) = {struct.unpack_from("<Q", whole, each.start() + 24 + 32)[0] for each in re.finditer(b"##CN", whole)} - {0}
+    monkeypatch.setattr(budget, "MAX_NODES", 40)
+    assert whole[first : first + 4] == b"##CC"
+    refused(path, "has more than 40 variables")
+
+
+def test_each_unsorted_record_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many groups may refer to the same data, and sort it anew."""
+    layouts = {1: RecordLayout(1, 0), 2: RecordLayout(0, 0)}
+    assert len(records_of(np.ones(100, np.uint8), layouts, 1, budget.Budget(0))[1]) == 1
+    monkeypatch.setattr(budget, "MIN_ALLOWED_BYTES", 1000)
+    with pytest.raises(budget.RefusedFile, match="sorting its records expands the file"):
+        records_of(np.ones(100, np.uint8), layouts, 1, budget.Budget(0))
+
+
+def test_a_name_without_end(tmp_path: Path) -> None:
+    save(tmp_path / "a.mf4", "4.10", {1001 * "q": None})
+    refused(tmp_path / "a.mf4", "has a column .* of 1001 characters; a name has at most 1000")
+
+
+def test_names_that_come_again_carry_the_number_of_their_group(tmp_path: Path) -> None:
+    path = tmp_path / "a.mf4"
+    with asammdf.MDF(version="4.10") as file:
+        for _ in range(2):
+            file.append([asammdf.Signal(RAW, TIME, name="q") for _ in range(3)])
+        file.save(path, overwrite=True)
+    assert list(columns(open_mdf(path))) == ["q", "q.0", "q.0.1", "q.1", "q.1.1", "q.1.2"]
 
 
 def test_a_channel_outside_of_its_record(tmp_path: Path) -> None:
