@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 WINDOW = 0.1  # of the torque of a regime: a local slope is that of the points within
 PLACES = 400  # of local slopes along a regime, at most
+MIN_COMPLIANCE = 1e-30  # rad/(N.m): rounding; nothing is stiffer, and the square is still a number
 UNIT, COMPLIANCE = "N.m/rad", "rad/(N.m)"
 
 
@@ -163,9 +164,9 @@ def _secant(regime: Regime, loop: Loop, freedom: float) -> Result:
     """
     zero, peak = (0, -1) if regime.name.startswith("positive") else (-1, 0)
     rise, turned = float(regime.torque[peak] - regime.torque[zero]), float(regime.angle[peak] - regime.angle[zero])
-    if turned == 0.0:
-        return result(np.inf, UNIT)
     compliance = turned / rise
+    if abs(compliance) < MIN_COMPLIANCE:
+        return result(np.inf, UNIT)
     near = 1 if zero == 0 else -2
     step = float(regime.torque[near] - regime.torque[zero])
     at_zero = float(regime.angle[near] - regime.angle[zero]) / step if step else compliance
