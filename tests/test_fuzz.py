@@ -38,7 +38,7 @@ FEW = {
 SLOW = "takes long"  # a fault of the machine's load as well: left to whoever runs the thousands
 
 
-WERE_WRONG = [Task("rigs", 32849)]  # a secant over an angle of 2e-321 rad divided by zero
+WERE_WRONG = [Task("rigs", 32849), Task("rigs", 44674)]  # a secant and a line over angles of rounding divided by zero
 
 
 def raises(error: Exception) -> Callable[[], None]:

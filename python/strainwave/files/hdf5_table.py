@@ -122,8 +122,8 @@ class _Walk:
         kind = _class(node)
         if "MATLAB_object_decode" in node.attrs:
             return object_of_matlab(kind)
-        if kind == "char":
-            return "".join(map(chr, np.ravel(self._values(node)).astype(int)))
+        if kind == "char" and node.dtype.kind == "u":
+            return "".join(map(chr, np.ravel(self._values(node))))
         if h5py.check_ref_dtype(node.dtype) is h5py.Reference:
             references = np.ravel(self._values(node))[:MANY] if depth else ()
             found = [self.content(self.opened[each], depth - 1) for each in references if each]

@@ -67,7 +67,9 @@ def fit_line(x: Array, y: Array, sigma_x: Array, sigma_y: Array) -> Line:
         from_x, from_y = x - middle_x, y - middle_y
         steps = weights * (from_x * sigma_y**2 + slope * from_y * sigma_x**2)  # York's beta
         pull = weights * (steps - weights @ steps / weights.sum())
-        slope = float(pull @ from_y / (pull @ from_x))
+        if not (across := float(pull @ from_x)):
+            raise ValueError("angle and torque of a regime do not vary together; no line fits them: check the angles")
+        slope = float(pull @ from_y) / across
         if abs(slope - before) <= CONVERGED * abs(slope):
             break
     residual = y - middle_y - slope * from_x
