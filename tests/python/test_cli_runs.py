@@ -230,6 +230,14 @@ def test_memory_that_is_not_there_is_told_in_one_line(folder: Path, monkeypatch:
     refused(folder, SIMULATE, "2e+09 samples take 16 GB", "sample less often")
 
 
+def test_memory_that_python_lacks_is_told_in_words(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(sw.ScenarioFile, "simulate", full)
+    refused(folder, SIMULATE, "this takes more memory than there is")
+
+
 @pytest.mark.parametrize("error", [OverflowError("math range error"), ZeroDivisionError("float division by zero")])
 def test_arithmetic_that_no_bound_foresaw_is_told_in_one_line(
     folder: Path, monkeypatch: pytest.MonkeyPatch, error: ArithmeticError

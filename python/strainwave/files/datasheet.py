@@ -374,7 +374,7 @@ def _kinematics(ratio: float, fixed: str | None) -> Any:
     elif nominal < 0.0 and fixed != "circular_spline":
         raise ValueError(f"ratio = {nominal:g}: with the flexspline held the output turns with the input; give it without sign")
     teeth = 2.0 * abs(nominal)
-    if teeth != round(teeth) or not 4 <= teeth < 100_000:
+    if not 4 <= teeth < 100_000 or teeth != round(teeth):
         raise ValueError(
             f"ratio = {nominal:g}: a gear of two lobes has 2 x ratio teeth on its flexspline, a whole number of 4 or more; for "
             "another one write a gear file"

@@ -10,6 +10,7 @@ from strainwave.files.units import check
 from strainwave.messages import quoted
 
 Figure = float | str | Quantity
+MAX_TEXT = 200  # characters of a figure: its pattern takes quadratic time
 
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
 _WRITTEN = re.compile(
@@ -52,6 +53,8 @@ def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
 
 
 def _read(name: str, text: str, unit: str, source: str) -> Quantity:
+    if len(text) > MAX_TEXT:
+        raise ValueError(f"{name} = {quoted(text)} has {len(text)} characters; a figure has at most {MAX_TEXT}")
     written = _WRITTEN.fullmatch(text.strip().removeprefix("<").removeprefix("≤").strip())
     if written is None:
         raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')

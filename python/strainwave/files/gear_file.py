@@ -6,6 +6,7 @@ with file, table and key. docs/gear-files.md shows the format.
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -14,7 +15,7 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
-from strainwave.files.budget import MAX_TEXT_BYTES, RefusedFile, read_regular
+from strainwave.files.budget import MAX_DEPTH, MAX_TEXT_BYTES, RefusedFile, read_regular
 from strainwave.files.described import ParameterField, PartField, all_paths, default_of, own_paths, parameters, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
 from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
@@ -36,6 +37,8 @@ class Contents(Protocol):
 
 
 _TEXTS = ("name", "maker", "note")
+_PART_OF_KEY = r"""(?:"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+'|(?<![\w-])[\w-]++)[ \t]*+"""
+_LONG_KEY = re.compile(rf"(?:{_PART_OF_KEY}\.[ \t]*+){{{MAX_DEPTH}}}")
 
 
 def read(content: Mapping[str, Any]) -> dict[str, Any]:
@@ -134,7 +137,10 @@ def _filled(gear_set: Contents) -> Iterator[tuple[_Table, Any]]:
 def document(path: Path) -> dict[str, Any]:
     """What stands in a TOML file; `ValueError` where it cannot be read, is no TOML or holds nothing."""
     try:
-        content = tomllib.loads(read_regular(path, MAX_TEXT_BYTES).decode("utf-8-sig"))
+        text = read_regular(path, MAX_TEXT_BYTES).decode("utf-8-sig")
+        if _LONG_KEY.search(text):
+            raise RefusedFile(f"contains a key of more than {MAX_DEPTH} parts")  # which tomllib reads in quadratic memory
+        content = tomllib.loads(text)
     except RefusedFile:
         raise
     except OSError as error:

@@ -223,6 +223,8 @@ def test_a_data_sheet_in_a_file_is_read_as_a_gear_set_and_saved_as_one(tmp_path:
     [
         ({"ratio": 100}, "does not say what is held"),
         ({"ratio": -72.3}, "whole number"),
+        ({"ratio": -1e308}, "whole number"),
+        ({"ratio": -100, "k1": f"1 {10**6 * ' '}x"}, r"^k1 = .* has 1000003 characters; a figure has at most 200$"),
         ({"ratio": 0}, "does not say|whole number"),
         ({"ratio": float("nan")}, "ratio"),
         ({"ratio": -100, "fixed": "wave_generator"}, "must be one of"),

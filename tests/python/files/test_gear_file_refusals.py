@@ -253,6 +253,20 @@ def test_what_cannot_be_read_is_refused(folder: Path) -> None:
         load(folder)
 
 
+@pytest.mark.parametrize("part", ["a", '"a.\\" b"', "'.'", '""'])
+def test_a_key_of_many_parts_is_refused(folder: Path, part: str) -> None:
+    """It takes memory that grows with the square of its parts: 4 GB for 200 000."""
+    Path("my.toml").write_text(f"{' . '.join(65 * [part])} = 1")
+    with pytest.raises(ValueError, match=exactly("my.toml contains a key of more than 64 parts")):
+        load("my.toml")
+    Path("my.toml").write_text(f"[{'.'.join(65 * [part])}]")
+    with pytest.raises(ValueError, match=exactly("my.toml contains a key of more than 64 parts")):
+        load("my.toml")
+    Path("my.toml").write_text(f"{'.'.join(64 * [part])} = 1")
+    with pytest.raises(ValueError, match=r"^my\.toml .* is missing|not a part of a gear file"):
+        load("my.toml")
+
+
 @pytest.mark.parametrize(
     ("content", "reason"),
     [

@@ -141,3 +141,10 @@ def test_an_attribute_that_claims_much(path: Path) -> None:
     with h5py.File(path, "a") as file:
         file["t"].attrs["MATLAB_class"] = np.bytes_("x" * 60_000)
     assert names(path) == ["t"]
+
+
+def test_a_text_of_matlab_whose_letters_are_no_whole_numbers(path: Path) -> None:
+    with h5py.File(path, "a") as file:
+        file["q"] = np.full(20, np.nan)
+        file["q"].attrs["MATLAB_class"] = np.bytes_("char")
+    assert names(path) == ["q", "t"]

@@ -55,6 +55,8 @@ CONSTANTS = {
     "speed": ConstantRange("rad/s", 0.0, 1e6, signed=True),  # of a record at one speed without a column of it
     "temperature": ConstantRange("K", 1.0, 1e3),
 }
+MAX_NAMED = 100  # columns of one channel, as of other_angles
+MAX_PATTERNS = 1000  # of file names: each file is compared with each
 WILD = "*?[."  # a section with one of these in its name is a pattern of file names
 
 
@@ -91,6 +93,9 @@ class FileMapping:
         for what, names in (("column", self.columns), ("sign", self.sign)):
             for name in names:
                 _check_known(f"--{what} {name}", name, channels, "channels")
+        for name, wanted in self.columns.items():
+            if wanted.count(",") >= MAX_NAMED:
+                raise ValueError(f"--column {name} names {wanted.count(',') + 1} columns; at most {MAX_NAMED} are taken")
         for name in self.constants:
             _check_known(f"--constant {name}", name, CONSTANTS, "constants")
             check_constant(f"--constant {name}", name, self.constants[name])
@@ -138,6 +143,8 @@ class MappingFile:
             whole = document(Path(path))
         try:
             patterns = {name: each for name, each in whole.items() if isinstance(each, dict) and set(name) & set(WILD)}
+            if len(patterns) > MAX_PATTERNS:
+                raise ValueError(f"has {len(patterns)} patterns of file names; at most {MAX_PATTERNS} are read")
             general = _mapping("", {name: each for name, each in whole.items() if name not in patterns})
             return MappingFile(general, {name: _mapping(f'["{name}"] ', each) for name, each in patterns.items()})
         except ValueError as error:

@@ -82,6 +82,8 @@ def test_what_is_said_of_all_files_and_of_some(tmp_path: Path) -> None:
         ('constants.rate = "\u0661\u0662 Hz"', 'constants.rate = "\u0661\u0662 Hz": it is no number in Hz'),
         (f"constants.rate = {5000 * '9'}", "contains a whole number with too many digits"),
         (f"columns.speed = {5000 * '9'}", "contains a whole number with too many digits"),
+        (f'columns.other_angles = "{",".join(101 * ["q"])}"', "columns.other_angles names 101 columns; at most 100 are taken"),
+        ("".join(f'["*{place}"]\n' for place in range(1001)), "has 1001 patterns of file names; at most 1000 are read"),
         ("side = ", "is not valid TOML: Invalid value"),
         ("", "is empty"),
     ],
