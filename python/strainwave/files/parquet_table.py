@@ -69,7 +69,8 @@ class ParquetTable:
     def measured(self, sources: Sequence[Source]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written, dates as seconds; and what was left out."""
         table = self._read(sources, ("numbers", "dates"))
-        dates = {source.position for source in sources if self.contents[source.position] == "dates"}
+        contents = self.contents
+        dates = {source.position for source in sources if contents[source.position] == "dates"}
         return {
             source.name: _seconds(table, self.schema.field(source.position))
             if source.position in dates

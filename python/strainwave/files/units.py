@@ -171,6 +171,7 @@ def _check_finite(values: Values, converted: Values, unit: str, to: str) -> None
         raise ValueError(f"{worst} {unit} is too large a number in {to}")
 
 
+@lru_cache(maxsize=1024)
 def measures(unit: str, wanted: str) -> bool:
     """Whether a unit is known and measures what another one does.
 
