@@ -103,7 +103,7 @@ class GridTable:
         return f"sample {row}"
 
     def _wanted(self, sources: Sequence[Source]) -> list[str]:
-        return [self.labels[source.position].text for source in sources]
+        return [self.labels[source.position].text for source in sources if source.position]
 
     def _grids(self, sources: Sequence[Source]) -> list[Grid]:
         """The grids of what is wanted; the first one where that is the time alone."""
@@ -114,13 +114,13 @@ class GridTable:
         """What is wanted at the instants of a grid."""
         found = {}
         for source in sources:
-            name = self.labels[source.position].text
-            grid = next((each for each in grids if name in each.columns), None)
-            if grid is None:
+            if not source.position:
                 found[source.name] = common.time
-            else:
-                values = grid.columns[name]
-                found[source.name] = values if grid.time is common.time else np.interp(common.time, grid.time, values)
+                continue
+            name = self.labels[source.position].text
+            grid = next(each for each in grids if name in each.columns)
+            values = grid.columns[name]
+            found[source.name] = values if grid.time is common.time else np.interp(common.time, grid.time, values)
         return found
 
 

@@ -33,7 +33,7 @@ def open_mdf(path: str | Path) -> GridTable:
     Linear, rational and table conversions are applied. A channel whose conversion is a formula is left out by its name.
     """
     grids: list[Grid] = []
-    units: dict[str, str] = {}
+    units = {"time": "s"}  # of the instants, whose name no channel shares
     left_out: list[str] = []
     with read_by_others(path, "MDF"), open_regular(path) as file:
         data = np.frombuffer(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ), np.uint8)

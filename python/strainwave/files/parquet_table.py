@@ -84,6 +84,8 @@ class ParquetTable:
     def _read(self, sources: Sequence[Source], allowed: Sequence[Content]) -> pyarrow.Table:
         wanted = [self.schema.field(source.position) for source in sources]
         for field in wanted:
+            if (count := len(self.schema.get_all_field_indices(field.name))) > 1:
+                raise ValueError(f"{self.file} has {count} columns named {quoted(field.name)}; names must differ")
             if _content(field.type) not in allowed:
                 raise ValueError(f"{self.file} column {quoted(field.name)} holds {one_line(str(field.type))}, not numbers")
         return read_columns(self.path, [field.name for field in wanted])

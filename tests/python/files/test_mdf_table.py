@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from strainwave import Recording
 from strainwave.files import budget
-from strainwave.files.array_table import GridTable
+from strainwave.files.array_table import Grid, GridTable, grid_table
 from strainwave.files.labels import Source
 from strainwave.files.mdf_channels import RecordLayout, records_of
 from strainwave.files.mdf_table import open_mdf
@@ -299,6 +299,19 @@ def test_names_that_come_again_carry_the_number_of_their_group(tmp_path: Path) -
             file.append([asammdf.Signal(RAW, TIME, name="q") for _ in range(3)])
         file.save(path, overwrite=True)
     assert list(columns(open_mdf(path))) == ["q", "q.0", "q.0.1", "q.1", "q.1.1", "q.1.2"]
+
+
+def test_a_channel_called_time_is_not_the_time(tmp_path: Path) -> None:
+    save(tmp_path / "a.mf4", "4.10", {"time": None, "q": None})
+    table = open_mdf(tmp_path / "a.mf4")
+    assert [label.name for label in table.labels] == ["time", "time.0", "q"]
+    found, _ = table.measured([Source(place, name, name, "1") for place, name in enumerate(("time", "clock", "q"))])
+    assert {name: values.tolist() for name, values in found.items()} == {
+        "time": TIME.tolist(), "clock": RAW.tolist(), "q": RAW.tolist(),
+    }  # fmt: skip
+    shared = grid_table("run.mcap", "", [Grid(TIME, {"time": RAW})], {})  # as of a topic /time
+    assert shared.numbers([Source(0, "time", "time", "s")])["time"].tolist() == TIME.tolist()
+    assert shared.numbers([Source(1, "time", "clock", "s")])["clock"].tolist() == RAW.tolist()
 
 
 def test_a_channel_outside_of_its_record(tmp_path: Path) -> None:

@@ -453,6 +453,15 @@ def test_parquet_metadata_that_is_no_text_is_refused(tmp_path: Path) -> None:
             read(path)
 
 
+def test_parquet_columns_of_one_name_are_refused_and_the_others_read(tmp_path: Path) -> None:
+    path = tmp_path / "table.parquet"
+    pq.write_table(pa.table([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]], names=["t [s]", "t [s]", "q [rad]"]), path)
+    table = open_table(path)
+    with pytest.raises(ValueError, match=exactly(f'{path} has 2 columns named "t [s]"; names must differ')):
+        table.measured([Source(0, "t", "t", "s")])
+    assert table.measured([Source(2, "q", "q", "rad")])[0]["q"].tolist() == [5.0, 6.0]
+
+
 def test_parquet_without_columns_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.parquet"
     write_parquet(path)
