@@ -13,6 +13,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
 
 ALL = "all"  # in place of the name of a joint
+MAX_JOINTS = 100  # of all files: every file is read once for each; humanoids have 50
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def identify_joints(
 
     Raises:
         TypeError: as `identify`
-        ValueError: no joint moves in any file, or nothing is found of any; says why of each
+        ValueError: no joint moves in any file, more than `MAX_JOINTS` do, or nothing is found of any; says why of each
     """
     check_arguments(files, mapping)
     said = mapping or (lambda path: FileMapping())
@@ -68,6 +69,8 @@ def identify_joints(
     if not by_joint:
         why = "; ".join(f"{name}: {each}" for name, each in left_out.items())
         raise ValueError(f"no file tells several joints apart, leave --joint away or name one: {why}")
+    if len(by_joint) > MAX_JOINTS:
+        raise ValueError(f"the files have {len(by_joint)} joints that move; at most {MAX_JOINTS} are taken: name one of them")
     found, refused = dict[str, Identified](), dict[str, str]()
     for joint, paths in by_joint.items():
         progress(f"joint {joint}")

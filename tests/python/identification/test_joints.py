@@ -69,3 +69,14 @@ def test_files_that_tell_no_joints_apart_are_named(tmp_path: Path, log: Path) ->
     assert joints.left_out.keys() == {"table.csv", "text.csv"}
     assert any(line.startswith("table.csv: NOT USED: ") for line in joints_summary(joints))
     assert "table.csv is not used" in joints_report(joints)
+
+
+def test_more_joints_than_any_robot_has_are_refused(tmp_path: Path) -> None:
+    """Each would be identified by itself, for hours."""
+    names = [f"q_{joint} [rad]" for joint in range(101)]
+    rows = [",".join(f"{row + joint}" for joint in range(101)) for row in range(20)]
+    (tmp_path / "log.csv").write_text(
+        "\n".join([",".join(["time [s]", *names]), *(f"{row / 100},{each}" for row, each in enumerate(rows))])
+    )
+    with pytest.raises(ValueError, match=r"^the files have 101 joints that move; at most 100 are taken: name one of them$"):
+        identify_joints("hfuc-25-100", [tmp_path / "log.csv"])
