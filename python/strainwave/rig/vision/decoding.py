@@ -161,11 +161,14 @@ def _check_tiles(picture: ImageFile) -> None:
 
 def _by_pillow(data: bytes, kind: str, tags: Tags) -> tuple[Grey, datetime | None]:
     from PIL import Image as Pillow
+    from PIL import UnidentifiedImageError
 
     try:
         picture = Pillow.open(io.BytesIO(data), formats=[kind])
     except Pillow.DecompressionBombError:
         raise RefusedFile(f"is too large: {MAX_PIXELS} pixels can be read; make it smaller") from None
+    except UnidentifiedImageError:  # whose message is the address of a buffer
+        raise RefusedFile(f"is damaged: it is no {kind} picture, though it begins as one") from None
     check_size(*picture.size)
     _check_tiles(picture)
     picture.load()
@@ -203,7 +206,7 @@ def _netpbm(data: bytes) -> Grey:
 def _numbers(data: bytes, start: int, kind: np.dtype[Any], count: int, *, plain: bool) -> NDArray[Any]:
     """The pixels of a PGM or PPM file, written in digits or as bytes."""
     if plain:
-        found = np.fromstring(data[start:], kind, count, sep=" ")
+        found = np.fromstring(data[start:], kind, sep=" ")[:count]  # told the count, numpy adds what the memory contains
     else:
         found = np.frombuffer(data, kind, min(count, (len(data) - start) // kind.itemsize), start)
     if len(found) < count:

@@ -82,6 +82,8 @@ def test_postscript_starts_no_other_program(monkeypatch: pytest.MonkeyPatch) -> 
         (b"P5 32 24 0\n", "is damaged: its full scale is 0"),
         (b"P5 32 24 255\n" + bytes(700), "is damaged: it ends after 700 of 768 numbers"),
         (b"P5 32 24 99\n" + bytes([200]) * 768, "is damaged: a pixel is outside of 0 to 99, its full scale"),
+        (b"P2 32 24 255\n" + b"1 " * 700, "is damaged: it ends after 700 of 768 numbers"),
+        (b"\xff\xd8" + b"\xff" * 100, "is damaged: it is no JPEG picture, though it begins as one"),
         (b"P2 32 24 99\n" + b"-1 " * 768, "is damaged: a pixel is outside of 0 to 99, its full scale"),
         (b"P5 #" + bytes(5000) + b"\n32 24 255\n" + bytes(768), "is damaged: it does not begin with width, height"),
         (b"P2 32 24 255\n" + b"#\n" * 5000, "is damaged: "),
