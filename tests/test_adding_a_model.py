@@ -70,7 +70,10 @@ ELSEWHERE = {
         "identification/experiments/motion_log.py": "by which a place without friction is known",
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
-    "AccelerationSource": {"identification/experiments/driven_log.py": "the input of a log moves as it was measured"},
+    "AccelerationSource": {
+        "analysis/steady.py": "accelerates whatever the torques: no equilibrium",
+        "identification/experiments/driven_log.py": "the input of a log moves as it was measured",
+    },
     "CurrentSource": {"identification/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
     "Coulomb": {
         "demo.py": "runs document P's experiment with each reading of its table",
