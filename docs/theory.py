@@ -32,7 +32,7 @@ GREEK = (
 SYMBOL = rf"\b(?:(?:{GREEK}|[A-Za-z])_[A-Za-z0-9]+|(?:{GREEK}))(?:\^\d)?\b"  # of a formula, within words
 LINE = 66  # characters of a formula that fit on a line
 SPACE = 5  # characters between its parts
-LOAD = 10.0  # N.m, transmitted where a figure shows an error or a friction that depends on it
+LOAD_TORQUE = 10.0  # N.m, transmitted where a figure shows an error or a friction that depends on it
 
 
 def write(folder: Path) -> None:
@@ -381,10 +381,10 @@ TURN = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
 def under_load(model: Any) -> Array:
-    """Return the kinematic error [rad] over a turn under `LOAD`. Only the random one is a function of the torque alone."""
+    """Return the kinematic error [rad] over a turn under `LOAD_TORQUE`. Only the random one depends on the torque alone."""
     if isinstance(model, sw.kinematic_error.Stochastic):
-        return model.error(TURN, torque=LOAD)
-    return parts.error_under_load(model, TURN, LOAD)
+        return model.error(TURN, torque=LOAD_TORQUE)
+    return parts.error_under_load(model, TURN, LOAD_TORQUE)
 
 
 @having("error", "slope")
@@ -401,7 +401,7 @@ def error(models: Shown) -> list[Draw]:
                 sensitive = getattr(model, "load_sensitivity", 0.0) > 0.0
                 axes.plot(np.degrees(TURN), factor * model.error(TURN), label=label or ("without load" if sensitive else None))
                 if sensitive:
-                    axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD:g} N.m")
+                    axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD_TORQUE:g} N.m")
             axes.set(xlabel="input angle [deg]", ylabel=f"error at the output [{unit}]", xticks=np.arange(0, 361, 60))
 
         return draw
@@ -441,14 +441,14 @@ def steady(models: Shown) -> list[Draw]:
     law = models[0][1]
     fastest = 10.0 * asked(law, "stribeck_speed", 1.0)
     slowest = 1e-9 * fastest
-    loaded = law.steady(SLOW, load=LOAD) != law.steady(SLOW)
+    loaded = law.steady(SLOW, load=LOAD_TORQUE) != law.steady(SLOW)
 
     def draw(axes: Axes) -> None:
         for speed in (np.linspace(-fastest, -slowest, 401), np.linspace(slowest, fastest, 401)):
-            axes.plot(speed, law.steady(speed, load=LOAD), color="C0")
+            axes.plot(speed, law.steady(speed, load=LOAD_TORQUE), color="C0")
         if law.set_valued:
-            axes.plot([0.0, 0.0], [-law.hold(-1.0, load=LOAD), law.hold(load=LOAD)], color="C0")
-        under = f" under {LOAD:g} N.m" if loaded else ""
+            axes.plot([0.0, 0.0], [-law.hold(-1.0, load=LOAD_TORQUE), law.hold(load=LOAD_TORQUE)], color="C0")
+        under = f" under {LOAD_TORQUE:g} N.m" if loaded else ""
         axes.set(xlabel="speed [rad/s]", ylabel=f"steady friction{under} [N.m]")
 
     return [draw]
@@ -461,7 +461,7 @@ def over_contact(models: Shown) -> list[Draw]:
     fast = 10.0 * asked(law, "stribeck_speed", 1.0)
     ranges = {
         "angle": (np.linspace(0.0, getattr(law, "domain_end", 2.0 * np.pi), 721), "angle [rad]", (SLOW,)),
-        "load": (np.linspace(-LOAD, LOAD, 401), "transmitted torque [N.m]", (SLOW, -SLOW)),
+        "load": (np.linspace(-LOAD_TORQUE, LOAD_TORQUE, 401), "transmitted torque [N.m]", (SLOW, -SLOW)),
         "temperature": (np.linspace(273.15, 333.15, 121), "temperature [K]", (SLOW, fast)),
     }
 
@@ -471,14 +471,14 @@ def over_contact(models: Shown) -> list[Draw]:
         def draw(axes: Axes) -> None:
             several = len(speeds) > 1
             for speed in speeds:
-                friction = law.steady(speed, **({"load": LOAD} | {name: values}))
+                friction = law.steady(speed, **({"load": LOAD_TORQUE} | {name: values}))
                 axes.plot(values, friction, label=f"at {speed:g} rad/s" if several else None)
             axes.set(xlabel=label, ylabel="friction [N.m]" if several else f"friction at {speeds[0]:g} rad/s [N.m]")
 
         return draw
 
     def varies(name: str) -> bool:
-        friction = law.steady(SLOW, **({"load": LOAD} | {name: ranges[name][0]}))
+        friction = law.steady(SLOW, **({"load": LOAD_TORQUE} | {name: ranges[name][0]}))
         return bool(np.ptp(friction) > 1e-9 * np.abs(friction).max())
 
     return [over(name) for name in ranges if varies(name)]
@@ -489,7 +489,7 @@ def presliding(models: Shown) -> list[Draw]:
     """Slow cycles about three times as wide as the contact bends before it slips, if it bends."""
     law = models[0][1]
     bend, slow = 1e-9, 1e-9
-    bent, slipping = float(law.trace([0.0, 1.0], [bend, bend], load=LOAD)[-1]), float(law.steady(slow, load=LOAD))
+    bent, slipping = float(law.trace([0.0, 1.0], [bend, bend], load=LOAD_TORQUE)[-1]), float(law.steady(slow, load=LOAD_TORQUE))
     if law.set_valued or not 0.0 < bent < 0.1 * slipping:
         return []
     reach = 3.0 * slipping * bend / bent
@@ -498,7 +498,7 @@ def presliding(models: Shown) -> list[Draw]:
         time = np.linspace(0.0, 125.0, 2001)
         angle = reach * np.sin(0.1 * time)
         factor, unit = prefixed(reach, "rad")
-        axes.plot(factor * angle, law.trace(time, np.gradient(angle, time), load=LOAD))
+        axes.plot(factor * angle, law.trace(time, np.gradient(angle, time), load=LOAD_TORQUE))
         axes.set(xlabel=f"angle [{unit}], cycled slowly", ylabel="friction [N.m]")
 
     return [draw]

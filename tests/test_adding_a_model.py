@@ -71,7 +71,7 @@ ELSEWHERE = {
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
     "AccelerationSource": {
-        "analysis/steady.py": "accelerates whatever the torques: no equilibrium",
+        "analysis/steady.py": "accelerates under any torque, so that there is no equilibrium",
         "identification/experiments/driven_log.py": "the input of a log moves as it was measured",
     },
     "CurrentSource": {"identification/prepared_log.py": "whatever its motor, a log tells the current along a motion"},

@@ -417,8 +417,8 @@ def main() -> None:
         _print(f"strainwave: a number is too large or too small to compute with: {one_line(str(error))}\n", sys.stderr)
         code = REFUSED
     except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
-        told = str(error) or "this takes more memory than there is"  # where Python itself raises a MemoryError
-        _print(f"strainwave: {one_line(with_options(told, names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
+        reason = str(error) or "this takes more memory than there is"  # where Python itself raises a MemoryError
+        _print(f"strainwave: {one_line(with_options(reason, names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
         code = REFUSED
     finally:
         _print(said.getvalue(), sys.stdout)

@@ -133,7 +133,7 @@ def measure(
     ] = 5,
     interval: Annotated[float, typer.Option(parser=number_option, help="Time between two photographs in s.")] = 0.5,
     patience: Annotated[
-        float, typer.Option(parser=number_option, help="Time in s after which a shaft that still moves is told.")
+        float, typer.Option(parser=number_option, help="Time in s after which a shaft that still moves is reported.")
     ] = 60.0,
 ) -> None:
     """Guide a test step by step, and write each step down as soon as it is done.

@@ -1,4 +1,4 @@
-"""What reading one file may cost: regular files only, and a bound on bytes, nodes and depth before anything is allocated.
+"""Limits of reading one file: regular files only; bytes, nodes and depth are bounded before anything is allocated.
 
 A file from a stranger may claim gigabytes in a few bytes, refer to itself, or be a FIFO that never ends. Every reader opens
 its file with `open_regular` or `read_regular` and takes from one `Budget` what it is about to expand or visit.
@@ -27,7 +27,7 @@ class RefusedFile(ValueError):  # noqa: N818 - its message is the reason alone, 
 
 @dataclass
 class Budget:
-    """What one file may still cost.
+    """Bytes and nodes that reading one file has taken, and their limits.
 
     Args:
         file_bytes: size of the file [bytes]; a larger file may expand to more
@@ -45,7 +45,7 @@ class Budget:
 
     @property
     def allowed_bytes(self) -> int:
-        """How much the file may expand to in memory [bytes]."""
+        """Largest size of the file in memory [bytes]."""
         return min(max(MIN_ALLOWED_BYTES, MAX_EXPANSION * self.file_bytes), MAX_ALLOWED_BYTES)
 
     def take_bytes(self, count: int, what: str) -> None:

@@ -1,4 +1,4 @@
-"""What lies in a folder, and nothing that lies elsewhere: symbolic links are named, not followed."""
+"""Files of a folder. Symbolic links are named and not followed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LINK_NOT_FOLLOWED = "it is a symbolic link in a folder, which is not followed; n
 
 
 class FolderFiles(NamedTuple):
-    """Files below a folder, sorted, and what would be such files if symbolic links were followed."""
+    """Files below a folder, sorted, and the symbolic links among them."""
 
     files: list[Path]
     links: list[Path]

@@ -20,7 +20,7 @@ from strainwave.messages import one_line, quoted
 MAX_ATTRIBUTE = 1000  # bytes of the name of a class
 MAX_SOFT_LINKS = 16  # one after the other
 MAX_DEFLATE = 1032  # times that a packed byte may expand
-CHECKSUM = 4  # bytes that a filter may add to a chunk
+CHECKSUM_BYTES = 4  # bytes that a filter may add to a chunk
 MISSING = Unreadable("a link that leads nowhere; the data are not in this file")
 CYCLE = Unreadable("a group or reference that contains itself")
 
@@ -184,7 +184,7 @@ def _check_packing(node: Any, chunk_bytes: int, left: int) -> None:
     for place in large:
         _, packed = node.id.read_direct_chunk(place)
         with suppress(zlib.error):  # which HDF5 reports
-            if len(zlib.decompressobj().decompress(packed, chunk_bytes + CHECKSUM + 1)) > chunk_bytes + CHECKSUM:
+            if len(zlib.decompressobj().decompress(packed, chunk_bytes + CHECKSUM_BYTES + 1)) > chunk_bytes + CHECKSUM_BYTES:
                 raise RefusedFile(f"a chunk of dataset {node.name} unpacks to more than the {chunk_bytes} bytes that it claims")
 
 

@@ -17,13 +17,13 @@ import numpy as np
 from strainwave.files.budget import Budget, RefusedFile
 from strainwave.files.variables import object_of_matlab
 
-HEADER = 128  # bytes, version 5
+HEADER_BYTES = 128  # bytes, version 5
 MATRIX, COMPRESSED = 14, 15  # types of elements
 NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}  # types of elements
 TEXTS = {16: "utf-8", 17: "utf-16", 18: "utf-32"}  # types of elements; the others contain a letter in each number
 CELL, STRUCTURE, OBJECT, TEXT, SPARSE, FUNCTION, OPAQUE = 1, 2, 3, 4, 5, 16, 17  # classes of arrays
 LAST_CLASS = 17  # the other ones contain numbers
-COMPLEX = 0x800  # flag
+COMPLEX_FLAG = 0x800  # flag
 NUMBERS_OF_VERSION_4 = {0: "f8", 1: "f4", 2: "i4", 3: "i2", 4: "u2", 5: "u1"}  # by the third digit of the type
 LARGEST_TYPE = 5000  # in version 4; a number beyond it has the other byte order
 BYTES_OF_VALUE = 64  # that a cell or field takes in memory as Python has it
@@ -64,7 +64,7 @@ def variables_of_version_5(data: bytes, budget: Budget) -> Iterator[tuple[str, A
         RefusedFile: the file claims more than it contains, nests too deep, or would take more than the budget allows
     """
     order = "<" if data[126:128] == b"IM" else ">"
-    for element in _elements(memoryview(data)[HEADER:], order, is_padded=False):
+    for element in _elements(memoryview(data)[HEADER_BYTES:], order, is_padded=False):
         if element.kind == COMPRESSED:
             (element,) = _elements(_unpacked(element.content, budget), order, is_padded=False)
         yield _array(element, order, budget, 0)
@@ -112,7 +112,7 @@ def _array(element: _Element, order: str, budget: Budget, depth: int) -> tuple[s
     name = _text(named.content)
     if min(shape, default=0) < 0 or kind > LAST_CLASS:
         raise RefusedFile("has an array of an unknown class or a negative size; it is damaged")
-    if kind in (SPARSE, FUNCTION) or (word & COMPLEX and kind > SPARSE):
+    if kind in (SPARSE, FUNCTION) or (word & COMPLEX_FLAG and kind > SPARSE):
         return name, np.array([])
     if kind == TEXT:
         return name, "".join(_letters(part, order) for part in rest[:1])

@@ -23,13 +23,13 @@ from strainwave.files.mdf_conversion import (
     refuse_formula,
 )
 
-HEADER = 64  # byte where the header block begins
+HEADER_BLOCK_PLACE = 64  # byte where the header block begins
 KINDS: dict[int, tuple[Any, bool | None]] = {  # data types: kind of number, and byte order where it is not that of the file
     0: ("u", None), 1: ("i", None), 2: ("f", None), 3: ("f", None),
     9: ("u", True), 10: ("i", True), 11: ("f", True), 12: ("f", True),
     13: ("u", False), 14: ("i", False), 15: ("f", False), 16: ("f", False),
 }  # fmt: skip
-TIME = 1  # type of a channel that contains the instants of its group
+TIME_CHANNEL = 1  # type of a channel that contains the instants of its group
 FORMULA, TEXTS, NONE = 10, (11, 12), 65535  # types of conversions
 
 
@@ -37,7 +37,7 @@ def channel_groups(data: Bytes, budget: Budget) -> Iterator[ChannelGroup]:
     """Return the channel groups of a file of version 2 or 3."""
     whole = data.data
     is_big_endian = _unpack("H", whole, 24)[0] != 0
-    (address,) = _unpack("I", _block(whole, HEADER, b"HD"), 4)
+    (address,) = _unpack("I", _block(whole, HEADER_BLOCK_PLACE, b"HD"), 4)
     while address:
         block = _block(whole, address, b"DG", budget)
         address, first, _, place, _, ids = _unpack("4I2H", block, 4)
@@ -73,7 +73,7 @@ def _channels(whole: memoryview, address: int, is_big_endian: bool, budget: Budg
         place = NumberField(kind_of_number, more_bytes + start // 8, start % 8, bits, is_big_endian if order is None else order)
         unit, convert = _conversion(_block(whole, conversion, b"CC"), budget) if conversion else ("", identity)
         if convert is not None:
-            yield Channel(name, unit, place, convert, is_master=kind == TIME)
+            yield Channel(name, unit, place, convert, is_master=kind == TIME_CHANNEL)
 
 
 def _master(channels: Sequence[Channel], records: Records) -> tuple[Channel, Records] | None:

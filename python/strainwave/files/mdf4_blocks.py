@@ -28,7 +28,7 @@ from strainwave.files.mdf_conversion import (
     refuse_formula,
 )
 
-HEADER = 64  # byte where the header block begins
+HEADER_BLOCK_PLACE = 64  # byte where the header block begins
 MAX_TEXT = 2**16  # bytes of a name, a unit or a formula
 BYTES_OF_REFERENCE = 64  # that a reference of a conversion takes in memory
 
@@ -75,7 +75,7 @@ class Mdf4File:
         """Return the channel groups, each with the instants of its samples."""
         groups: list[_Group] = []
         records: dict[int, Records] = {}
-        address = self._block(HEADER, b"##HD").links[0]
+        address = self._block(HEADER_BLOCK_PLACE, b"##HD").links[0]
         while address:
             address = self._data_group(address, groups, records)
         masters = {
@@ -268,6 +268,6 @@ class Mdf4File:
         return _Block(kind, links, self.whole[address + begin : address + length])
 
     def _kind(self, address: int) -> bytes:
-        if not HEADER <= address <= len(self.whole) - 24:
+        if not HEADER_BLOCK_PLACE <= address <= len(self.whole) - 24:
             raise RefusedFile(f"refers to byte {address}, where it has no block; it is damaged")
         return bytes(self.whole[address : address + 4])

@@ -21,7 +21,7 @@ FLOAT_BITS = (16, 32, 64)
 
 
 class NumberField(NamedTuple):
-    """Where a number stands in a record.
+    """Place of a number in a record.
 
     Args:
         kind: unsigned, signed or floating
@@ -133,7 +133,7 @@ def _bit_field(part: Bytes, field: NumberField) -> Array:
 
 
 class RecordLayout(NamedTuple):
-    """Of a channel group in its data group.
+    """Layout of the records of a channel group within its data group.
 
     Args:
         records: how many records the file claims

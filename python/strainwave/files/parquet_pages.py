@@ -1,4 +1,4 @@
-"""What the columns of a Parquet file expand to, by its footer and the headers of their pages.
+"""Size in memory of the columns of a Parquet file, by its footer and the headers of their pages.
 
 Arrow allocates what these headers claim, and unpacks a page to it, before it compares anything. The footer is not asked for by
 Arrow either: an error in it ends the process.

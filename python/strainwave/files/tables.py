@@ -42,7 +42,7 @@ class OpenTable(Protocol):
 
     @property
     def left_out(self) -> Sequence[str]:
-        """What of the file is not among the columns, and why."""
+        """Parts of the file that are not among the columns, each with the reason."""
 
     @property
     def contents(self) -> Sequence[Content]:

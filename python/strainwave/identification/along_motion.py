@@ -29,7 +29,7 @@ EXACTLY = 1e-6  # relative: a number that a person gives is fitted as nearly as 
 
 
 def log(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    """What a log tells along its motion, and, where it warms up, of friction over the temperature."""
+    """Return the estimates of a log along its motion, and over temperature if it warms up; and the gear with them."""
     warm, name = warmed(file), file.path.name
     try:
         finding, after = _along_motion(file, known)
@@ -74,14 +74,14 @@ def _along_motion(file: Recognised, known: Known) -> tuple[Finding, Known]:
 
 
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
-    """What of each regressor that a person gave acts."""
+    """Return the share of each given regressor."""
     shares = {each.path.removeprefix("share of "): each for each in found.estimates}
     said = [f"{name.partition(' ')[2]} {shares[name].value:.4g} ± {shares[name].sigma:.2g}" for name in regressors]
     return [f"shares of the regressors in the torque at the output: {listed(said)}"] if said else []
 
 
 def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], name: str) -> Known:
-    """The set with the friction that a log tells, of places of which no earlier file has told any."""
+    """Return the set with the friction of a log, at places for which no earlier file has an estimate."""
     gear = best.fit.parts[0].model.gear
     sigmas = {each.path: each.sigma for each in told}
     for part in ("friction_input", "friction_mesh"):
@@ -92,7 +92,7 @@ def _with_friction(known: Known, best: MotionCandidate, told: Sequence[Told], na
 
 
 def _unlike_said(taken: PreparedLog) -> str | None:
-    """That the inertia that a person gave is not what the log shows; None where it is, or none was given."""
+    """Return the doubt that the given inertia contradicts the log; None if it agrees, or none was given."""
     if "load.inertia" not in taken.said:
         return None
     drive, shown = taken.drive, regression(taken.log, taken.drive).inertia
@@ -126,7 +126,7 @@ def _of_motion(best: MotionCandidate, taken: PreparedLog) -> Iterator[Told]:
 
 
 def _untold(estimate: Estimate, sigma: float, best: MotionCandidate) -> str:
-    """Why a log does not tell a number; empty where it does."""
+    """Return the reason why a log does not determine a number; empty if it does."""
     if estimate.path != "load.gravity_phase":
         return "its standard deviation exceeds half the value" if sigma > 0.5 * abs(estimate.value) else ""
     gravity = next(each for each in best.fit.estimates if each.path == "load.gravity_torque")

@@ -74,7 +74,7 @@ def between_encoders(taken: PreparedLog, best: MotionCandidate, errors: Transmis
 
     Args:
         taken: the log
-        best: what its motion has told
+        best: the fit along its motion
         errors: orders of the kinematic error, from which the fit starts
         known: before the log
     """

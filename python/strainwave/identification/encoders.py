@@ -14,7 +14,7 @@ from strainwave.identification.reading.recognise import Recognised
 
 
 def encoders(file: Recognised, known: Known) -> tuple[Finding, Known]:
-    """What a record of two encoders tells, and what is known after it."""
+    """Return the orders of a record of two encoders, and the gear with them."""
     found = transmission_error(file.recording)
     told = tuple(orders_of(found))
     remarks, curves = (*file.remarks, *found.remarks), curves_of_orders(found)
@@ -23,7 +23,7 @@ def encoders(file: Recognised, known: Known) -> tuple[Finding, Known]:
 
 
 def with_error(known: Known, found: TransmissionError, name: str) -> Known:
-    """The set with a kinematic error, unless an earlier file has told it."""
+    """Return the set with a kinematic error, unless an earlier file determined it."""
     law = found.law
     if "kinematic_error" in known.told or not law.order:
         return known

@@ -59,19 +59,19 @@ class Told:
         return replace(self, sigma=float(np.hypot(self.sigma, common)), common=float(np.hypot(self.common, common)))
 
     def in_current(self) -> Told:
-        """The same, where the torque constant is not known and torques are told in A."""
+        """Return the same estimate in A, for a torque constant that is not known."""
         if not self.is_of_torque:
             return self
         return replace(self, unit=self.unit.replace("N.m", "A").replace("kg.m2", "A.s2/rad"), law="in A")
 
     @property
     def label(self) -> str:
-        """Its path, and what else tells it from others of that path."""
+        """Its path, with what distinguishes it from others of that path."""
         return f"{self.path} ({self.law})" if self.law.startswith(("in ", "of ")) else self.path
 
     @property
     def is_of_torque(self) -> bool:
-        """Whether it is twice as large where all torques are."""
+        """True if it grows in proportion to all torques."""
         return self.unit.startswith(("N.m", "kg.m2"))
 
     @property

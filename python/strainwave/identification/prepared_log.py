@@ -19,7 +19,7 @@ from strainwave.identification.known import Known, TorqueConstant, rotor_sigma
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.messages import as_option, listed
 
-EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and friction explain less tells neither
+EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and friction explain less determines neither
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
 
@@ -50,7 +50,7 @@ class PreparedLog(ComparedByFields):
 
     @property
     def motor_known(self) -> bool:
-        """Whether the inertia of the motor is known, which else that of the load has inside."""
+        """True if the inertia of the motor is known; else that of the load includes it."""
         return self.drive.motor.inertia > NO_ROTOR
 
 

@@ -1,4 +1,4 @@
-"""What reading a file may cost."""
+"""Limits of reading a file."""
 
 from __future__ import annotations
 
