@@ -38,7 +38,7 @@ def test_every_model_is_on_one_page(theory: ModuleType) -> None:
 def test_an_error_under_load_is_that_of_the_model_divided_by_the_load(theory: ModuleType) -> None:
     law = sw.kinematic_error.Fourier(order=[2], amplitude=[3e-4], phase=[0.0])
     loaded = theory.under_load(sw.kinematic_error.Scaled(law=law, load_sensitivity=0.1))
-    assert loaded == pytest.approx(law.error(theory.TURN) / (1.0 + 0.1 * theory.LOAD), abs=1e-6)
+    assert loaded == pytest.approx(law.error(theory.TURN) / (1.0 + 0.1 * theory.LOAD_TORQUE), abs=1e-6)
 
 
 def test_symbols_within_words_become_formulas_and_code_stays(theory: ModuleType) -> None:

@@ -10,7 +10,7 @@ from strainwave.files.array_table import ArrayTable
 from strainwave.files.budget import Budget, budget_of, open_regular, read_regular
 from strainwave.files.hdf5_table import hdf5_variables
 from strainwave.files.labels import read_by_others
-from strainwave.files.matlab_variables import HEADER, variables_of_version_4, variables_of_version_5
+from strainwave.files.matlab_variables import HEADER_BYTES, variables_of_version_4, variables_of_version_5
 from strainwave.files.variables import table_of
 from strainwave.messages import one_line
 
@@ -28,7 +28,7 @@ def open_mat(path: str | Path) -> ArrayTable:
 def _variables(path: Path, budget: Budget) -> Iterator[tuple[str, Any]]:
     with read_by_others(path, "MAT"):
         with open_regular(path) as file:
-            head = file.read(HEADER)
+            head = file.read(HEADER_BYTES)
         if head[VERSION] in VERSION_7_3:
             found = list(hdf5_variables(path, "MAT", budget))
         elif head[VERSION] in VERSION_5:
