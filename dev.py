@@ -2,6 +2,7 @@
 
     python3 dev.py demo         run the demonstration; its reports are out/demo/*/report.html
     python3 dev.py test         run the tests; what follows goes to pytest, as in: test -k lugre
+    python3 dev.py times        print the processor time of each file compiled, and of the slowest tests of the last run
     python3 dev.py lint         check style, formatting and types
     python3 dev.py sanitize     run tests of the compiled core with addresses, undefined behaviour and threads checked
     python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
@@ -32,6 +33,8 @@ OUT = ROOT / "out"
 BIN = ROOT / ".venv" / "bin"
 PYTHON = BIN / "python"
 PINS = ROOT / ".ci" / "requirements.txt"
+TEST_TIMES = BUILD / "test-times.txt"
+MAX_SLOWEST = 20  # lines of a table of times
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -139,7 +142,37 @@ def demo(options: Sequence[str]) -> int:
 
 def test(options: Sequence[str]) -> int:
     prepare(["test"])
-    return attempt(PYTHON, "-m", "pytest", "--numprocesses", "auto", "--dist", "worksteal", *options)
+    parallel = ("--numprocesses", "auto", "--dist", "worksteal")
+    return attempt(PYTHON, "-m", "pytest", *parallel, *options, STRAINWAVE_TEST_TIMES=str(TEST_TIMES))
+
+
+def times(options: Sequence[str]) -> int:
+    for path in sorted(BUILD.glob("*/times.txt")):
+        ninja = (path.parent / "build.ninja").read_text()
+        compiled = {name: seconds for name, seconds in read_times(path).items() if name in ninja}
+        print_slowest(f"objects of {path.parent.name}", compiled)
+    if TEST_TIMES.exists():
+        tests = read_times(TEST_TIMES)
+        files: dict[str, float] = {}
+        for name, seconds in tests.items():
+            file = name.partition("::")[0]
+            files[file] = files.get(file, 0.0) + seconds
+        print_slowest("tests", tests)
+        print_slowest("files of tests", files)
+    return 0
+
+
+def read_times(path: Path) -> dict[str, float]:
+    """Returns the processor time of each name in a file of times [s]. The last line of a name counts."""
+    lines = (line.split("\t", 1) for line in path.read_text().splitlines())
+    return {name: float(seconds) for seconds, name in lines}
+
+
+def print_slowest(what: str, seconds: dict[str, float]) -> None:
+    """Prints the sum and the largest of processor times [s]."""
+    print(f"{sum(seconds.values()):8.1f} s  all {len(seconds)} {what}")
+    for name in sorted(seconds, key=lambda name: -seconds[name])[:MAX_SLOWEST]:
+        print(f"{seconds[name]:8.1f} s  {name}")
 
 
 def lint(options: Sequence[str]) -> int:
@@ -247,7 +280,7 @@ def pin(options: Sequence[str]) -> int:
 
 
 VERBS: dict[str, Callable[[Sequence[str]], int]] = {
-    verb.__name__: verb for verb in (demo, test, lint, sanitize, bench, docs, wheel, stubs, pin)
+    verb.__name__: verb for verb in (demo, test, times, lint, sanitize, bench, docs, wheel, stubs, pin)
 }
 
 

@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
@@ -35,3 +35,38 @@ def pytest_configure() -> None:
     wanted, found = os.environ.get("STRAINWAVE_IS_IN"), Path(strainwave.__file__)
     if wanted and not found.is_relative_to(wanted):
         raise pytest.UsageError(f"the tests are to be of the package in {wanted}, not of {found}")
+
+
+# ---- Processor time of each test, with the processes that it starts ----------------------------------------------------
+
+# A file that the main process of a run writes; workers, and pytest run by a test, find no such variable and write nothing.
+TIMES = os.environ.pop("STRAINWAVE_TEST_TIMES", "")
+BEGIN = pytest.StashKey[float]()
+spent: dict[str, float] = {}  # s
+
+
+def processor_time() -> float:
+    """Returns the processor time of this process and of its ended children [s]."""
+    return sum(os.times()[:4])
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    item.stash[BEGIN] = processor_time()
+    return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    report = yield
+    report.processor_time = processor_time() - item.stash[BEGIN]  # type: ignore[attr-defined]
+    return report
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    spent[report.nodeid] = getattr(report, "processor_time", 0.0)  # none of a test that ended its process
+
+
+def pytest_sessionfinish() -> None:
+    if TIMES:
+        Path(TIMES).write_text("".join(f"{seconds:.2f}\t{name}\n" for name, seconds in spent.items()))
