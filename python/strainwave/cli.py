@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
+from strainwave.cache_command import cache
 from strainwave.file_options import number_option
 from strainwave.identify_command import identify
 from strainwave.messages import listed, one_line, pairs, quoted, unquoted, with_options
@@ -49,6 +50,7 @@ app.command()(identify)
 app.command()(rank)
 app.command()(orders)
 app.command()(plan_experiments)
+app.command()(cache)
 
 
 def _show_version(wanted: bool) -> None:

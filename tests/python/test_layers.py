@@ -14,6 +14,7 @@ PACKAGE = Path(sw.__file__).parent
 ANALYSES = {"analysis", "identification", "rig", "studies"}
 LAYERS = {
     "files": {"files"},
+    "native": {"files", "native"},
     "simulation": {"files", "simulation"},
     "analysis": {"files", "simulation", "analysis"},
     "identification": {"files", "simulation", "identification"},
@@ -23,6 +24,7 @@ LAYERS = {
 }
 TOP = {
     "__main__",
+    "cache_command",
     "cli",
     "file_options",
     "rig_command",

@@ -1,0 +1,47 @@
+"""A kernel: what is compiled for one drive and one job, and the key under which the result is stored."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+
+from strainwave import _core
+from strainwave.native.compilers import Compiler, flags_for
+
+INCLUDE = Path(_core.__file__).parent / "include"
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """The source of a kernel, and two texts that the list of kernels shows.
+
+    Args:
+        source: C++, which includes headers of the package and exports `extern "C"` functions
+        job: such as run, ensemble, derivatives
+        drive: its models in words
+    """
+
+    source: str
+    job: str
+    drive: str
+
+    def key(self, compiler: Compiler) -> str:
+        """Return the name under which the cache has what this compiler makes of it."""
+        return _digest(self.shipped_key(), compiler.identity, *compiler.command, *compiler.link)
+
+    def shipped_key(self) -> str:
+        """Return the name under which the package has it, whatever compiler it was built by: all give the same numbers."""
+        return _digest(self.source, _headers(), *flags_for(_core.instruction_set()))
+
+
+@cache
+def _headers() -> str:
+    """Return the digest of the names and contents of all headers."""
+    paths = sorted(INCLUDE.rglob("*.hpp"))
+    return _digest(*(f"{path.relative_to(INCLUDE).as_posix()}\n{path.read_text('utf-8')}" for path in paths))
+
+
+def _digest(*texts: str) -> str:
+    return sha256("\0".join(texts).encode()).hexdigest()

@@ -1,0 +1,69 @@
+"""The static type of a drive: the C++ type in which every law is fixed, so that nothing is chosen at run time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from strainwave import _core
+
+# Members that are template parameters, in the order of the C++ templates; of a law they are its members of a chosen law.
+PARAMETERS = {
+    _core.Drive: ("control", "motor", "gear", "load", "sensors", "thermal", "meter"),
+    _core.Gear: (
+        *("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis"),
+        *("friction_input", "friction_mesh", "friction_output", "softening", "structure", "stiffness_variation"),
+    ),
+}
+NAMESPACES = {"loads": "load"}  # the function `strainwave.load` takes that name in Python
+
+
+def static_type(part: Any, scalar: str = "S") -> str:
+    """Return the C++ name of the static type of a drive, a gear or a law, over a scalar.
+
+    >>> import strainwave as sw
+    >>> static_type(sw.friction.Thermal(law=sw.friction.Viscous(viscous=0.1)))
+    'strainwave::friction::Thermal<S, strainwave::friction::Viscous<S>>'
+    """
+    kind = type(part)
+    arguments = [static_type(getattr(part, name), scalar) for name in parameters(kind)]
+    while len(arguments) > 1 and len(set(arguments)) == 1 and kind not in PARAMETERS:
+        arguments.pop()  # the first is the default of those that follow
+    return f"{_template(kind)}<{', '.join([scalar, *arguments])}>"
+
+
+def parameters(kind: type[Any]) -> tuple[str, ...]:
+    """Return the members of a model that are parameters of its C++ template, in their order."""
+    return PARAMETERS.get(kind) or tuple(field["name"] for field in kind.fields if field["options"] and field["kind"] == "part")
+
+
+def in_words(drive: Any) -> str:
+    """Return the models of a drive in words, those left out that every drive has by default.
+
+    >>> import strainwave as sw
+    >>> in_words(sw.Drive(control=sw.control.PID(), load=sw.loads.Pendulum()))
+    'control PID, load Pendulum'
+    """
+    return ", ".join(_differences(drive, type(drive)())) or "default laws"
+
+
+def _differences(part: Any, default: Any) -> Iterator[str]:
+    """Yield member and model where a part differs in its models from another one of its class."""
+    for name in parameters(type(part)):
+        own, other = getattr(part, name), getattr(default, name)
+        if type(own) is type(other) and parameters(type(own)):
+            yield from _differences(own, other)
+        elif type(own) is not type(other):
+            yield f"{name} {_short(own)}"
+
+
+def _short(law: Any) -> str:
+    """Return the model of a law with those of the laws that it varies: Thermal(LuGre)."""
+    inner = [_short(getattr(law, name)) for name in parameters(type(law))]
+    return type(law).__name__ + (f"({', '.join(dict.fromkeys(inner))})" if inner else "")
+
+
+def _template(kind: type[Any]) -> str:
+    family = kind.__module__.removeprefix("strainwave").removeprefix(".")
+    space = "" if family == "_core" else f"{NAMESPACES.get(family, family)}::"
+    return f"strainwave::{space}{kind.__name__}"
