@@ -62,7 +62,7 @@ def test_a_fifo_stays_and_takes_the_bytes_of_the_file(kind: str, tmp_path: Path)
     reader = threading.Thread(target=lambda: read.append(fifo.read_bytes()))
     reader.start()
     WRITERS[kind](fifo)
-    reader.join(timeout=10.0)
+    reader.join(timeout=60.0)
     WRITERS[kind](plain)
     assert fifo.is_fifo()
     assert read == [plain.read_bytes()]

@@ -270,7 +270,7 @@ def told(name: str, folder: Path) -> list[list[str]]:
     options = (*STRICT, "-Og", "-ffp-contract=off")
     assert compilation(compiler("g++"), folder, {source.name: source.read_text()}, *options) == (0, "")
     subprocess.run(["g++", f"{name}.o", "-o", name], cwd=folder, check=True)
-    printed = subprocess.run([folder / name], capture_output=True, text=True, check=True, timeout=30).stdout
+    printed = subprocess.run([folder / name], capture_output=True, text=True, check=True, timeout=60).stdout
     return [line.split() for line in printed.splitlines()]
 
 

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import copy
 import math
-import os
 import pickle
 import re
-import signal
-import threading
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -23,6 +19,7 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.signals import outputs
 from strainwave.simulation.time_grid import TimeGrid
 
+from tests.interrupts import ctrl_c
 from tests.reference_drive import DRIVE, command
 
 DT = 2.0**-12  # s: its multiples are exact, so that the steps of a run and of a part of it are the same
@@ -302,36 +299,14 @@ def test_a_progress_bar_changes_nothing() -> None:
     assert same(sw.simulate(DRIVE, command(0.1), progress=True), sw.simulate(DRIVE, command(0.1)))
 
 
-def test_an_interrupt_ends_a_long_run_within_a_second() -> None:
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+def test_an_interrupt_ends_a_long_run_on_its_way() -> None:
     excitation = Excitation(sw.scenario.constant(0.1, 300.0))
     course = excitation.time_grid(DT, 10.0)
     inputs, outputs = excitation.over(course), np.empty((len(COLUMNS), len(course.times)))
-    pressed: list[float] = []
-
-    def press() -> None:
-        pressed.append(time.monotonic())
-        os.kill(os.getpid(), signal.SIGINT)
-
-    try:
-        key = threading.Timer(0.1, press)
-        key.start()
-        with pytest.raises(KeyboardInterrupt):
-            _core.simulate(
-                DRIVE,
-                DRIVE.rest().numbers,
-                course.instants,
-                inputs,
-                course.samples[1:],
-                _core.Method.exponential,
-                EVERY,
-                outputs,
-                1,
-            )
-        assert time.monotonic() - pressed[0] < 1.0
-    finally:
-        key.join()
-        signal.signal(signal.SIGINT, before)
+    start = DRIVE.rest().numbers
+    times = course.instants, inputs, course.samples[1:]
+    with ctrl_c(), pytest.raises(KeyboardInterrupt):
+        _core.simulate(DRIVE, start, *times, _core.Method.exponential, EVERY, outputs, 1)
 
 
 HOUR = 3600.0 * 2000.0 / 60.0  # turns of the input at 2000 rpm
