@@ -10,6 +10,10 @@ import pytest
 import strainwave
 from hypothesis import settings
 
+# Before anything imports numpy, and for the processes of tests too: threads of BLAS that wait for each other beside other workers
+# take up to five times the processor time of one.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # How long an example takes says more about the machine than about the example. The examples are the same on each run, so that a
 # failure tells of the change and not of the draw; `--hypothesis-profile=explore` draws others.
 settings.register_profile("strainwave", deadline=None, derandomize=True)
