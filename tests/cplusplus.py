@@ -5,13 +5,16 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from importlib.util import find_spec
-from itertools import cycle, islice
 from pathlib import Path
+from typing import Any
 
 import pytest
+import strainwave as sw
 from strainwave import _core
+from strainwave.native.static_type import instance, parameters, static_type
+
+from tests.strategies import made
 
 ROOT = Path(__file__).parents[1]
 INCLUDE = ROOT / "include"
@@ -20,15 +23,6 @@ HEADERS = "#include <strainwave/drive.hpp>\n#include <strainwave/integrate.hpp>\
 STRICT = ("-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-psabi", f"-I{INCLUDE}")
 
 ZIG = (sys.executable, "-m", "ziglang", "c++")
-
-# Python may not call a module as it calls the function `load`.
-NAMESPACE = {"loads": "load", "kinematic_noise": "kinematic_error"}
-FRICTION = ("friction", "friction", "friction")
-GEAR = (
-    *("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis", *FRICTION, "softening"),
-    *("structure", "variation"),
-)
-DRIVE = ("control", "motor", "loads", "sensor", "thermal", "meter")
 
 
 def compiler(name: str) -> tuple[str, ...]:
@@ -67,21 +61,18 @@ def compilation(command: tuple[str, ...], folder: Path, sources: dict[str, str],
     return result.returncode, result.stderr
 
 
-def listed(family: str, scalar: str) -> Iterator[str]:
-    """The models of a family, round and round."""
-    space = f"strainwave::{NAMESPACE.get(family, family)}"
-    return cycle(f"{space}::{model.__name__}<{scalar}>" for model in _core.families[family].values())
-
-
 def drives(scalar: str) -> list[str]:
     """As many drives as the longest list has models; shorter lists go round, friction is one ahead from place to place."""
-    count = max(map(len, _core.families.values()))
-    ahead = [GEAR[:i].count("friction") for i in range(len(GEAR))]
-    gear = [islice(listed(family, scalar), start, None) for family, start in zip(GEAR, ahead, strict=True)]
-    control, motor, load, sensor, thermal, meter = (listed(family, scalar) for family in DRIVE)
-    return [
-        f"strainwave::Drive<{scalar}, {next(control)}, {next(motor)}, "
-        f"strainwave::Gear<{scalar}, {', '.join(map(next, gear))}>, {next(load)}, "
-        f"strainwave::Sensors<{scalar}, {next(sensor)}>, {next(thermal)}, {next(meter)}>"
-        for _ in range(count)
-    ]
+    return [mixed(sw.Drive, number, scalar) for number in range(max(map(len, _core.families.values())))]
+
+
+def mixed(kind: Any, number: int, scalar: str) -> str:
+    """The static type of a drive, a gear or sensors with the models of this number, round and round."""
+    fields, names = {field["name"]: field for field in kind.fields}, parameters(kind)
+    arguments = []
+    for place, name in enumerate(names):
+        ahead = sum("friction" in before for before in names[:place])
+        models = list((fields[name]["options"] or {}).values())
+        law = models and made(models[(number + ahead) % len(models)])
+        arguments.append(static_type(law, scalar) if law else mixed(type(fields[name]["default"]), number, scalar))
+    return instance(kind, arguments, scalar)

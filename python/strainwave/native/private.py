@@ -28,9 +28,10 @@ def make_private(folder: Path) -> None:
     Raises:
         OSError: that is impossible, or another user could put a file into it
     """
-    _check_above(folder)
-    for each in (*reversed(folder.parents), folder):
-        each.mkdir(mode=0o700, exist_ok=True)
+    if not os.path.lexists(folder):
+        _check_above(folder)
+        for each in (*reversed(folder.parents), folder):
+            each.mkdir(mode=0o700, exist_ok=True)
     check_private(folder)
 
 

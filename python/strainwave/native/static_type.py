@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from strainwave import _core
@@ -26,9 +26,13 @@ def static_type(part: Any, scalar: str = "S") -> str:
     'strainwave::friction::Thermal<S, strainwave::friction::Viscous<S>>'
     """
     kind = type(part)
-    arguments = [static_type(getattr(part, name), scalar) for name in parameters(kind)]
-    while len(arguments) > 1 and len(set(arguments)) == 1 and kind not in PARAMETERS:
-        arguments.pop()  # the first is the default of those that follow
+    return instance(kind, [static_type(getattr(part, name), scalar) for name in parameters(kind)], scalar)
+
+
+def instance(kind: type[Any], arguments: Sequence[str], scalar: str) -> str:
+    """Return the C++ name of the template of a model with these arguments, in the order of `parameters`."""
+    if kind not in PARAMETERS and len(set(arguments)) == 1:
+        arguments = arguments[:1]  # the default of those that follow
     return f"{_template(kind)}<{', '.join([scalar, *arguments])}>"
 
 
