@@ -61,6 +61,14 @@ def compilation(command: tuple[str, ...], folder: Path, sources: dict[str, str],
     return result.returncode, result.stderr
 
 
+def compiled_before(command: tuple[str, ...], folder: Path, headers: str, *options: str) -> tuple[str, str]:
+    """Compiles what many sources include once; with the options that are returned, and those given here, they find it done."""
+    (folder / "before.hpp").write_text(headers)
+    compiling = [*command, *options, "-x", "c++-header", "before.hpp", "-o", "before.hpp.gch"]
+    subprocess.run(compiling, cwd=folder, check=True)
+    return "-include", "before.hpp"
+
+
 def drives(scalar: str) -> list[str]:
     """As many drives as the longest list has models; shorter lists go round, friction is one ahead from place to place."""
     return [mixed(sw.Drive, number, scalar) for number in range(max(map(len, _core.families.values())))]

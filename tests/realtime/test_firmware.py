@@ -8,16 +8,17 @@ from pathlib import Path
 
 import pytest
 
-from tests.cplusplus import HEADERS, INCLUDE, compilation, compiler, drives, zig
+from tests.cplusplus import HEADERS, INCLUDE, compilation, compiled_before, compiler, drives, zig
 
 STEP = """
-using Drive = {drive};
-extern "C" void step_{number}(const Drive* drive, Drive::State* state, strainwave::integrate::Steps<float, Drive>* steps,
+using Drive{number} = {drive};
+extern "C" void step_{number}(const Drive{number}* drive, Drive{number}::State* state,
+                              strainwave::integrate::Steps<float, Drive{number}>* steps,
                               const strainwave::Interval<strainwave::Input<float>>* input, float dt) {{
     *state = strainwave::step(*drive, *state, *input, dt, *steps);
 }}
 """
-SOURCES = {f"step_{i}.cpp": HEADERS + STEP.format(number=i, drive=drive) for i, drive in enumerate(drives("float"))}
+STEPS = {f"step_{i}.cpp": STEP.format(number=i, drive=drive) for i, drive in enumerate(drives("float"))}
 
 FIRMWARE = (
     *("-std=c++20", "-Os", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-asynchronous-unwind-tables"),
@@ -45,8 +46,9 @@ def undefined(folder: Path) -> set[str]:
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Object files with the step of one drive each; the drives hold every model between them."""
     folder = tmp_path_factory.mktemp("firmware")
-    assert compilation(compiler("g++"), folder, SOURCES, *FIRMWARE, "-fstack-usage") == (0, "")
-    assert len(list(folder.glob("*.o"))) == len(SOURCES)
+    before = compiled_before(compiler("g++"), folder, HEADERS, *FIRMWARE)
+    assert compilation(compiler("g++"), folder, STEPS, *FIRMWARE, *before, "-fstack-usage") == (0, "")
+    assert len(list(folder.glob("*.o"))) == len(STEPS)
     return folder
 
 
@@ -57,7 +59,7 @@ def test_a_step_asks_for_mathematics_and_nothing_else(programs: Path) -> None:
 
 def test_a_step_on_a_microcontroller_is_in_single_precision_throughout(tmp_path: Path) -> None:
     """Clang copies and clears a state by calling memcpy and memset, which every freestanding environment has to provide."""
-    assert compilation(zig(), tmp_path, SOURCES, *CORTEX, *FIRMWARE) == (0, "")
+    assert compilation(zig(), tmp_path, {"steps.cpp": HEADERS + "".join(STEPS.values())}, *CORTEX, *FIRMWARE) == (0, "")
     assert undefined(tmp_path) <= LIBM | {"memcpy", "memset"}
 
 
@@ -68,7 +70,7 @@ def test_the_stack_of_a_step_is_known_and_small(programs: Path, record_property:
         assert {kind for _, _, kind in frames} <= {"static", "dynamic,bounded"}
         stack = sum(int(size) for _, size, _ in frames)
         record_property(f"stack_bytes_at_most_{usage.stem}", stack)
-        large = any(model in SOURCES[f"{usage.stem}.cpp"] for model in LARGE_STATES)
+        large = any(model in STEPS[f"{usage.stem}.cpp"] for model in LARGE_STATES)
         assert 0 < stack < (26 if large else 20) * 1024  # 20 with laws that modulate others at all three places
 
 
