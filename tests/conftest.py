@@ -10,14 +10,14 @@ import pytest
 import strainwave
 from hypothesis import settings
 
-# Before anything imports numpy, and for the processes of tests too: threads of BLAS that wait for each other beside other workers
+# Before anything imports numpy, and for the processes of tests too: beside other workers, threads of BLAS wait for each other, and
 # take up to five times the processor time of one.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # How long an example takes says more about the machine than about the example. The examples are the same on each run, so that a
-# failure tells of the change and not of the draw; `--hypothesis-profile=explore` draws others.
-settings.register_profile("strainwave", deadline=None, derandomize=True)
-settings.register_profile("explore", deadline=None, derandomize=False)
+# failure tells of the change and not of the draw; `--hypothesis-profile=explore` draws others, and takes the whole of samples.
+settings.register_profile("strainwave", deadline=None, derandomize=True, max_examples=40)
+settings.register_profile("explore", deadline=None, derandomize=False, max_examples=100)
 settings.load_profile("strainwave")
 
 

@@ -21,6 +21,7 @@ from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import DRIVE, EVERY_PART, cannot_create_energy, laws, reduced_gears
+from tests.samples import sample
 from tests.side_by_side import side_by_side
 from tests.strategies import built, models, suited
 
@@ -112,7 +113,7 @@ def agree(drive: Drive, seed: int) -> None:
 
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
 @pytest.mark.parametrize(("part", "model"), EVERY_PART)
-@settings(max_examples=8)
+@settings(max_examples=sample(3, 8))
 @given(st.data(), seeds)
 def test_a_gear_with_any_law_runs_one_trajectory_in_every_scalar(part: str, model: Any, data: st.DataObject, seed: int) -> None:
     law = suited(data.draw(laws(part, model)), DRIVE.gear.kinematics)
@@ -120,7 +121,7 @@ def test_a_gear_with_any_law_runs_one_trajectory_in_every_scalar(part: str, mode
 
 
 @pytest.mark.parametrize(("part", "model"), OTHER_PARTS)
-@settings(max_examples=8)
+@settings(max_examples=sample(3, 8))
 @given(st.data(), seeds)
 def test_a_drive_with_any_other_part_runs_one_trajectory_in_every_scalar(
     part: str, model: Any, data: st.DataObject, seed: int
@@ -140,7 +141,7 @@ starting_gears = reduced_gears.map(with_a_start)
 
 
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
-@settings(max_examples=50)
+@settings(max_examples=sample(15, 50))
 @given(starting_gears, seeds)
 def test_a_gear_with_laws_drawn_at_every_place_runs_one_trajectory_in_every_scalar(gear: sw.Gear, seed: int) -> None:
     agree(DRIVE.replace(gear=gear), seed)
@@ -159,7 +160,7 @@ other_parts = st.fixed_dictionaries({part: models(family) for part, family in OT
 
 
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
-@settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=sample(6, 15), suppress_health_check=[HealthCheck.filter_too_much])
 @given(starting_gears, other_parts, built(sw.Sensors), seeds)
 def test_a_drive_with_parts_drawn_from_every_list_runs_one_trajectory_in_every_scalar(
     gear: sw.Gear, parts: dict[str, Any], sensors: sw.Sensors, seed: int

@@ -17,6 +17,7 @@ from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
 
 from tests.reference_drive import DRIVE, command
+from tests.samples import sample
 from tests.side_by_side import side_by_side
 from tests.strategies import made
 
@@ -79,7 +80,7 @@ def scattered(drive: Drive, count: int, seed: int, whole_orders: bool) -> list[D
 
 
 @every_drive
-@settings(max_examples=8)
+@settings(max_examples=sample(3, 8))
 @given(seed=st.integers(0, 2**32 - 1), whole_orders=st.booleans(), swing=st.booleans())
 def test_double_pack_and_dual_run_one_trajectory(drive: Drive, seed: int, whole_orders: bool, swing: bool) -> None:
     """Nine drives are one full pack, and one that repeats its last member."""

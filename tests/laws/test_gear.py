@@ -18,6 +18,7 @@ from strainwave.kinematic_error import Fourier, Misalignment, Scaled, Stochastic
 from strainwave.simulation.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
+from tests.samples import sample
 from tests.strategies import SUITED, built, drives, gears, made, models, suited
 
 Array = NDArray[np.float64]
@@ -188,7 +189,7 @@ def check_friction(gear: sw.Gear, run: sw.Recording) -> None:
 
 
 @pytest.mark.parametrize(("part", "model"), EVERY_PART)
-@settings(max_examples=10)
+@settings(max_examples=sample(4, 10))
 @given(data=st.data())
 def test_a_gear_with_any_law_at_any_place_stays_finite_and_no_friction_drives(
     part: str, model: Any, data: st.DataObject
@@ -200,7 +201,7 @@ def test_a_gear_with_any_law_at_any_place_stays_finite_and_no_friction_drives(
     check_friction(drive.gear, run)
 
 
-@settings(max_examples=60)
+@settings(max_examples=sample(20, 60))
 @given(reduced_gears, commands, loads, temperatures)
 def test_any_gear_stays_finite_and_no_friction_drives(
     gear: sw.Gear, command: sw.scenario.Scenario, load: float | sw.scenario.Scenario, temperature: float
@@ -407,7 +408,7 @@ def test_what_sticks_holds_no_more_than_its_breakaway(
     assert np.abs(run[place]).max() <= breakaway * (1.0 + 1e-14)
 
 
-@settings(max_examples=30)  # drawing a drive takes longer than the law
+@settings(max_examples=sample(10, 30))  # drawing a drive takes longer than the law
 @given(drives, st.floats(0.0, 1e9))
 def test_a_drive_is_never_slower_at_large_twists_than_at_rest(drive: Drive, twist: float) -> None:
     """Else a run away to them would be taken for one that its steps can follow."""
