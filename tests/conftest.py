@@ -10,8 +10,8 @@ import pytest
 import strainwave
 from hypothesis import settings
 
-# Before anything imports numpy, and for the processes of tests too: beside other workers, threads of BLAS wait for each other, and
-# take up to five times the processor time of one.
+# Before anything imports numpy, and for the processes of tests too: beside other workers, threads of BLAS wait for each other,
+# and take up to five times the processor time of one.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # How long an example takes says more about the machine than about the example. The examples are the same on each run, so that a

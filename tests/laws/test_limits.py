@@ -31,6 +31,7 @@ from strainwave.kinematic_error import Fourier, Misalignment, Stochastic
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
 from tests.reference_drive import DRIVE, command
+from tests.samples import sample
 from tests.strategies import built, log_uniform, made, models, signed, suited
 
 Array = NDArray[np.float64]
@@ -356,7 +357,7 @@ def test_a_modulation_that_does_nothing_is_the_law_itself(
         assert modulated.set_valued == law.set_valued
 
 
-@settings(max_examples=10)
+@settings(max_examples=sample(5, 10))
 @given(st.sampled_from(["friction_input", "friction_output"]))
 def test_a_modulation_that_does_nothing_does_nothing_in_a_drive(place: str) -> None:
     law = Stribeck(coulomb=0.02, breakaway=0.03, stribeck_speed=2.0)

@@ -18,6 +18,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from tests.samples import sample
+
 COULOMB, BREAKAWAY = 0.072, 1.0388 * 0.072  # N.m, Table 1 and the static friction
 RESISTANCE, CONSTANT = 2.0, 0.05  # Ohm, N.m/A
 LEVEL = RESISTANCE * BREAKAWAY / CONSTANT  # V
@@ -205,7 +207,7 @@ def test_a_load_that_is_drawn_slowly_sticks_and_slips_as_its_closed_form(speed: 
     st.floats(0.05, 1.0),
     st.floats(0.05, 0.9),
 )
-@settings(max_examples=25)
+@settings(max_examples=sample(10, 25))
 def test_whatever_is_drawn_slowly_sticks_and_slips_as_its_closed_form(
     inertia: float, w: float, damping_ratio: float, level: float, excess: float, share: float
 ) -> None:

@@ -23,6 +23,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from tests.samples import sample
+
 ORDERS, AMPLITUDES, PHASES = (1, 2, 4), (0.8e-4, 3e-4, 0.5e-4), (0.4, -1.0, 2.0)
 K, DAMPING, OUTPUT_INERTIA = 8000.0, 4.0, 0.05  # N.m/rad, N.m.s/rad, kg.m2
 INPUT_INERTIA, VISCOUS, CONSTANT = 1.5e-4, 2e-4, 0.05  # kg.m2, N.m.s/rad, N.m/A
@@ -207,7 +209,7 @@ def test_a_stiff_loop_shows_the_figures_of_an_ideal_one() -> None:
 
 
 @given(st.floats(20.0, 300.0), st.floats(1e3, 2e4), st.floats(0.02, 0.2), st.floats(0.05, 0.5), st.floats(-50.0, 50.0))
-@settings(max_examples=20)
+@settings(max_examples=sample(8, 20))
 def test_a_speed_that_is_held_ideally_shows_the_dynamic_torque_exactly(
     speed: float, k: float, inertia: float, damping_ratio: float, load: float
 ) -> None:

@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from tests.samples import sample
+
 INPUT_INERTIA, OUTPUT_INERTIA = 1.5e-4, 0.05  # kg.m2
 SPRING = sw.stiffness.Cubic(a1=8000.0, a3=4e7)
 DRIVE = sw.Drive(
@@ -106,7 +108,7 @@ def in_the_signs_of_r(drive: sw.Drive, speeds: tuple[float, float], duration: fl
     ),
     st.floats(-60.0, 60.0),
 )
-@settings(max_examples=25)
+@settings(max_examples=sample(10, 25))
 def test_gears_of_any_numbers_move_as_document_r_has_it(
     ratio: int, j_in: float, j_out: float, a1: float, a3: float, error: list[tuple[float, float, float]], speed: float
 ) -> None:
@@ -134,7 +136,7 @@ def test_gears_of_any_numbers_move_as_document_r_has_it(
 
 
 @given(st.floats(1e-5, 1e-3), st.floats(0.01, 1.0), st.floats(1e3, 5e4), st.floats(0.5, 30.0))
-@settings(max_examples=25)
+@settings(max_examples=sample(10, 25))
 def test_two_inertias_on_a_linear_spring_swing_about_their_common_centre(
     j_in: float, j_out: float, k: float, speed: float
 ) -> None:

@@ -15,6 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
+from tests.samples import sample
+
 COULOMB = 0.072  # N.m, s3 of Table 1
 BREAKAWAY = 1.0388 * COULOMB
 MOTOR_DAMPING, LOAD_DAMPING = 0.0004, 0.0010  # N.m.s/rad, Table 3
@@ -198,7 +200,7 @@ def test_no_load_speed_of_the_set_with_friction_at_its_load(voltage: float) -> N
 
 
 @given(st.floats(1e-4, 1e-2), st.floats(0.01, 0.3), st.floats(1e-4, 5e-3), st.floats(5.0, 300.0))
-@settings(max_examples=25)
+@settings(max_examples=sample(10, 25))
 def test_coasting_down_from_any_speed(inertia: float, level: float, viscous: float, speed: float) -> None:
     """It takes (J / b) ln(1 + b w / f), over an angle of (J w - f t) / b."""
     stop = inertia / viscous * math.log1p(viscous * speed / level)
@@ -221,7 +223,7 @@ def test_coasting_down_from_any_speed(inertia: float, level: float, viscous: flo
 
 
 @given(st.floats(1e-4, 1e-2), st.floats(0.1, 10.0), st.floats(0.05, 0.45), st.floats(0.1, 10.0))
-@settings(max_examples=25)
+@settings(max_examples=sample(10, 25))
 def test_a_coulomb_oscillator_of_any_numbers_loses_as_much_at_each_peak(
     inertia: float, k: float, share: float, start_angle: float
 ) -> None:

@@ -16,6 +16,7 @@ from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.state import Layout
 
 from tests.actuator_equations import IN, OUT, WG, X2, Y1, Y2, damping_matrix, masses, stiffness_matrix
+from tests.samples import sample
 from tests.side_by_side import side_by_side
 from tests.structure.written_down import FIXED, NOTHING, Waves, by_scipy, document, free
 
@@ -156,7 +157,7 @@ stiffnesses = st.fixed_dictionaries(
 
 
 @given(stiffnesses, st.floats(1e3, 5e4), st.floats(-60.0, 60.0), st.sampled_from(list(FIXED)))
-@settings(max_examples=25)
+@settings(max_examples=sample(10, 25))
 def test_at_rest_the_compliances_of_all_stages_add(numbers: dict[str, float], k_t: float, torque: float, fixed: str) -> None:
     """1/K = 1/K_t + 1/K_CS + tan^2/(K_b r^2) + 1/(K_m r^2 cos^2) + 1/(i^2 K_WG), and all forces are in equilibrium."""
     part = STRUCTURE.replace(**numbers)
@@ -176,14 +177,14 @@ def test_at_rest_the_compliances_of_all_stages_add(numbers: dict[str, float], k_
         + 1.0 / (ratio * ratio * part.coupling_stiffness)
     )
     size = abs(torque) + 1e-3
-    for sample in 0, -1:
-        assert run["transmission_error"][sample] == pytest.approx(torque * compliance, abs=1e-9 * size * compliance)
-        assert run["torque"][sample] == pytest.approx(torque, abs=1e-9 * size)
-        assert run["mesh_force"][sample] == pytest.approx(torque / (r * c), abs=1e-9 * size / (r * c))
-        assert run["bearing_force"][sample] == pytest.approx(torque * t / r, abs=1e-9 * size * t / r)
-        assert run["wave_generator_torque"][sample] == pytest.approx(torque / ratio, abs=1e-9 * size / abs(ratio))
-        assert run["circular_spline_torque"][sample] == pytest.approx(torque, abs=1e-9 * size)
-        assert run["twist"][sample] == pytest.approx(torque / k_t, abs=1e-9 * size / k_t)
+    for place in 0, -1:
+        assert run["transmission_error"][place] == pytest.approx(torque * compliance, abs=1e-9 * size * compliance)
+        assert run["torque"][place] == pytest.approx(torque, abs=1e-9 * size)
+        assert run["mesh_force"][place] == pytest.approx(torque / (r * c), abs=1e-9 * size / (r * c))
+        assert run["bearing_force"][place] == pytest.approx(torque * t / r, abs=1e-9 * size * t / r)
+        assert run["wave_generator_torque"][place] == pytest.approx(torque / ratio, abs=1e-9 * size / abs(ratio))
+        assert run["circular_spline_torque"][place] == pytest.approx(torque, abs=1e-9 * size)
+        assert run["twist"][place] == pytest.approx(torque / k_t, abs=1e-9 * size / k_t)
 
 
 @orientation
@@ -240,7 +241,7 @@ def frequencies(drive: sw.Drive, moving: list[int]) -> np.ndarray:
 
 
 @given(stiffnesses, st.floats(1e3, 5e4), st.floats(1e-5, 1e-3), st.floats(1e-3, 1.0), st.sampled_from(list(FIXED)))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=sample(4, 10), deadline=None)
 def test_the_modes_are_those_of_masses_and_springs(
     numbers: dict[str, float], k_t: float, j_in: float, j_out: float, fixed: str
 ) -> None:

@@ -17,6 +17,7 @@ from strainwave.simulation.state import Layout
 from tests.actuator_equations import OUT, WG, X2, Y1, Y2, corrected
 from tests.geared import MOTOR, RATIO, K, geared, outputs
 from tests.reference_drive import DRIVE
+from tests.samples import sample
 from tests.strategies import made, smooth_drives
 from tests.structure.written_down import FIXED, document, start
 
@@ -214,7 +215,7 @@ def test_a_motor_that_prescribes_an_acceleration_has_an_equilibrium_without_one_
         sw.equilibrium(drive, command=0.01)
 
 
-@settings(max_examples=20)
+@settings(max_examples=sample(8, 20))
 @given(smooth_drives)
 def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:
     """What has no equilibrium says so; in all others no side accelerates, nor does the current or the controller."""

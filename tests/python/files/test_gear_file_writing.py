@@ -15,10 +15,13 @@ from hypothesis import strategies as st
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, load, save
 
+from tests.samples import sample
 from tests.strategies import drives, gears, models
 
 # Examples may share one folder; the first of them pays for the imports.
-untimed = settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+untimed = settings(
+    max_examples=sample(8, 20), suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+)
 
 printable = st.just(" ") | st.characters(exclude_categories=["C", "Z"])
 lines = st.text(printable, min_size=1, max_size=8).filter(lambda text: text.strip() != "")

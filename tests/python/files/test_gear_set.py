@@ -21,6 +21,7 @@ from strainwave import _core
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, catalogue, load, save
 
+from tests.samples import sample
 from tests.strategies import drives, made
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -56,7 +57,7 @@ def counted(part: Any, path: str = "") -> Iterator[str]:
             yield from counted(getattr(part, field["name"]), f"{name}.")
 
 
-@settings(max_examples=20)  # each of them has a hundred numbers
+@settings(max_examples=sample(6, 20))  # each of them has a hundred numbers
 @given(drives)
 def test_the_paths_are_those_of_the_drives_parameters_and_its_counts(drive: sw.Drive) -> None:
     counts = set(counted(drive))
@@ -85,7 +86,7 @@ def test_a_file_without_motor_or_load_is_loaded_as_its_gear(tmp_path: Path) -> N
 # Where numbers come from
 
 
-@settings(max_examples=20)  # each of them has a hundred numbers
+@settings(max_examples=sample(6, 20))  # each of them has a hundred numbers
 @given(drives)
 def test_of_a_drive_each_number_has_the_source_given_or_says_that_it_may_be_none(drive: sw.Drive) -> None:
     """No number that nobody gave has the source: it does nothing, or equals its default."""

@@ -8,14 +8,30 @@ import shutil
 import signal
 import time
 from pathlib import Path
+from uuid import uuid4
 
 import pytest
+from strainwave import _core
 from strainwave.native import compilers
 from strainwave.native.compilers import CompileError, Compiler, NoCompilerError, candidates, find_compiler, flags_for
 
 from tests.python.native.conftest import Fake
 
-SOURCE = 'extern "C" __attribute__((visibility("default"))) double answer(double a, double b) { return a * b - a * b; }\n'
+EXPORTED = 'extern "C" __attribute__((visibility("default")))'
+SOURCE = f"{EXPORTED} double answer(double a, double b) {{ return a * a + b; }}\n"
+INSTRUCTION_SET = f"""
+{EXPORTED} int answer() {{
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && defined(__AVX512BW__)
+    return 2;
+#elif defined(__AVX512F__) || defined(__FMA__)
+    return -1;
+#elif defined(__AVX2__)
+    return 1;
+#else
+    return 0;
+#endif
+}}
+"""
 
 
 def names() -> list[str]:
@@ -28,9 +44,11 @@ def program(path: Path, text: str) -> Path:
     return path
 
 
-def built(compiler: Compiler, folder: Path, source: str = SOURCE) -> Path:
-    (folder / "kernel.cpp").write_text(source)
-    return compiler.build(folder / "kernel.cpp", flags_for("baseline"))
+def built(compiler: Compiler, folder: Path, source: str = SOURCE, instruction_set: str = "baseline") -> Path:
+    """Builds a kernel under a name of its own, as a process loads each name once."""
+    path = folder / f"{uuid4().hex}.cpp"
+    path.write_text(source)
+    return compiler.build(path, flags_for(instruction_set))
 
 
 def test_the_compiler_of_the_environment_comes_first_and_zig_last(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -95,7 +113,7 @@ def test_a_compiler_is_asked_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
     assert (tmp_path / "log").read_text() == "asked\n"
 
 
-@pytest.mark.parametrize("text", ["exit 1", "kill -SEGV $$", ""])
+@pytest.mark.parametrize("text", ["exit 1", "kill -SEGV $$", "", f'{shutil.which("c++")} "$@"; exit 1'])
 def test_a_compiler_that_fails_its_check_is_passed_over(text: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("CXX", str(program(tmp_path / "mine", text)))
     assert find_compiler().name == "c++"
@@ -107,15 +125,33 @@ def test_no_shell_reads_the_environment(monkeypatch: pytest.MonkeyPatch, tmp_pat
     assert not (tmp_path / "made").exists()
 
 
-def test_every_compiler_of_this_machine_makes_kernels_that_give_the_same(tmp_path: Path) -> None:
-    """Contracted, the difference of two equal products is what rounding left of one of them."""
-    found = [compiler for compiler in candidates() if compilers.compiles_cplusplus_20(compiler)]
-    assert found
-    for compiler in found:
-        (tmp_path / compiler.name).mkdir()
-        made = ctypes.CDLL(str(built(compiler, tmp_path / compiler.name)))
-        made.answer.restype, made.answer.argtypes = ctypes.c_double, [ctypes.c_double, ctypes.c_double]
-        assert made.answer(0.1, 0.3) == 0.0, compiler.name
+@pytest.fixture
+def usable() -> list[Compiler]:
+    """Every compiler of this machine that compiles C++20."""
+    return [compiler for compiler in candidates() if compilers.compiles_cplusplus_20(compiler)]
+
+
+def test_every_compiler_makes_kernels_that_round_each_product(usable: list[Compiler], tmp_path: Path) -> None:
+    """The square of 1 + h is 1 + 2 h + h^2, whose last term only a contracted product would keep."""
+    h = 2.0**-30
+    for compiler in usable:
+        made = ctypes.CDLL(str(built(compiler, tmp_path, SOURCE, _core.instruction_set())))
+        made.answer.restype, made.answer.argtypes = ctypes.c_double, 2 * [ctypes.c_double]
+        assert made.answer(1.0 + h, -(1.0 + 2.0 * h)) == 0.0, compiler.name
+
+
+@pytest.mark.skipif(os.uname().machine != "x86_64", reason="instruction sets of another processor")
+@pytest.mark.parametrize(("name", "answer"), [("baseline", 0), ("avx2", 1), ("avx512", 2)])
+def test_every_compiler_uses_the_instruction_set_alone(name: str, answer: int, usable: list[Compiler], tmp_path: Path) -> None:
+    for compiler in usable:
+        made = ctypes.CDLL(str(built(compiler, tmp_path, INSTRUCTION_SET, name)))
+        assert made.answer() == answer, compiler.name
+
+
+def test_zig_builds_no_library_first(usable: list[Compiler], tmp_path: Path) -> None:
+    pytest.importorskip("ziglang")
+    built(usable[-1], tmp_path)
+    assert sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file()) < 5_000_000
 
 
 def test_an_error_is_one_line_and_has_all_that_was_printed(tmp_path: Path) -> None:
@@ -131,10 +167,10 @@ def test_a_compiler_that_crashes_without_a_word_is_told_by_its_status(fake: Fake
         built(find_compiler(), tmp_path)
 
 
-def test_temporary_files_lie_beside_the_source(fake: Fake, tmp_path: Path) -> None:
-    fake(f"echo $TMPDIR > {tmp_path}/said")
+def test_temporary_files_lie_beside_the_source_and_errors_are_english(fake: Fake, tmp_path: Path) -> None:
+    fake(f"echo $TMPDIR $LC_ALL > {tmp_path}/said")
     built(find_compiler(), tmp_path)
-    assert (tmp_path / "said").read_text() == f"{tmp_path}\n"
+    assert (tmp_path / "said").read_text() == f"{tmp_path} C\n"
 
 
 def ended(folder: Path) -> bool:
@@ -153,7 +189,7 @@ def ended(folder: Path) -> bool:
 
 
 def test_ctrl_c_ends_the_compiler_and_all_that_it_started(fake: Fake, tmp_path: Path) -> None:
-    fake(f"sleep 60 & echo $! > {tmp_path}/child; kill -INT $PPID; wait")
+    fake(f"sleep 60 > {os.devnull} 2>&1 & echo $! > {tmp_path}/child; kill -INT $PPID; wait")
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):
@@ -164,7 +200,7 @@ def test_ctrl_c_ends_the_compiler_and_all_that_it_started(fake: Fake, tmp_path: 
 
 
 def test_a_compiler_that_hangs_is_ended(fake: Fake, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    fake(f"sleep 60 & echo $! > {tmp_path}/child; wait")
+    fake(f"sleep 60 > {os.devnull} 2>&1 & echo $! > {tmp_path}/child; wait")
     monkeypatch.setattr(compilers, "MAX_COMPILE_SECONDS", 0.3)
     with pytest.raises(CompileError, match=r"fake-compiler was ended after 0\.3 s"):
         built(find_compiler(), tmp_path)

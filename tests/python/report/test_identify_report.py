@@ -23,6 +23,7 @@ from strainwave.report.identify import identify_files, identify_report, name_of
 from strainwave.report.provenance import Provenance
 
 from tests.python.report.reading import Page, section
+from tests.samples import sample
 
 START = GearSet.read("hfuc-20-80")
 COULOMB, STIFF = "gear.friction_input.coulomb", "gear.stiffness.k1"
@@ -165,7 +166,7 @@ values = st.floats(1e-6, 1e6)
 
 
 @given(first=values, second=values, sigma=st.floats(1e-9, 1e3), same=st.booleans())
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=sample(5, 15), deadline=None)
 def test_files_hold_every_number_to_the_last_digit(first: float, second: float, sigma: float, same: bool) -> None:
     findings = (
         Finding("a.csv", told=(told(COULOMB, first, sigma),)),

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from strainwave import Agreement, Difference, Entry, Quantity, Recording
 from strainwave.report.listing import agreement_table, aligned, difference_table, listing, range_table
 
+from tests.samples import sample
 from tests.strategies import drives
 
 GEAR = sw.Gear(
@@ -47,7 +48,7 @@ def test_every_number_is_shown_with_its_unit_and_source(name: str) -> None:
     assert shown["gear.damping"][2] == "N.m.s/rad"
 
 
-@settings(max_examples=15)
+@settings(max_examples=sample(5, 15))
 @given(drives)
 def test_any_drive_can_be_shown(drive: sw.Drive) -> None:
     text = listing(sw.GearSet.of(drive, name="x", source="y"))

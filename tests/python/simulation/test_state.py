@@ -14,10 +14,11 @@ from strainwave.simulation.signals import outputs
 from strainwave.simulation.state import Layout, State
 
 from tests.reference_drive import DRIVE, SMOOTH
+from tests.samples import sample
 from tests.strategies import drives
 
 
-@settings(max_examples=20)  # each of them has a hundred numbers
+@settings(max_examples=sample(6, 20))  # each of them has a hundred numbers
 @given(drives)
 def test_a_state_maps_names_to_finite_numbers_each_with_a_unit(drive: sw.Drive) -> None:
     rest = drive.rest()
@@ -28,7 +29,7 @@ def test_a_state_maps_names_to_finite_numbers_each_with_a_unit(drive: sw.Drive) 
     assert all(name.startswith(tuple(f"{part}." for part in _core.shape(drive))) for name in rest if "." in name)
 
 
-@settings(max_examples=20)
+@settings(max_examples=sample(6, 20))
 @given(drives)
 def test_every_number_can_be_replaced_and_nothing_else_changes(drive: sw.Drive) -> None:
     rest = drive.rest()

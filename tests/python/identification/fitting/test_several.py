@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from strainwave.files.entries import Entry, Quantity
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
+from tests.samples import sample
+
 LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
 COULOMB, VISCOUS = "friction_input.coulomb", "friction_input.viscous"
 FREE = [COULOMB, VISCOUS]
@@ -61,7 +63,7 @@ def of_linear_algebra(*tables: sw.Recording) -> tuple[NDArray[np.float64], NDArr
 
 
 @given(st.integers(0, 10**6), st.floats(0.2, 5.0))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(8, 20), deadline=None)
 def test_the_same_data_in_two_records_are_one_record_twice_as_long(seed: int, factor: float) -> None:
     once = table(seed, speed=np.linspace(1.0, 60.0, 200), noise=1e-3 * factor)
     longer = sw.Recording({name: np.tile(once[name], 2) for name in once.names}, {name: once.unit(name) for name in once.names})
@@ -138,7 +140,7 @@ def test_a_prior_and_data_weigh_as_bayes_says() -> None:
 
 
 @given(st.integers(0, 10**6), st.floats(0.02, 0.04))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(8, 20), deadline=None)
 def test_a_prior_without_doubt_is_a_fixed_value(seed: int, value: float) -> None:
     sure = sw.fit(START, table(seed), FREE, priors={COULOMB: (value, 1e-9)})
     fixed = sw.fit(START, table(seed), [VISCOUS], fixed={COULOMB: value})
@@ -164,7 +166,7 @@ def test_a_prior_may_come_from_a_catalogue() -> None:
 
 
 @given(st.integers(0, 10**6), st.floats(0.5, 3.0))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=sample(8, 20), deadline=None)
 def test_a_tied_parameter_follows_by_its_factor(seed: int, factor: float) -> None:
     """Breakaway is of no concern for steady sliding: the free one is found as without it."""
     tied = sw.fit(START, table(seed), FREE, ties={"friction_mesh.viscous": (VISCOUS, factor)})

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests import arms
+from tests.samples import sample
 
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "output_angle": "rad", "torque": "N.m"}
@@ -85,7 +86,7 @@ def test_amplitudes_scatter_by_as_much_as_is_stated() -> None:
     assert 0.5 < np.sqrt(np.mean(np.square(off[1::2]))) < 1.4
 
 
-@settings(deadline=None, max_examples=10)
+@settings(deadline=None, max_examples=sample(4, 10))
 @given(ratio=st.sampled_from([50, 80, 100, 101, 120, 160]), seed=st.integers(0, 100))
 def test_the_ratio_is_found_blind_from_orders_two_and_four(ratio: int, seed: int) -> None:
     columns = joint("to and fro", seed)

@@ -12,13 +12,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.identification.orders.two_encoders import ErrorOrder
 
+from tests.samples import sample
+
 Array = NDArray[np.float64]
 UNITS = {"time": "s", "input_angle": "rad", "output_angle": "rad"}
 
 
 def slow(ratio: float, *, swing: float = 40.0, play: float = 0.0, noise: float = 1e-5, seed: int = 0) -> dict[str, Array]:
     """A slow motion to and fro, with orders 2 and 4, as both shafts have it."""
-    time = np.arange(0.0, 30.0, 0.004)
+    time = np.arange(0.0, 30.0, 0.006)
     theta = swing * (np.sin(0.4 * time) + 0.2 * np.sin(1.1 * time))
     error = 2e-4 * np.sin(2 * theta + 0.4) + 5e-5 * np.sin(4 * theta - 1.0)
     sense = np.sign(np.gradient(theta / ratio))
@@ -38,7 +40,7 @@ def turned(angle: float) -> float:
     return float((angle + np.pi) % tau - np.pi)
 
 
-@settings(deadline=None, max_examples=10)
+@settings(deadline=None, max_examples=sample(4, 10))
 @given(
     ratio=st.sampled_from([-50.0, 51.0, -80.0, 101.0, -160.0]),
     zero=st.floats(-100.0, 100.0),

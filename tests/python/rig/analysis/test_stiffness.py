@@ -12,6 +12,7 @@ from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.segments import fit_segments
 
 from tests.python.rig.loops import PEAK, TABLE, loop_of_table, quarters, refined, vertices
+from tests.samples import sample
 
 HALF_A_DIGIT = 0.005  # N.m/rad: what document T's table leaves open
 
@@ -127,46 +128,56 @@ def coverage(found: list[Result], truth: float) -> float:
     return float(np.mean([each.low <= truth <= each.high for each in found]))
 
 
+def limits(trials: int) -> tuple[float, float]:
+    """Three standard deviations of a share of 95 % about it; intervals so wide that all trials hold the truth are beyond."""
+    margin = 3.0 * np.sqrt(0.95 * 0.05 / trials)
+    return 0.95 - margin, min(0.95 + margin, 1.0)
+
+
 def test_intervals_of_a_plain_loop_hold_the_truth_in_95_of_100() -> None:
-    """300 loops of straight regimes; shared errors of 2.2 % among theirs. Binomial limits of three standard deviations."""
+    """Loops of straight regimes; shared errors of 2.2 % among theirs."""
     random = np.random.default_rng(7)
     angle, torque = quarters(2.0, 0.5, PEAK, 7)
-    found = [measured(random, angle, torque) for _ in range(300)]
+    found = [measured(random, angle, torque) for _ in range(sample(100, 300))]
+    low, high = limits(len(found))
     for name in NAMES:
         for definition in DEFINITIONS:
             results = [result for each in found if (result := each.stiffness_by(name, definition)) is not None]
-            assert 0.912 < coverage(results, STIFF[name]) < 0.988, (name, definition)
+            assert low < coverage(results, STIFF[name]) < high, (name, definition)
     widths = [each.width_at_zero for each in found if each.width_at_zero is not None]
     areas = [each.area for each in found if each.area is not None]
-    assert 0.912 < coverage(widths, WIDTH) < 0.988
-    assert 0.912 < coverage(areas, WIDTH * PEAK) < 0.988
+    assert low < coverage(widths, WIDTH) < high
+    assert low < coverage(areas, WIDTH * PEAK) < high
     closures = [each.closure for each in found if each.closure is not None]
-    assert coverage(closures, 0.0) > 0.912
+    assert coverage(closures, 0.0) > low
 
 
 def test_intervals_of_document_ts_loop_hold_the_truth_in_95_of_100() -> None:
     """The softest stretch and its knees, of regimes that are not one line."""
     random = np.random.default_rng(8)
     angle, torque = refined(*vertices(TABLE[0.0]), 0.02)
-    found = [measured(random, angle, torque) for _ in range(120)]
+    found = [measured(random, angle, torque) for _ in range(sample(60, 120))]
+    low, high = limits(len(found))
     soft = [each.stiffness("negative_loading") for each in found]
-    assert 0.90 < coverage([each.softest for each in soft if each is not None], 0.31) < 0.99
+    assert low < coverage([each.softest for each in soft if each is not None], 0.31) < high
     knees = [each.stretch[0] for each in soft if each is not None and len(each.segments.knees) == 2]
-    assert len(knees) > 114
-    assert coverage(knees, -0.321719) > 0.90
+    assert len(knees) > 0.95 * len(found)
+    assert coverage(knees, -0.321719) > low
 
 
 def test_scatter_stands_in_for_errors_that_are_not_stated() -> None:
     random = np.random.default_rng(9)
     angle, torque = quarters(2.0, 0.5, PEAK, 7)
     found = [
-        analyse(Loop(angle + 2e-3 * random.normal(size=len(angle)), torque, side="input", name="noisy")) for _ in range(120)
+        analyse(Loop(angle + 2e-3 * random.normal(size=len(angle)), torque, side="input", name="noisy"))
+        for _ in range(sample(60, 120))
     ]
+    low, high = limits(len(found))
     assert not any(each.errors_stated for each in found)
     results = [result for each in found if (result := each.stiffness_by("negative_loading", "regression")) is not None]
-    assert 0.90 < coverage(results, 0.5) < 0.99
+    assert low < coverage(results, 0.5) < high
     widths = [each.width_at_zero for each in found if each.width_at_zero is not None]
-    assert 0.90 < coverage(widths, WIDTH) < 0.99
+    assert low < coverage(widths, WIDTH) < high
 
 
 def test_errors_of_the_rig_are_shared_by_all_stiffnesses() -> None:
@@ -207,13 +218,13 @@ def test_lines_of_unloading_do_not_lean_on_the_peak_that_was_reached_the_other_w
     random = np.random.default_rng(10)
     angle, torque = quarters(2.0, 0.5, PEAK, 7)
     found = []
-    for _ in range(150):
+    for _ in range(sample(60, 150)):
         read = with_friction(angle + 1e-5 * random.normal(size=len(angle)), torque, 1e-3 * random.normal())
         found.append(analyse(replace(read, friction_sigma=1e-3)))
     for definition in DEFINITIONS:
         results = [result for each in found if (result := each.stiffness_by("positive_unloading", definition)) is not None]
-        assert len(results) == 150
-        assert coverage(results, 2.0) > 0.90, definition
+        assert len(results) == len(found)
+        assert coverage(results, 2.0) > limits(len(found))[0], definition
 
 
 def test_the_soft_stretch_is_found_wherever_the_points_lie_between_its_knees() -> None:

@@ -19,6 +19,8 @@ from strainwave.rig.loop import Loop
 from strainwave.rig.torque.torque import arm, blank, mass_sigma, torque_of, without_compliance
 from strainwave.rig.virtual.loading import load_by_steps
 
+from tests.samples import sample
+
 RIG = Rig("bench", "input", Value(0.1), gravity=Value(9.81))
 STEPS_OF_CYCLE = [0.05 * abs(n) - 0.35 for n in range(14, -15, -1)]
 
@@ -262,7 +264,7 @@ def test_the_stated_uncertainty_covers_width_and_stiffness() -> None:
         hysteresis=sw.hysteresis.MaxwellSlip(stiffness=[5e4], breakaway=[10.0]),
     )
     steps, deviations = loaded(STEPS_OF_CYCLE), []
-    for _ in range(60):
+    for _ in range(sample(25, 60)):
         drawn = {
             name: Value(number.value + number.sigma * random.standard_normal())
             for name in ("disk_radius", "pulley_torque", "compliance")
