@@ -95,7 +95,7 @@ def candidates() -> Iterator[Compiler]:
     if zig := _zig():
         # The kernel finds its mathematics in what Python has loaded: to link with libraries, zig would build them first, for
         # 20 s and 57 MB. Its processor by default is that of the machine.
-        yield Compiler("zig c++", (zig, "c++", "-mcpu=baseline"), (zig, "cc", "-shared", "-nostdlib"), _identity(zig))
+        yield Compiler("zig c++", (zig, "c++", "-mcpu=baseline"), (zig, "cc", "-shared", "-nostdlib", "-s"), _identity(zig))
 
 
 def find_compiler() -> Compiler:
