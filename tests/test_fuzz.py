@@ -20,7 +20,7 @@ from tests.fuzz.run import Task, outcomes
 from tests.workers import CRASHES, HANGS, answers
 
 FEW = {
-    "csv": 60,
+    "csv": 40,
     "toml": 60,
     "scenarios": 60,
     "names": 40,
@@ -29,7 +29,7 @@ FEW = {
     "formats": 30,
     "units": 60,
     "drives": 40,
-    "claims": 60,
+    "claims": 20,
     "images": 60,
     "mappings": 40,
     "rigs": 40,

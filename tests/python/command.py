@@ -37,6 +37,7 @@ def strainwave(*arguments: object, folder: Path) -> Result:
     stdout, stderr = StringIO(), StringIO()
     with chdir(folder), redirect_stdout(stdout), redirect_stderr(stderr), pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "argv", ["strainwave", *map(str, arguments)])
+        patch.setattr(sys.modules["__main__"], "__package__", None)  # else the command would be `python -m pytest`
         with pytest.raises(SystemExit) as end:
             main()
     return Result(int(end.value.code or 0), stdout.getvalue(), stderr.getvalue())

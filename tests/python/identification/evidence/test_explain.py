@@ -27,7 +27,7 @@ def drive(gear: sw.Gear = GEAR, inertia: float = 0.3) -> sw.Drive:
 
 @cache
 def log() -> sw.Recording:
-    time = np.linspace(0.0, 0.8, 401)
+    time = np.linspace(0.0, 0.4, 201)
     voltage = 8.0 * np.sin(4.0 * np.pi * time) * np.minimum(1.0, 10.0 * time)
     run = sw.simulate(drive(), sw.scenario.table(time, voltage), sample=2e-3)
     return run.select(["time", "command", "input_angle", "output_angle"])
