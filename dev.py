@@ -110,8 +110,9 @@ def modules() -> str:
 
 
 def environment() -> dict[str, str]:
-    """The caller's, the tools of .venv found first, and the same certificates trusted by pip and uv."""
+    """The caller's, the tools of .venv found first, bytecode kept there, and the same certificates trusted by pip and uv."""
     found = dict(os.environ, VIRTUAL_ENV=str(BIN.parent), PATH=f"{BIN}{os.pathsep}{os.environ['PATH']}")
+    found.pop("PYTHONDONTWRITEBYTECODE", None)  # with it, each process of the tests compiles what it imports, for seconds
     certificates = found.get("SSL_CERT_FILE") or found.get("PIP_CERT")
     return {"SSL_CERT_FILE": certificates, "PIP_CERT": certificates, **found} if certificates else found
 
