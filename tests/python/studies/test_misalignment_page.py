@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from math import radians
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ from strainwave.studies import misalignment as study
 from strainwave.studies.misalignment import MisalignmentStudy, misalignment
 from strainwave.studies.pure_error import fitted, placed, pure_error, turn_mean
 
-from tests.python.command import refused, strainwave
+from tests.python.command import Result, refused, strainwave
 from tests.python.report.reading import Node, Page, printed, section
 from tests.python.report.twins import HOSTILE
 
@@ -25,15 +25,6 @@ LUMPED = "tilt-actuator-lumped"
 LAW = sw.kinematic_error.Misalignment(
     major_radius=25.3e-3, minor_radius=24.7e-3, pitch_radius=25e-3, pressure_angle=radians(20.0)
 )
-
-
-@pytest.fixture(scope="module")
-def small() -> Iterator[None]:
-    """The study with few trials and ramp times."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "TRIALS", 2)
-        patch.setattr(study, "TIMES", (1.0,))
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -49,8 +40,27 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def found(small: None, files: Path) -> MisalignmentStudy:
-    return misalignment(LUMPED, radians(60.0), 3.0, files / "own <b>&.csv", files / "curve.csv")
+def command(files: Path) -> tuple[MisalignmentStudy, Result]:
+    """The study with few trials and ramp times as the command makes it, and what it prints."""
+    made: list[MisalignmentStudy] = []
+
+    def kept(*arguments: Any, **options: Any) -> MisalignmentStudy:
+        made.append(misalignment(*arguments, **options))
+        return made[0]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "TRIALS", 2)
+        patch.setattr(study, "TIMES", (1.0,))
+        patch.setattr(study, "misalignment", kept)
+        measured = ("--measured", files / "own <b>&.csv", "--measured-error", files / "curve.csv")
+        ramp = ("--drive", LUMPED, "--stroke", "60", "--time", "3")
+        result = strainwave("study", "misalignment", *ramp, *measured, folder=files)
+    return made[0], result
+
+
+@pytest.fixture(scope="module")
+def found(command: tuple[MisalignmentStudy, Result]) -> MisalignmentStudy:
+    return command[0]
 
 
 @pytest.fixture(scope="module")
@@ -190,15 +200,18 @@ def test_a_curve_of_less_than_a_turn_is_refused(tmp_path: Path) -> None:
 # The command
 
 
-def test_the_command_writes_recordings_tables_and_a_page(small: None, tmp_path: Path) -> None:
-    result = strainwave("study", "misalignment", "--drive", LUMPED, "--stroke", "40", "--time", "2", folder=tmp_path)
+def test_the_command_writes_recordings_tables_and_a_page(command: tuple[MisalignmentStudy, Result], files: Path) -> None:
+    found, result = command
     assert result.returncode == 0, result.stderr
-    written = {path.name for path in (tmp_path / "out" / "misalignment").iterdir()}
+    assert summary(found) in result.stdout
+    folder = files / "out" / "misalignment"
+    written = {path.name for path in folder.iterdir()}
     runs = {f"ramp-{side}-tilt-{tilt}deg.parquet" for side in ("input", "output") for tilt in ("0", "0.1", "0.2", "0.4")}
     assert runs | {"report.html", "levels-max-output.csv", "ramp-times-and-gains-input.csv"} <= written
-    run = sw.Recording.read(tmp_path / "out" / "misalignment" / "ramp-output-tilt-0deg.parquet")
-    assert run["command"][-1] == pytest.approx(radians(40.0))
-    assert "Tilt actuator, lumped gear: 40° in 2 s" in result.stdout
+    run = sw.Recording.read(folder / "ramp-output-tilt-0deg.parquet")
+    assert run["command"][-1] == pytest.approx(radians(60.0))
+    assert run["time"][-1] >= 3.0
+    assert "Tilt actuator, lumped gear: 60° in 3 s" in result.stdout
 
 
 @pytest.mark.parametrize(
