@@ -8,7 +8,7 @@ namespace strainwave::host {
 template <class M>
 nb::class_<M> bind(nb::handle scope, const char* python_name, const std::string& name) {
     static_assert(fully_described<M>, "every member needs a Field");
-    const Description& description = description_of<M>(python_name, name);
+    const Description& description = describe<M>(python_name, name);
     auto type = nb::class_<M>(scope, python_name, nb::is_final(), kept(documentation(description)));
     define_value(type, description);
     return type;

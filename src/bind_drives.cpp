@@ -1,8 +1,9 @@
 #include <nanobind/stl/vector.h>
 
-#include <strainwave/quasi_static.hpp>
-
-#include "state_arrays.hpp"
+#include "drive_arrays.hpp"
+#include "ensemble.hpp"
+#include "general/friction.hpp"
+#include "general/stiffness.hpp"
 #include "verbs.hpp"
 
 namespace strainwave::host {
@@ -10,21 +11,22 @@ namespace strainwave::host {
 namespace {
 
 Input<double> input_of(const Numbers& u) {
-    if (u.size() != std::size_t(input_count))
+    if (u.size() != std::size_t(kernel::input_count))
         throw nb::value_error("inputs at an instant are command, input of the load and temperature, each with its rate");
-    Array<double, input_count> given;
-    std::copy_n(u.data(), input_count, given.item);
+    Array<double, kernel::input_count> given;
+    std::copy_n(u.data(), kernel::input_count, given.item);
     return shaped<Input<double>>(given);
 }
 
-Values now(const Drive& drive, const Numbers& state, const Numbers& u) {
-    Values out = array({std::size_t(output_count), 1});
-    kernels().observe(drive, state_from(drive, state), input_of(u), out.data());
+Values now(const ParameterDrive& drive, const Numbers& state, const Numbers& u) {
+    const std::vector<double> outputs = general::observe(parts_of(drive).set(), state_from(drive, state), input_of(u));
+    Values out = array({outputs.size(), 1});
+    std::copy(outputs.begin(), outputs.end(), out.data());
     return out;
 }
 
 /// Name, unit and doc of the input that the load of a drive takes.
-nb::tuple load_input(const Drive& drive) {
+nb::tuple load_input(const ParameterDrive& drive) {
     const Field field = drive.load.visit([]<class Load>(const Load&) {
         if constexpr (requires { Load::input; })
             return Load::input;
@@ -35,7 +37,7 @@ nb::tuple load_input(const Drive& drive) {
 }
 
 /// Inputs over a step of `dt` [s] that run on from those given at its start.
-Interval<Input<double>> inputs_of_step(const Drive& drive, const Call& call, double dt) {
+Interval<Input<double>> inputs_of_step(const ParameterDrive& drive, const Call& call, double dt) {
     const auto require = [](bool holds, const char* name, double value, const char* unit, const char* allowed) {
         if (!holds)
             throw nb::value_error((std::string("step.") + name + " = " + with_unit(value, unit) + " must " + allowed).c_str());
@@ -68,47 +70,49 @@ Interval<Input<double>> inputs_of_step(const Drive& drive, const Call& call, dou
     return {at(0.0), at(0.5 * dt), at(dt)};
 }
 
-nb::tuple rate_derivatives(const Drive& drive, const Numbers& numbers, const Numbers& u) {
-    const Drive::State state = state_from(drive, numbers);
-    const std::size_t count = numbers_of(drive, state.continuous).size();
-    Values out = array({count + output_count}), slopes = array({count + input_count, count + output_count});
-    kernels().differentiate_rates(drive, state, input_of(u), out.data(), slopes.data());
+nb::tuple rate_derivatives(const ParameterDrive& drive, const Numbers& numbers, const Numbers& u) {
+    const Parts parts = parts_of(drive);
+    const Layout& layout = layout_of(drive, parts.laws);
+    const std::size_t rates = layout.continuous, outputs = layout.outputs.size();
+    Values out = array({rates + outputs}), slopes = array({rates + kernel::input_count, rates + outputs});
+    general::differentiate_rates(parts.set(), state_from(layout, numbers), input_of(u), rates, outputs, out.data(),
+                                 slopes.data());
     return nb::make_tuple(out, slopes);
 }
 
 /// Name, unit and part of each number of a state, and how many of them are continuous.
-nb::tuple state_of_drive(const Drive& drive) {
+nb::tuple state_of_drive(const ParameterDrive& drive) {
     nb::list list;
-    Drive::State state = drive.initial_state();
-    each_number(drive, state, [&](double, const std::string& part, const std::string& number, int element, const Field& field) {
+    const Layout& layout = layout_of(drive);
+    for (const auto& [part, number, element, field] : layout.state) {
         std::string name = part + (part.empty() ? "" : ".") + number;
         if (element >= 0) name += "[" + std::to_string(element) + "]";
         list.append(nb::make_tuple(name, field.unit, part.empty() ? number : part));
-    });
-    return nb::make_tuple(list, numbers_of(drive, state.continuous).size());
+    }
+    return nb::make_tuple(list, layout.continuous);
 }
 
 /// What a state of a drive belongs to: of each part that has a state, the models chosen and their element counts.
-nb::dict shape_of(const Drive& drive) {
+nb::dict shape_of(const ParameterDrive& drive) {
     nb::dict shapes;
     drive.stateful_parts([&](const char* name, const auto& part) {
-        std::string text;
-        const auto number = [](const std::string&, double, const Field&) {};
-        const auto structure = [&](int n) { text += (text.empty() ? "" : " ") + std::to_string(n); };
-        Walk walk{number, structure};
-        walk(part, Field{name, "", ""});
-        const std::string model = part.visit([](const auto& law) { return std::string(law.name); });
-        shapes[name] = nb::make_tuple(model, text);
+        part.visit([&]<class Law>(const Law& law) {
+            const Parts parts = parts_of(description_of<Law>(), &law);
+            std::string text = std::to_string(part.model.index());
+            for (const int n : parts.laws) text += " " + std::to_string(n);
+            for (const int n : parts.shape) text += " " + std::to_string(n);
+            shapes[name] = nb::make_tuple(Law::name, text);
+        });
     });
     return shapes;
 }
 
 /// Name, unit, doc, part and channel of each number that a drive shows of itself.
-nb::list outputs_of(const Drive& drive) {
+nb::list outputs_of(const ParameterDrive& drive) {
     nb::list list;
-    each_output(drive, [&](const std::string& name, const Field& field, const std::string& part, int channel) {
-        list.append(nb::make_tuple(name, field.unit, field.doc, part, channel));
-    });
+    int channel = 0;
+    for (const auto& [part, name, element, field] : layout_of(drive).outputs)
+        list.append(nb::make_tuple(name, field.unit, field.doc, part, channel++));
     return list;
 }
 
@@ -124,7 +128,7 @@ const char* command_unit(const Law& law, const char* of_motor) {
 }
 
 /// The output of the motor of a drive that is what the controller gives it, and its unit.
-nb::tuple actuation_of(const Drive& drive) {
+nb::tuple actuation_of(const ParameterDrive& drive) {
     return drive.motor.visit([]<class Motor>(const Motor&) {
         const char* unit = "";
         const typename Motor::Output own{};
@@ -135,26 +139,36 @@ nb::tuple actuation_of(const Drive& drive) {
     });
 }
 
-nb::tuple loop_derivatives(const AnyGear<double>& gear, const Numbers& twist, const std::vector<int>& parameters) {
+/// Refuses a point of a path where the spring of a gear is not valid.
+void check_spring(const ParameterGear& gear, const double* twist, std::size_t n) {
+    const Alone<general::Stiffness<double>> spring(gear.stiffness);
+    for (std::size_t i = 0; i < n; ++i) check_domain("gear.stiffness", domain<double>(spring.part, twist[i]));
+}
+
+nb::tuple loop_derivatives(const ParameterGear& gear, const Numbers& twist, const std::vector<int>& parameters) {
     const std::size_t n = twist.size();
-    for (std::size_t i = 0; i < n; ++i) check_domain("gear.stiffness", domain<double>(gear.stiffness, twist.data()[i]));
+    const Parts parts = parts_of(gear);
+    check_numbers(parts, parameters);
+    check_spring(gear, twist.data(), n);
     Values out = array({n}), slopes = array({parameters.size() + 1, n});
-    kernels().differentiate_loop(gear, twist.data(), n, parameters, out.data(), slopes.data(),
-                                 [](std::size_t) { let_interrupt(0); });
+    general::differentiate_loop(parts.set(), twist.data(), n, parameters, out.data(), slopes.data(), &let_interrupt);
     return nb::make_tuple(out, slopes);
 }
 
-nb::tuple steady_derivatives(const AnyGear<double>& gear, const Numbers& speed, const Numbers& angle, const Numbers& load,
+nb::tuple steady_derivatives(const ParameterGear& gear, const Numbers& speed, const Numbers& angle, const Numbers& load,
                              const Numbers& temperature, const std::vector<int>& parameters) {
     const std::size_t n = speed.size();
     if (angle.size() != n || load.size() != n || temperature.size() != n)
         throw nb::value_error("speed, angle, load and temperature must have equally many elements");
+    const Parts parts = parts_of(gear);
+    check_numbers(parts, parameters);
+    const Alone<general::Friction<double>> friction(gear.friction_input);
     for (std::size_t i = 0; i < n; ++i)
         check_domain("gear.friction_input",
-                     domain<double>(gear.friction_input, friction::Contact<double>{.angle = turned(angle.data()[i])}));
+                     domain<double>(friction.part, friction::Contact<double>{.angle = turned(angle.data()[i])}));
     Values out = array({n}), slopes = array({parameters.size(), n});
-    kernels().differentiate_steady(gear, {speed.data(), angle.data(), load.data(), temperature.data()}, n, parameters, out.data(),
-                                   slopes.data(), [](std::size_t) { let_interrupt(0); });
+    general::differentiate_steady(parts.set(), {speed.data(), angle.data(), load.data(), temperature.data()}, n, parameters,
+                                  out.data(), slopes.data(), &let_interrupt);
     return nb::make_tuple(out, slopes);
 }
 
@@ -162,42 +176,39 @@ nb::tuple steady_derivatives(const AnyGear<double>& gear, const Numbers& speed, 
 nb::list parameters_in(nb::handle model) {
     const Description& description = description_of(model);
     nb::list list;
-    for (const Parameter& p : description.parameters(model_in(model, description)))
+    for (const Parameter& p : parameters_of(description, model_in(model, description)))
         list.append(nb::make_tuple(p.path, p.value, p.field.unit, p.field.doc, p.field.min <= -unbounded ? -HUGE_VAL : p.field.min,
                                    p.field.max >= unbounded ? HUGE_VAL : p.field.max));
     return list;
 }
 
-nb::object with_numbers(nb::handle model, const std::vector<double>& numbers) {
-    const Description& description = description_of(model);
-    const void* const from = model_in(model, description);
-    return description.with_numbers(from, numbers);
+/// The laws that a drive has chosen, its other whole numbers, and its numbers.
+nb::tuple parts_in(const ParameterDrive& drive) {
+    const Parts parts = parts_of(drive);
+    return nb::make_tuple(parts.laws, parts.shape, array_of(parts.numbers));
 }
 
-Values trace_of(const AnyGear<double>& gear, const Call& call) {
+nb::object model_with_numbers(nb::handle model, const std::vector<double>& numbers) {
+    const Description& description = description_of(model);
+    return with_numbers(model_in(model, description), description, numbers);
+}
+
+Values trace_of(const ParameterGear& gear, const Call& call) {
     const auto path = steps_of(call["twist"], "twist", "rad");
     auto [out, torque] = like(path);
-    QuasiStatic<double, AnyGear<double>> moved(gear, room_temperature);
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        let_interrupt(i);
-        check_domain("gear.stiffness", domain<double>(gear.stiffness, path.data()[i]));
-        moved.move(path.data()[i]);
-        torque[i] = moved.torque(path.data()[i]);
-    }
+    check_spring(gear, path.data(), path.size());
+    general::trace(parts_of(gear).set(), path.data(), path.size(), torque, &let_interrupt);
     return out;
 }
 
-Values twist_of(const AnyGear<double>& gear, const Call& call) {
+Values twist_of(const ParameterGear& gear, const Call& call) {
     const auto path = path_of(call["torque"], "torque");
     auto [out, twist] = like(path);
-    QuasiStatic<double, AnyGear<double>> moved(gear, room_temperature);
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        let_interrupt(i);
-        twist[i] = moved.twist(path.data()[i]);
-        if (!std::isfinite(twist[i]))
-            throw nb::value_error(("no twist gives the torque " + with_unit(path.data()[i], "N.m")).c_str());
-        check_domain("gear.stiffness", domain<double>(gear.stiffness, twist[i]));
-        moved.move(twist[i]);
+    const std::size_t stuck = general::twist(parts_of(gear).set(), path.data(), path.size(), twist, &let_interrupt);
+    if (stuck < path.size()) {
+        if (!std::isfinite(twist[stuck]))
+            throw nb::value_error(("no twist gives the torque " + with_unit(path.data()[stuck], "N.m")).c_str());
+        check_spring(gear, twist + stuck, 1);
     }
     return out;
 }
@@ -205,8 +216,8 @@ Values twist_of(const AnyGear<double>& gear, const Call& call) {
 }  // namespace
 
 void bind_drives(nb::module_& core) {
-    using Gear = AnyGear<double>;
-    const Bound<Gear> gear{bind<Gear>(core, "Gear", "gear"), description_of<Gear>("Gear", "gear")};
+    using Gear = ParameterGear;
+    const Bound<Gear> gear{bind<Gear>(core, "Gear", "gear"), description_of<Gear>()};
     verb(gear, "save", {{"path", "str | pathlib.Path"}, {"*", ""}, {"name", "str"}, {"source", "str"}}, "None",
          "Writes a gear file, as `strainwave.save` does.", [](const Gear& self, const Call& call) {
              nb::module_::import_("strainwave.files.gear_set")
@@ -220,13 +231,14 @@ void bind_drives(nb::module_& core) {
          "Twist [rad], shape (n,), along a slow path of `torque` [N.m], shape (n,), as a rig applies it; the inverse of "
          "`trace`, to rounding, for every spring and hysteresis.",
          &twist_of);
-    bind<AnySensors<double>>(core, "Sensors", "sensors");
-    const Bound<Drive> drive{bind<Drive>(core, "Drive", "drive"), description_of<Drive>("Drive", "drive")};
-    const auto as_state = [](const Drive& self, const Values& numbers) {
+    bind<ParameterSensors>(core, "Sensors", "sensors");
+    using Drive = ParameterDrive;
+    const Bound<Drive> drive{bind<Drive>(core, "Drive", "drive"), description_of<Drive>()};
+    const auto as_state = [](const ParameterDrive& self, const Values& numbers) {
         return nb::module_::import_("strainwave.simulation.state").attr("State").attr("of")(self, numbers);
     };
     verb(drive, "rest", {}, "strainwave.simulation.state.State", "The state at rest, untwisted and without history, input angle 0.",
-         [as_state](const Drive& self, const Call&) { return as_state(self, array_of(self, kernels().rest(self))); });
+         [as_state](const ParameterDrive& self, const Call&) { return as_state(self, array_of(general::rest(parts_of(self).set()))); });
     verb(
         drive, "step",
         {{"state", "strainwave.simulation.state.State"},
@@ -244,13 +256,16 @@ void bind_drives(nb::module_& core) {
         "that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of "
         "another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; "
         "`FloatingPointError` if the step diverges.",
-        [as_state](const Drive& self, const Call& call) {
+        [as_state](const ParameterDrive& self, const Call& call) {
             const nb::object given =
                 nb::module_::import_("strainwave.simulation.state").attr("start_of")(self, call["state"], "state").attr("numbers");
-            const Drive::State state = state_from(self, nb::cast<Numbers>(given));
+            general::State state = state_from(self, nb::cast<Numbers>(given));
             const double dt = call.real("dt");
             const Interval<Input<double>> u = inputs_of_step(self, call, dt);
-            const Values numbers = array_of(self, kernels().step_once(self, state, u, dt));
+            if (const kernel::Outcome outcome = general::step_once(parts_of(self).set(), state, u, dt);
+                outcome.ending != kernel::Ending::done)
+                throw outcome;
+            const Values numbers = array_of(state);
             if (!std::all_of(numbers.data(), numbers.data() + numbers.size(), [](double x) { return std::isfinite(x); })) {
                 PyErr_SetString(PyExc_FloatingPointError, "the step diverged; take a smaller dt or check the parameters");
                 throw nb::python_error();
@@ -258,7 +273,6 @@ void bind_drives(nb::module_& core) {
             return as_state(self, numbers);
         });
 
-    core.attr("output_count") = output_count;
     core.def("outputs", &outputs_of, nb::arg("drive"), nb::sig("def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]"),
              "Name, unit, doc, part and channel of each number that a drive shows of itself.");
     core.def("load_input", &load_input, nb::arg("drive"), nb::sig("def load_input(drive: Drive) -> tuple[str, str, str]"),
@@ -267,12 +281,12 @@ void bind_drives(nb::module_& core) {
              "The output of a drive's motor that is what the controller gives it, and its unit.");
     core.def(
         "command_unit",
-        [](const Drive& drive) { return command_unit(drive.control, nb::cast<const char*>(actuation_of(drive)[1])); },
+        [](const ParameterDrive& drive) { return command_unit(drive.control, nb::cast<const char*>(actuation_of(drive)[1])); },
         nb::arg("drive"), nb::sig("def command_unit(drive: Drive) -> str"), "The unit of the command of a drive.");
     core.def(
         "schedule",
-        [](const Drive& drive, const Numbers& state) {
-            const auto found = kernels().schedule(drive, state_from(drive, state));
+        [](const ParameterDrive& drive, const Numbers& state) {
+            const auto found = general::schedule(parts_of(drive).set(), state_from(drive, state));
             return nb::make_tuple(found.first, found.period, found.delay);
         },
         nb::arg("drive"), nb::arg("state"),
@@ -280,8 +294,8 @@ void bind_drives(nb::module_& core) {
         "When a sampled controller acts: time to its next sample, period and delay [s]. A period of 0: it acts all the time.");
     core.def(
         "natural_frequency",
-        [](const Drive& drive, double twist, double temperature) {
-            return kernels().natural_frequency(drive, std::abs(twist), temperature);
+        [](const ParameterDrive& drive, double twist, double temperature) {
+            return general::natural_frequency(parts_of(drive).set(), std::abs(twist), temperature);
         },
         nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
         nb::sig("def natural_frequency(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
@@ -289,15 +303,15 @@ void bind_drives(nb::module_& core) {
         "`temperature` [K] begins.");
     core.def(
         "max_rate",
-        [](const Drive& drive, double twist, double temperature) {
-            return kernels().max_rate(drive, std::abs(twist), temperature);
+        [](const ParameterDrive& drive, double twist, double temperature) {
+            return general::max_rate(parts_of(drive).set(), std::abs(twist), temperature);
         },
         nb::arg("drive"), nb::arg("twist"), nb::arg("temperature") = room_temperature,
         nb::sig("def max_rate(drive: Drive, twist: float, temperature: float = 293.15) -> float"),
         "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s], where a run of "
         "this `temperature` [K] begins: the vibration of gear and load, the decay of speeds, sensors and controller.");
     core.def(
-        "bristle_frequency", [](const Drive& drive) { return kernels().bristle_frequency(drive); }, nb::arg("drive"),
+        "bristle_frequency", [](const ParameterDrive& drive) { return general::bristle_frequency(parts_of(drive).set()); }, nb::arg("drive"),
         nb::sig("def bristle_frequency(drive: Drive) -> float"),
         "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
@@ -305,11 +319,8 @@ void bind_drives(nb::module_& core) {
              "All channels in `state`, shape (channels, 1).");
     core.def(
         "measured",
-        [](const Drive& drive, const Numbers& state, const Numbers& u) {
-            const auto numbers = flattened<double>(kernels().measure(drive, state_from(drive, state), input_of(u)));
-            Values out = array({std::size_t(numbers.size())});
-            std::copy_n(numbers.item, numbers.size(), out.data());
-            return out;
+        [](const ParameterDrive& drive, const Numbers& state, const Numbers& u) {
+            return array_of(general::measure(parts_of(drive).set(), state_from(drive, state), input_of(u)));
         },
         nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
         nb::sig("def measured(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
@@ -332,9 +343,9 @@ void bind_drives(nb::module_& core) {
     core.attr("quantities") = nb::tuple(quantities);
     core.def(
         "started",
-        [](const Drive& drive, const std::vector<int>& given, const Numbers& values, const Numbers& u) {
+        [](const ParameterDrive& drive, const std::vector<int>& given, const Numbers& values, const Numbers& u) {
             if (values.size() != given.size()) throw nb::value_error("each quantity has a value");
-            return array_of(drive, kernels().started(drive, Start{false, given, values.data(), 1}.of(0), input_of(u)));
+            return array_of(general::started(parts_of(drive).set(), Start{false, given, values.data(), 1}.of(0), input_of(u)));
         },
         nb::arg("drive"), nb::arg("quantities"), nb::arg("values"), nb::arg("inputs"),
         nb::sig("def started(drive: Drive, quantities: collections.abc.Sequence[int], values: " SW_ARRAY ", inputs: " SW_ARRAY
@@ -349,30 +360,30 @@ void bind_drives(nb::module_& core) {
     };
     advanced(
         "aged", ", inputs: " SW_ARRAY ", dt: float", "`state` with what friction remembers after `dt` [s] at constant speeds.",
-        [](const Drive& drive, const Numbers& state, const Numbers& u, double dt) {
-            return array_of(drive, kernels().aged(drive, state_from(drive, state), input_of(u), dt));
+        [](const ParameterDrive& drive, const Numbers& state, const Numbers& u, double dt) {
+            return array_of(general::aged(parts_of(drive).set(), state_from(drive, state), input_of(u), dt));
         },
         nb::arg("inputs"), nb::arg("dt"));
     advanced(
         "advance_hysteresis", ", twist: float", "`state` with its hysteresis brought up to date at `twist` [rad].",
-        [](const Drive& drive, const Numbers& numbers, double twist) {
-            return array_of(drive, kernels().advance_hysteresis(drive, state_from(drive, numbers), twist));
+        [](const ParameterDrive& drive, const Numbers& numbers, double twist) {
+            return array_of(general::advance_hysteresis(parts_of(drive).set(), state_from(drive, numbers), twist));
         },
         nb::arg("twist"));
     advanced("consistent", "", "`state` with the slip direction of each shaft as its speed and its law have it.",
-             [](const Drive& drive, const Numbers& state) {
-                 return array_of(drive, kernels().consistent(drive, state_from(drive, state)));
+             [](const ParameterDrive& drive, const Numbers& state) {
+                 return array_of(general::consistent(parts_of(drive).set(), state_from(drive, state)));
              });
     advanced(
         "break_away", ", inputs: " SW_ARRAY, "`state` with those shafts slipping that stick and are driven beyond what holds them.",
-        [](const Drive& drive, const Numbers& state, const Numbers& u) {
-            return array_of(drive, kernels().break_away(drive, state_from(drive, state), input_of(u)));
+        [](const ParameterDrive& drive, const Numbers& state, const Numbers& u) {
+            return array_of(general::break_away(parts_of(drive).set(), state_from(drive, state), input_of(u)));
         },
         nb::arg("inputs"));
     advanced(
         "begin", ", inputs: " SW_ARRAY, "`state` as a run begins in it: consistent, and sampled if its controller samples.",
-        [](const Drive& drive, const Numbers& state, const Numbers& u) {
-            return array_of(drive, kernels().begin(drive, state_from(drive, state), input_of(u)));
+        [](const ParameterDrive& drive, const Numbers& state, const Numbers& u) {
+            return array_of(general::begin(parts_of(drive).set(), state_from(drive, state), input_of(u)));
         },
         nb::arg("inputs"));
     core.def("differentiate_loop", &loop_derivatives, nb::arg("gear"), nb::arg("twist"), nb::arg("parameters"),
@@ -390,7 +401,10 @@ void bind_drives(nb::module_& core) {
     core.def("parameters", &parameters_in, nb::arg("model"),
              nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
              "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
-    core.def("with_numbers", &with_numbers, nb::arg("model"), nb::arg("numbers"),
+    core.def("parts", &parts_in, nb::arg("drive"),
+             nb::sig("def parts(drive: Drive) -> tuple[list[int], list[int], " SW_ARRAY "]"),
+             "The laws that a drive has chosen, its other whole numbers (counts, teeth, options), and its numbers.");
+    core.def("with_numbers", &model_with_numbers, nb::arg("model"), nb::arg("numbers"),
              nb::sig("def with_numbers(model: typing.Any, numbers: collections.abc.Sequence[float]) -> typing.Any"),
              "The same models with other numbers, in the order of `parameters`.");
 }

@@ -1,7 +1,8 @@
 #include <algorithm>
 
 #include "arrays.hpp"
-#include "instruction_set.hpp"
+#include "kernel/table.hpp"
+#include "signal.hpp"
 
 namespace strainwave::host {
 
@@ -22,7 +23,7 @@ Values evaluated(const Signal& signal, const Numbers& instants, bool before) {
     std::vector<std::size_t> shape{2};
     for (std::size_t axis = 0; axis < instants.ndim(); ++axis) shape.push_back(instants.shape(axis));
     Values out = array(shape);
-    kernels().evaluate(signal, instants.data(), instants.size(), before ? Side::before : Side::after, out.data(),
+    evaluate(signal, instants.data(), instants.size(), before ? Side::before : Side::after, out.data(),
                        out.data() + instants.size());
     return out;
 }
@@ -30,8 +31,8 @@ Values evaluated(const Signal& signal, const Numbers& instants, bool before) {
 Values inputs_of(const Signal& command, const Signal& load, const Signal& temperature, const Numbers& instants) {
     if (instants.size() < 2) throw nb::value_error("a time grid has at least two instants");
     const std::size_t steps = instants.size() - 1;
-    Values out = array({steps, 3, std::size_t(input_count)});
-    kernels().lay_out({{&command, &load, &temperature}}, instants.data(), steps, out.data());
+    Values out = array({steps, 3, std::size_t(kernel::input_count)});
+    lay_out({{&command, &load, &temperature}}, instants.data(), steps, out.data());
     return out;
 }
 

@@ -1,10 +1,16 @@
-#include <nanobind/stl/function.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
+#include <chrono>
+#include <functional>
 #include <new>
+#include <numeric>
 
-#include "state_arrays.hpp"
+#include "drive_arrays.hpp"
+#include "ensemble.hpp"
+#include "instruction_set.hpp"
+#include "kernels.hpp"
+#include "signal.hpp"
 #include "text.hpp"
 
 namespace strainwave::host {
@@ -12,81 +18,139 @@ namespace strainwave::host {
 namespace {
 
 struct Request {
-    InputSchedule schedule;
+    kernel::Schedule schedule;
     std::size_t kept = 0;
 
     Request(const Numbers& instants, const Numbers& inputs, const Flags& keep)
         : schedule{instants.data(), inputs.data(), keep.data(), keep.size()} {
-        if (schedule.steps == 0 || instants.size() != schedule.steps + 1 || inputs.size() != 3 * input_count * schedule.steps)
+        if (schedule.steps == 0 || instants.size() != schedule.steps + 1 || inputs.size() != 3 * kernel::input_count * schedule.steps)
             throw nb::value_error("a schedule of n > 0 steps has n + 1 instants, inputs of shape (n, 3, 6) and n flags");
         for (std::size_t i = 0; i < schedule.steps; ++i) kept += keep.data()[i] != 0;
     }
 };
 
-/// Lets Ctrl-C through and tells how many steps are done, now and then.
-Pause pausing(const nb::object& progress) {
-    return [progress](std::size_t done) {
+/// Lets Ctrl-C through and reports how many steps are done, some twenty times a second.
+class Pausing {
+    using Clock = std::chrono::steady_clock;
+    const nb::object& report;
+    Clock::time_point due{};
+
+public:
+    explicit Pausing(const nb::object& report_) : report(report_) {}
+
+    kernel::Progress progress() {
+        return {[](void* self, std::size_t done) { return static_cast<Pausing*>(self)->stops(done); }, this};
+    }
+    void operator()(std::size_t done) const {
         nb::gil_scoped_acquire python;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
-        if (!progress.is_none()) progress(done);
-    };
-}
+        if (!report.is_none()) report(done);
+    }
+    /// Throws what Python raised, if that ended the work; a refusal where the drive did.
+    void check(const kernel::Outcome& outcome) const {
+        if (failure) std::rethrow_exception(failure);
+        if (outcome.ending != kernel::Ending::done) throw outcome;
+    }
+
+private:
+    std::exception_ptr failure;
+
+    bool stops(std::size_t done) {
+        const auto now = Clock::now();
+        if (now < due) return false;
+        due = now + std::chrono::milliseconds(50);
+        try {
+            (*this)(done);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        return bool(failure);
+    }
+};
 
 using Outputs = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Series = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
-/// Where the sample `first` of the outputs goes, and `count` from there on.
-double* place_in(const Outputs& out, const std::vector<int>& recorded, std::size_t first, std::size_t count) {
+void check_recorded(const ParameterDrive& drive, const std::vector<int>& recorded) {
+    const int count = int(layout_of(drive).outputs.size());
+    for (const int channel : recorded)
+        if (channel < 0 || channel >= count) throw nb::value_error("a drive has no such channel");
+}
+/// Rows for the outputs recorded, from sample `first` on, `count` of them.
+kernel::Rows rows_in(const ParameterDrive& drive, const Outputs& out, const std::vector<int>& recorded, std::size_t first,
+                     std::size_t count) {
     if (out.shape(0) != recorded.size() || first > out.shape(1) || count > out.shape(1) - first)
         throw nb::value_error("outputs of n samples have shape (recorded, n), and samples are written within");
-    for (const int channel : recorded)
-        if (channel < 0 || channel >= output_count) throw nb::value_error("a drive has no such channel");
-    return out.data() + first;
+    check_recorded(drive, recorded);
+    return {recorded.data(), recorded.size(), out.data() + first, out.shape(1)};
 }
 
-Values run_one(const Drive& drive, const Numbers& start, const Numbers& instants, const Numbers& inputs, const Flags& keep,
-               Method method, const std::vector<int>& recorded, const Outputs& out, std::size_t first, const nb::object& progress) {
+Values run_one(const ParameterDrive& drive, const Numbers& start, const Numbers& instants, const Numbers& inputs, const Flags& keep,
+               kernel::Method method, const std::vector<int>& recorded, const Outputs& out, std::size_t first,
+               const nb::object& progress) {
     const Request request(instants, inputs, keep);
-    const Rows rows{recorded, place_in(out, recorded, first, request.kept), out.shape(1)};
-    const Pause pause = pausing(progress);
-    const auto simulate = kernels().simulate;
-    Drive::State state = state_from(drive, start);
-    {
+    const kernel::Rows rows = rows_in(drive, out, recorded, first, request.kept);
+    const Parts parts = parts_of(drive);
+    const auto simulate = kernel_with(&kernel::Table::simulate, parts.laws).simulate;
+    general::State state = state_from(drive, start);
+    Pausing pausing(progress);
+    pausing.check([&] {
         nb::gil_scoped_release free;
-        state = simulate(drive, state, request.schedule, method, rows, pause);
-    }
-    return array_of(drive, state);
+        return simulate(parts.set(), state.data(), request.schedule, method, rows, pausing.progress());
+    }());
+    return array_of(state);
 }
 
-nb::tuple run_adaptively(const Drive& drive, const Numbers& start, const Signal& command, const Signal& load,
+/// Signals as a kernel asks for them: the piece that holds is looked up once a stretch without a jump.
+struct Asked {
+    const Signals signals;
+    std::optional<Unbroken> here;
+    double begin = 0.0;
+
+    static void at(const void* self, double begin, double fraction, double dt, double* inputs) {
+        Asked& asked = *const_cast<Asked*>(static_cast<const Asked*>(self));
+        if (!asked.here || asked.begin != begin) {
+            asked.here.emplace(asked.signals, begin);
+            asked.begin = begin;
+        }
+        asked.here->at(fraction, dt, inputs);
+    }
+};
+
+nb::tuple run_adaptively(const ParameterDrive& drive, const Numbers& start, const Signal& command, const Signal& load,
                          const Signal& temperature, const Numbers& ends, double relative, double absolute, long max_steps,
                          const Numbers& samples, const std::vector<int>& recorded, const Outputs& out, std::size_t first,
                          const nb::object& progress) {
     if (ends.size() < 2) throw nb::value_error("steps lead from one instant to another");
-    const Rows rows{recorded, place_in(out, recorded, first, samples.size()), out.shape(1)};
-    const Pause pause = pausing(progress);
-    Drive::State state = state_from(drive, start);
-    Steps steps;
-    const auto simulate = kernels().simulate_adaptively;
-    {
+    const kernel::Rows rows = rows_in(drive, out, recorded, first, samples.size());
+    const Parts parts = parts_of(drive);
+    const auto simulate = kernel_with(&kernel::Table::simulate_adaptively, parts.laws).simulate_adaptively;
+    Asked asked{{{&command, &load, &temperature}}, {}};
+    const kernel::AdaptiveCourse course{{&Asked::at, &asked}, ends.data(),    ends.size(),    {relative, absolute},
+                                        max_steps,            samples.data(), samples.size()};
+    general::State state = state_from(drive, start);
+    Pausing pausing(progress);
+    const kernel::Outcome outcome = [&] {
         nb::gil_scoped_release free;
-        state = simulate(drive, state, {{&command, &load, &temperature}}, {ends.data(), ends.size()}, {relative, absolute},
-                         max_steps, {samples.data(), samples.size()}, rows, steps, pause);
-    }
-    return nb::make_tuple(array_of(drive, state), steps.accepted, steps.rejected);
+        return simulate(parts.set(), state.data(), course, rows, pausing.progress());
+    }();
+    pausing.check(outcome);
+    return nb::make_tuple(array_of(state), outcome.accepted, outcome.rejected);
 }
 
 /// What went wrong, in words.
-std::string text_of(const OutOfBounds& error) {
-    return std::string(error.part) + ": " + outside(error.domain) + "; first at t = " + with_unit(error.time, "s");
-}
-
-std::string text_of(const StepsSpent& error) {
+std::string text_of(const kernel::Outcome& outcome) {
+    using kernel::Ending;
+    if (outcome.ending == Ending::out_of_bounds)
+        return std::string(outcome.part) + ": " + outside(outcome.domain) + "; first at t = " + with_unit(outcome.from, "s");
+    if (outcome.ending == Ending::tolerance_missed)
+        return "no step is short enough to keep the tolerance between t = " + shortest(outcome.from) + " s and " +
+               with_unit(outcome.to, "s") + "; loosen rtol, or check the parameters";
     char text[256];
     std::snprintf(text, sizeof text,
                   "all steps that max_steps allows lead to t = %.6g s only; loosen rtol, give simulate_adaptively more steps, or "
                   "check the parameters: the gear vibrates at %.4g rad/s at rest, a shaft on its bristles at %.4g rad/s",
-                  error.at, error.natural_frequency, error.bristle_frequency);
+                  outcome.from, outcome.natural_frequency, outcome.bristle_frequency);
     return text;
 }
 
@@ -112,52 +176,86 @@ Start start_from(const nb::object& known, std::size_t members) {
     return {false, given.first, given.second.data(), members};
 }
 
-nb::tuple run_many(const Drive& drive, const std::vector<int>& numbers, const Numbers& values, const nb::object& known,
+/// Where the transmission error stands among the numbers of a state.
+std::size_t place_of_error(const Layout& layout) {
+    const auto named = [](const Name& each) { return each.name == "transmission_error"; };
+    return std::size_t(std::find_if(layout.state.begin(), layout.state.end(), named) - layout.state.begin());
+}
+
+nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers, const Numbers& values, const nb::object& known,
                    const Numbers& instants, const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded,
                    double max_rate, int threads, const Series& out, const nb::object& progress) {
     const Request request(instants, inputs, keep);
     if (values.ndim() != 2 || values.shape(0) != numbers.size())
         throw nb::value_error("values of n numbers and m members have shape (n, m)");
-    const Variation variation{numbers, values.data(), values.shape(1)};
+    const Parts parts = parts_of(drive);
+    check_numbers(parts, numbers);
+    check_recorded(drive, recorded);
+    const kernel::Variation variation{numbers.data(), numbers.size(), values.data(), values.shape(1)};
     const Start start = start_from(known, variation.members);
     if (out.shape(0) != recorded.size() || out.shape(1) != variation.members || out.shape(2) != request.kept + 1)
         throw nb::value_error("outputs of m members have shape (recorded, m, 1 + kept)");
-    const Pause pause = pausing(progress);
-    const auto simulate_many = kernels().simulate_many;
-    std::vector<MemberResult> results;
-    {
+    const Ensemble ensemble{drive,    description_of<ParameterDrive>(), variation, start,           request.schedule, recorded,
+                            max_rate, out.data(),                       request.kept + 1, place_of_error(layout_of(drive, parts.laws))};
+    const kernel::Table& kernel = kernel_with(&kernel::Table::run_members, parts.laws);
+    const Pausing pausing(progress);
+    const std::vector<MemberResult> results = [&] {
         nb::gil_scoped_release free;
-        results =
-            simulate_many(drive, variation, start, request.schedule, recorded, max_rate, threads, out.data(), request.kept, pause);
-    }
+        return run_ensemble(kernel, ensemble, threads, std::cref(pausing));
+    }();
     auto sound = array<bool>({variation.members});
     Values twists = array({variation.members}), rates = array({variation.members}), on_bristles = array({variation.members});
     nb::dict refusals;
     for (std::size_t m = 0; m < results.size(); ++m) {
-        sound.data()[m] = results[m].sound;
-        twists.data()[m] = results[m].twist;
-        rates.data()[m] = results[m].max_rate;
-        on_bristles.data()[m] = results[m].bristle_frequency;
-        if (results[m].refusal) refusals[nb::int_(m)] = text_of(*results[m].refusal);
-        if (!results[m].problem.empty()) refusals[nb::int_(m)] = results[m].problem;
-        if (!results[m].has_beginning) refusals[nb::int_(m)] = no_beginning(!start.quantities.empty());
+        const MemberResult& result = results[m];
+        sound.data()[m] = result.tally.sound;
+        twists.data()[m] = result.tally.twist;
+        rates.data()[m] = result.tally.max_rate;
+        on_bristles.data()[m] = result.tally.bristle_frequency;
+        if (result.refusal) refusals[nb::int_(m)] = text_of(*result.refusal);
+        if (!result.problem.empty()) refusals[nb::int_(m)] = result.problem;
+        if (!result.has_beginning) refusals[nb::int_(m)] = no_beginning(!start.quantities.empty());
     }
     return nb::make_tuple(sound, twists, rates, on_bristles, refusals);
 }
 
-nb::tuple run_derivatives(const Drive& drive, const nb::object& known, const Numbers& instants, const Numbers& inputs,
+nb::tuple run_derivatives(const ParameterDrive& drive, const nb::object& known, const Numbers& instants, const Numbers& inputs,
                           const Flags& keep, const std::vector<int>& parameters, const nb::object& progress) {
     const Request request(instants, inputs, keep);
-    const auto channels = std::size_t(channels_of(drive));
-    Values out = array({channels, request.kept + 1}), slopes = array({parameters.size(), channels, request.kept + 1});
-    const Pause pause = pausing(progress);
+    const Parts parts = parts_of(drive);
+    check_numbers(parts, parameters);
+    std::vector<int> all(layout_of(drive, parts.laws).outputs.size());
+    std::iota(all.begin(), all.end(), 0);
+    Values out = array({all.size(), request.kept + 1}), slopes = array({parameters.size(), all.size(), request.kept + 1});
+    const kernel::Rows rows{all.data(), all.size(), out.data(), request.kept + 1};
     const Start start = start_from(known, 1);
-    const auto differentiate = kernels().differentiate;
-    {
+    const auto differentiate = kernel_with(&kernel::Table::differentiate, parts.laws).differentiate;
+    Pausing pausing(progress);
+    pausing.check([&] {
         nb::gil_scoped_release free;
-        differentiate(drive, start, request.schedule, parameters, out.data(), slopes.data(), request.kept, pause);
-    }
+        return differentiate(parts.set(), {start.at_rest, start.of(0)}, request.schedule, parameters.data(), parameters.size(), rows,
+                             slopes.data(), pausing.progress());
+    }());
     return nb::make_tuple(out, slopes);
+}
+
+/// Adds a kernel that is loaded, its table at an address, for drives as one.
+void add_kernel_at(const ParameterDrive& drive, std::size_t address) {
+    add_kernel(parts_of(drive).laws, *reinterpret_cast<const kernel::Table*>(address));
+}
+
+/// What a loaded kernel does for a drive, by name.
+nb::list loaded_jobs(const ParameterDrive& drive) {
+    const kernel::Table& table = loaded_kernel(parts_of(drive).laws);
+    nb::list jobs;
+    const auto add = [&](bool can, const char* name) {
+        if (can) jobs.append(name);
+    };
+    add(table.simulate, "simulate");
+    add(table.simulate_adaptively, "simulate_adaptively");
+    add(table.run_members, "simulate_many");
+    add(table.differentiate, "differentiate");
+    return jobs;
 }
 
 }  // namespace
@@ -166,25 +264,20 @@ void bind_runs(nb::module_& core) {
     nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
         try {
             std::rethrow_exception(thrown);
-        } catch (const OutOfBounds& error) {
-            PyErr_SetString(PyExc_ValueError, text_of(error).c_str());
-        } catch (const ToleranceMissed& error) {
-            PyErr_SetString(PyExc_FloatingPointError,
-                            ("no step is short enough to keep the tolerance between t = " + shortest(error.from) + " s and " +
-                             with_unit(error.to, "s") + "; loosen rtol, or check the parameters")
-                                .c_str());
-        } catch (const StepsSpent& error) {
-            PyErr_SetString(PyExc_FloatingPointError, text_of(error).c_str());
+        } catch (const kernel::Outcome& outcome) {
+            const bool refused = outcome.ending == kernel::Ending::out_of_bounds;
+            PyErr_SetString(refused ? PyExc_ValueError : PyExc_FloatingPointError, text_of(outcome).c_str());
         } catch (const std::bad_alloc&) {
             PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this; take fewer samples at a time");
         }
     });
-    core.attr("max_lanes") = max_lanes;
-    core.attr("largest") = largest;
-    nb::enum_<Method>(core, "Method", "How steps are taken.")
-        .value("exponential", Method::exponential)
-        .value("moreau_jean", Method::moreau_jean)
-        .value("rosenbrock", Method::rosenbrock);
+    core.attr("max_lanes") = kernel::max_lanes;
+    core.attr("slopes") = kernel::slopes;
+    core.attr("largest") = kernel::largest;
+    nb::enum_<kernel::Method>(core, "Method", "How steps are taken.")
+        .value("exponential", kernel::Method::exponential)
+        .value("moreau_jean", kernel::Method::moreau_jean)
+        .value("rosenbrock", kernel::Method::rosenbrock);
 
 #define SW_COURSE "instants: " SW_ARRAY ", inputs: " SW_ARRAY ", keep: numpy.typing.NDArray[numpy.uint8]"
 #define SW_OUTPUTS "recorded: collections.abc.Sequence[int], out: " SW_ARRAY ", first: int"
@@ -221,7 +314,12 @@ void bind_runs(nb::module_& core) {
         "at rest if there is none.");
     core.def("no_beginning", &no_beginning, nb::arg("known"),
              "Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.");
-    core.def("instruction_set", &instruction_set, "The instruction set that the loops over time are compiled for.");
+    core.def("instruction_set", &instruction_set, "The instruction set that kernels are compiled for.");
+    core.def("add_kernel", &add_kernel_at, nb::arg("drive"), nb::arg("address"),
+             nb::sig("def add_kernel(drive: Drive, address: int) -> None"),
+             "Uses a kernel that is loaded, its table at an address, for all drives of the laws of one.");
+    core.def("loaded_jobs", &loaded_jobs, nb::arg("drive"), nb::sig("def loaded_jobs(drive: Drive) -> list[str]"),
+             "What a kernel is loaded for, for drives of the laws of one.");
     core.def(
         "differentiate", &run_derivatives, nb::arg("drive"), nb::arg("initial").none(), nb::arg("instants"), nb::arg("inputs"),
         nb::arg("keep"), nb::arg("parameters"), nb::arg("progress").none() = nb::none(),

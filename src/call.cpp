@@ -71,6 +71,14 @@ int Call::whole(const char* name) const {
     return int(clip(x, -2147483648.0, 2147483647.0));
 }
 
+nb::object Call::optional(const char* name, const Description& description) const {
+    const nb::object& value = given[place_of(name)];
+    if (!value.is_valid()) return {};
+    const nb::handle type = description.python_type();
+    if (!nb::isinstance(value, type) || !nb::inst_ready(value)) refuse_type(name, "a " + qualified(type), value);
+    return value;
+}
+
 std::size_t Call::place_of(const std::string& name) const {
     std::size_t place = 0;
     while (place < accepted.size() && (is_mark(accepted[place]) || accepted[place].name != name)) ++place;

@@ -32,6 +32,8 @@ public:
     double real(const char* name) const;
     double number(const char* name) const;
     int whole(const char* name) const;
+    /// A described struct that may be left out; then none.
+    nb::object optional(const char* name, const Description& description) const;
     /// A described struct, such as a state; as it is by default if it was not given.
     template <class T>
     T part(const char* name) const {

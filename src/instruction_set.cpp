@@ -3,51 +3,38 @@
 #include <nanobind/nanobind.h>
 
 #include <cstdlib>
-
-#include "supported.hpp"
+#include <string_view>
 
 namespace strainwave::host {
 
 namespace {
 
-/// Whether the loops over time were compiled for an instruction set.
-bool built(std::string_view name) {
-    return std::string_view(SW_INSTRUCTION_SETS).find("," + std::string(name) + ",") != std::string_view::npos;
-}
+/// From the widest to what every machine has.
+constexpr std::string_view instruction_sets[] = {"avx512", "avx2", "baseline"};
 
-std::string choose() {
-    const char* wanted = std::getenv("STRAINWAVE_INSTRUCTION_SET");
-    std::string known;
-    for (const std::string_view name : instruction_sets) {
-        if (!built(name) || !supported(name)) continue;
-        if (!wanted || !*wanted || name == wanted) return std::string(name);
-        known += (known.empty() ? "" : ", ") + std::string(name);
-    }
-    if (known.empty())
-        throw nanobind::value_error("this build has no instruction set that this machine runs; build it anew on this machine");
-    throw nanobind::value_error(
-        ("STRAINWAVE_INSTRUCTION_SET = " + std::string(wanted) + " is not one that this build and this machine have: " + known)
-            .c_str());
+bool supported(std::string_view name) {
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (name == "avx512")
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+               __builtin_cpu_supports("avx512bw");
+    if (name == "avx2") return __builtin_cpu_supports("avx2");
+#endif
+    return name == "baseline";
 }
 
 }  // namespace
 
-const std::string& instruction_set() {
-    static const std::string chosen = choose();
-    return chosen;
-}
-
-const Kernels& kernels() {
-    static const Kernels* loaded = nullptr;
-    if (!loaded) {
-        const std::string module = "strainwave._time_" + instruction_set();
-        PyObject* imported = PyImport_ImportModule(module.c_str());
-        if (!imported) throw nanobind::python_error();
-        Py_DECREF(imported);  // sys.modules keeps it
-        loaded = static_cast<const Kernels*>(PyCapsule_Import((module + ".kernels").c_str(), 0));
-        if (!loaded) throw nanobind::python_error();
+std::string instruction_set() {
+    const char* const wanted = std::getenv("STRAINWAVE_INSTRUCTION_SET");
+    std::string known;
+    for (const std::string_view name : instruction_sets) {
+        if (!supported(name)) continue;
+        if (!wanted || !*wanted || name == wanted) return std::string(name);
+        known += (known.empty() ? "" : ", ") + std::string(name);
     }
-    return *loaded;
+    throw nanobind::value_error(
+        ("STRAINWAVE_INSTRUCTION_SET = " + std::string(wanted) + " is not one that this machine has: " + known).c_str());
 }
 
 }  // namespace strainwave::host

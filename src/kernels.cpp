@@ -1,49 +1,23 @@
-#define PY_SSIZE_T_CLEAN
-#include <Python.h>
+#include "kernels.hpp"
 
-#include "simulate.hpp"
+#include <map>
 
-/// A module that holds the loops over time, compiled for one instruction set, and hands out where they are.
-namespace {
+namespace strainwave::host {
 
-using namespace strainwave::host;
-
-const Kernels kernels{&evaluate,
-                      &lay_out,
-                      &rest,
-                      &started,
-                      &consistent,
-                      &begin,
-                      &schedule,
-                      &aged,
-                      &advance_hysteresis,
-                      &break_away,
-                      &step_once,
-                      &natural_frequency,
-                      &max_rate,
-                      &bristle_frequency,
-                      &observe,
-                      &measure,
-                      &simulate,
-                      &simulate_adaptively,
-                      &simulate_many,
-                      &differentiate,
-                      &differentiate_rates,
-                      &differentiate_loop,
-                      &differentiate_steady};
-
-PyModuleDef definition{PyModuleDef_HEAD_INIT, SW_MODULE, nullptr, -1, nullptr, nullptr, nullptr, nullptr, nullptr};
-
-}  // namespace
-
-extern "C" __attribute__((visibility("default"))) PyObject* SW_INITIALISE() {
-    PyObject* module = PyModule_Create(&definition);
-    if (!module) return nullptr;
-    PyObject* capsule = PyCapsule_New(const_cast<Kernels*>(&kernels), "strainwave." SW_MODULE ".kernels", nullptr);
-    if (!capsule || PyModule_AddObject(module, "kernels", capsule) < 0) {
-        Py_XDECREF(capsule);
-        Py_DECREF(module);
-        return nullptr;
-    }
-    return module;
+kernel::Table& loaded_kernel(const std::vector<int>& laws) {
+    static std::map<std::vector<int>, kernel::Table> all;
+    return all.try_emplace(laws, kernel::Table{}).first->second;
 }
+
+void add_kernel(const std::vector<int>& laws, const kernel::Table& table) {
+    kernel::Table& known = loaded_kernel(laws);
+    if (table.simulate) known.simulate = table.simulate;
+    if (table.simulate_adaptively) known.simulate_adaptively = table.simulate_adaptively;
+    if (table.run_members) {
+        known.run_members = table.run_members;
+        known.lanes = table.lanes;
+    }
+    if (table.differentiate) known.differentiate = table.differentiate;
+}
+
+}  // namespace strainwave::host

@@ -65,9 +65,7 @@ std::string represented(const void* model, const Description& description) {
 }
 
 bool same(const void* one, const void* other, const Description& description) {
-    for (const Member& member : description.members)
-        if (!member.type->equal(member.in(one), member.in(other))) return false;
-    return true;
+    return parts_of(description, one) == parts_of(description, other);
 }
 
 /// "def head(self, *, name: type = ..., ...) -> result"; required members have no value by default where a model is made.
@@ -104,11 +102,99 @@ nb::tuple schema(const Description& description) {
     return nb::tuple(list);
 }
 
+}  // namespace
+
 std::string qualified(nb::handle type) {
     return nb::cast<std::string>(type.attr("__module__")) + "." + nb::cast<std::string>(type.attr("__qualname__"));
 }
 
+namespace {
+
+/// Where a member stands in a set of parameters.
+struct Path {
+    const Path* outer;
+    const char* name;
+
+    std::string text() const { return outer ? outer->text() + outer->name + "." : ""; }
+};
+
+/// Calls visit(path, member, where it lies) for each member of a model and of its parts that is none itself, and law(index) for each
+/// law chosen, in order.
+template <class Visit, class Law>
+void walk(const Description& description, const void* model, const Visit& visit, const Law& law, const Path* outer = nullptr) {
+    for (const Member& member : description.members) {
+        const Path path{outer, member.field.name};
+        if (!member.type->part) {
+            visit(path, member, member.in(model));
+            continue;
+        }
+        const PartOf part = member.type->part(member.in(model));
+        if (part.law >= 0) law(part.law);
+        walk(*part.description, part.model, visit, law, &path);
+    }
+}
+constexpr auto any_law = [](int) {};
+
+double number_of(const Member& member, const void* at, int element) {
+    return *member.type->number(const_cast<void*>(at), element);
+}
+
 }  // namespace
+
+Parts parts_of(const Description& description, const void* model) {
+    Parts parts;
+    const auto visit = [&](const Path&, const Member& member, const void* at) {
+        const int count = member.type->count(at);
+        if (member.type->counted || !member.type->number) parts.shape.push_back(count);
+        if (member.type->number)
+            for (int i = 0; i < count; ++i) parts.numbers.push_back(number_of(member, at, i));
+    };
+    walk(description, model, visit, [&](int law) { parts.laws.push_back(law); });
+    return parts;
+}
+
+std::vector<Parameter> parameters_of(const Description& description, const void* model) {
+    std::vector<Parameter> list;
+    const auto visit = [&](const Path& path, const Member& member, const void* at) {
+        if (!member.type->number) return;
+        const std::string name = path.text() + member.field.name;
+        const bool several = std::string_view(member.type->kind) == "sequence";
+        for (int i = 0; i < member.type->count(at); ++i)
+            list.push_back({several ? name + "[" + std::to_string(i) + "]" : name, member.field, number_of(member, at, i)});
+    };
+    walk(description, model, visit, any_law);
+    return list;
+}
+
+std::string problem_of(const Description& description, const void* model) {
+    std::string found = description.problem(model);
+    for (const Member& member : description.members) {
+        if (!found.empty()) break;
+        if (!member.type->part) continue;
+        const PartOf part = member.type->part(member.in(model));
+        found = problem_of(*part.description, part.model);
+    }
+    return found;
+}
+
+void set_numbers(const Description& description, void* model, const double* numbers) {
+    const auto visit = [&](const Path&, const Member& member, const void* at) {
+        if (!member.type->number) return;
+        for (int i = 0; i < member.type->count(at); ++i) *member.type->number(const_cast<void*>(at), i) = *numbers++;
+    };
+    walk(description, model, visit, any_law);
+}
+
+nb::object with_numbers(const void* model, const Description& description, const std::vector<double>& numbers) {
+    if (numbers.size() != parts_of(description, model).numbers.size())
+        throw nb::value_error("as many numbers as the model has parameters are needed");
+    nb::object other = description.cast(model);  // Python's alone until it is handed over
+    void* const copy = nb::inst_ptr<void>(other);
+    set_numbers(description, copy, numbers.data());
+    const std::string problem = problem_of(description, copy);
+    if (!problem.empty()) throw nb::value_error(problem.c_str());
+    return other;
+}
 
 void check_passivity(const Condition<double>& rule, const char* name) {
     if (rule.left >= rule.right) return;

@@ -171,51 +171,96 @@ nb::object options_of() {
     }
 }
 
-/// Whether two members have the same numbers and models.
-template <class T>
-bool equal(const T& one, const T& other) {
-    const auto parts = [](const T& member) {
-        Parts found;
-        Walk walk{[&](const std::string&, double x, const Field&) { found.numbers.push_back(x); },
-                  [&](int n) { found.shape.push_back(n); }};
-        walk(member, Field{"", "", ""});
-        return found;
-    };
-    return parts(one) == parts(other);
-}
-
 /// Warns that a model can create energy, if its rule says so.
 void check_passivity(const Condition<double>& rule, const char* name);
 
-/// What Python can do with a member of one C++ type.
+/// The name of a type with that of its module.
+std::string qualified(nb::handle type);
+
+template <class M>
+const Description& description_of();
+
+/// What can be done with a member of one C++ type.
 struct MemberType {
     const char* kind;  ///< "number", "count", "sequence", "part" or "choice"
     bool numeric;      ///< Whether it has a unit and limits
     bool listed;       ///< Whether it is one of a few names
     bool whole;        ///< Whether it counts something, whatever is said of the member
+    bool counted;      ///< Whether it has as many numbers as it says
     nb::object (*to_python)(const void* member);
     void (*read)(void* member, nb::handle value, const Reader& reader, const Field& field);
-    bool (*equal)(const void* one, const void* other);
     std::string (*python_type)(bool argument);
     nb::object (*options)();
+    PartOf (*part)(const void* member);           ///< null if it is none
+    int (*count)(const void* member);             ///< of its numbers; of one that counts or is listed, what it is
+    double* (*number)(void* member, int element);  ///< null if it has none
 };
 
+namespace detail {
+
 template <class T>
-inline constexpr MemberType member_type{
-    is_sequence<T> || is_array<T>  ? "sequence"
-    : is_choice<T> || Described<T> ? "part"
-    : std::is_enum_v<T>            ? "choice"
-                                   : "number",
-    !is_choice<T> && !Described<T> && !std::is_enum_v<T>,
-    std::is_enum_v<T>,
-    std::is_same_v<T, int>,
-    [](const void* member) { return to_python(*static_cast<const T*>(member)); },
-    [](void* member, nb::handle value, const Reader& reader, const Field& field) {
-        *static_cast<T*>(member) = reader.template read<T>(value, field);
-    },
-    [](const void* one, const void* other) { return equal(*static_cast<const T*>(one), *static_cast<const T*>(other)); },
-    [](bool argument) { return python_type<T>(argument); },
-    [] { return options_of<T>(); }};
+PartOf part_in(const void* member) {
+    const T& part = *static_cast<const T*>(member);
+    if constexpr (is_choice<T>)
+        return part.visit([&]<class Law>(const Law& law) {
+            return PartOf{&description_of<Law>(), &law, int(part.model.index())};
+        });
+    else
+        return {&description_of<T>(), member, -1};
+}
+template <class T>
+int count_in(const void* member) {
+    const T& value = *static_cast<const T*>(member);
+    if constexpr (is_sequence<T> || is_array<T>)
+        return value.size();
+    else if constexpr (std::is_enum_v<T> || std::is_same_v<T, int>)
+        return int(value);
+    else
+        return 1;
+}
+template <class T>
+double* number_in(void* member, int element) {
+    if constexpr (is_sequence<T> || is_array<T>)
+        return &(*static_cast<T*>(member))[element];
+    else
+        return static_cast<double*>(member);
+}
+
+}  // namespace detail
+
+template <class T>
+inline constexpr bool is_part = is_choice<T> || Described<T>;
+template <class T>
+inline constexpr bool has_numbers = !is_part<T> && !std::is_enum_v<T> && !std::is_same_v<T, int>;
+
+template <class T>
+constexpr MemberType made_member_type() {
+    MemberType type{is_sequence<T> || is_array<T> ? "sequence"
+                    : is_part<T>                  ? "part"
+                    : std::is_enum_v<T>           ? "choice"
+                                                  : "number",
+                    !is_part<T> && !std::is_enum_v<T>,
+                    std::is_enum_v<T>,
+                    std::is_same_v<T, int>,
+                    is_sequence<T>,
+                    [](const void* member) { return to_python(*static_cast<const T*>(member)); },
+                    [](void* member, nb::handle value, const Reader& reader, const Field& field) {
+                        *static_cast<T*>(member) = reader.template read<T>(value, field);
+                    },
+                    [](bool argument) { return python_type<T>(argument); },
+                    [] { return options_of<T>(); },
+                    nullptr,
+                    nullptr,
+                    nullptr};
+    if constexpr (is_part<T>)
+        type.part = &detail::part_in<T>;
+    else
+        type.count = &detail::count_in<T>;
+    if constexpr (has_numbers<T>) type.number = &detail::number_in<T>;
+    return type;
+}
+template <class T>
+inline constexpr MemberType member_type = made_member_type<T>();
 
 /// A member of a struct: what is known of it, where it lies, and its type.
 struct Member {
@@ -239,15 +284,21 @@ struct Description {
     const void* defaults;                        ///< a model as C++ makes it
     void (*copy)(void* to, const void* from);    ///< to where none is yet
     nb::object (*cast)(const void* model);       ///< a copy for Python
-    std::string (*problem)(const void* model);   ///< how its numbers contradict each other; empty if they do not
+    std::string (*problem)(const void* model);   ///< how its own numbers contradict each other; empty if they do not
     void (*check_passivity)(const void* model);  ///< null if it cannot create energy
     nb::handle (*python_type)();
-    std::vector<Parameter> (*parameters)(const void* model);  ///< every number of it and of its parts
-    nb::object (*with_numbers)(const void* model, const std::vector<double>& numbers);
 };
 
 template <class M>
-const Description& description_of(const char* python_name, const std::string& name) {
+inline const Description* bound_description = nullptr;
+/// That of a struct that is bound.
+template <class M>
+const Description& description_of() {
+    return *bound_description<M>;
+}
+
+template <class M>
+const Description& describe(const char* python_name, const std::string& name) {
     static const M defaults{};
     static const Description description = [&] {
         Description made{};
@@ -266,18 +317,9 @@ const Description& description_of(const char* python_name, const std::string& na
         if constexpr (requires { defaults.passivity(); })
             made.check_passivity = [](const void* model) { check_passivity(static_cast<const M*>(model)->passivity(), M::name); };
         made.python_type = [] { return nb::type<M>(); };
-        made.parameters = [](const void* model) { return parameters_of(*static_cast<const M*>(model)); };
-        made.with_numbers = [](const void* model, const std::vector<double>& numbers) {
-            const Parts parts = parts_of(*static_cast<const M*>(model));
-            if (numbers.size() != parts.numbers.size())
-                throw nb::value_error("as many numbers as the model has parameters are needed");
-            const M other = assembled<M, double>(parts.shape, [&](int i) { return numbers[i]; });
-            const std::string problem = problem_of(other);
-            if (!problem.empty()) throw nb::value_error(problem.c_str());
-            return nb::cast(other);
-        };
         return made;
     }();
+    bound_description<M> = &description;
     return description;
 }
 
@@ -286,6 +328,9 @@ const Description& description_of(nb::handle object);
 
 /// The model that a Python object holds; refused if it is none of this type.
 const void* model_in(nb::handle object, const Description& description);
+
+/// The same model with other numbers; refused if they contradict each other.
+nb::object with_numbers(const void* model, const Description& description, const std::vector<double>& numbers);
 
 /// Help for a struct: what it is, its members, what it raises, its source.
 std::string documentation(const Description& description);

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
-#include "simulate.hpp"
+#include "kernel/table.hpp"
 
 namespace strainwave::host {
 
 namespace {
 
+constexpr int lanes = 4;
 using Times = Pack<lanes>;
 
 /// Adds a wave, A sin(2 pi (f t + g t^2 / 2) + phi), and its rate.
@@ -59,8 +60,8 @@ void lay_out(const Signal& signal, const double* instants, std::size_t steps, do
     constexpr std::size_t most = 256;  // steps at a time, so that what is between stays in the nearest memory
     double t[2 * most + 1], value[2 * most + 1], rate[2 * most + 1];
     const auto put = [&](std::size_t place, std::size_t from) {
-        values[place * input_count] = value[from];
-        rates[place * input_count] = rate[from];
+        values[place * kernel::input_count] = value[from];
+        rates[place * kernel::input_count] = rate[from];
     };
     for (std::size_t first = 0; first < steps; first += most) {
         const std::size_t count = std::min(most, steps - first);
@@ -104,15 +105,13 @@ Unbroken::Unbroken(const Signals& signals_, double begin_) : signals(signals_), 
     for (int i = 0; i < signal_count; ++i) piece[i] = piece_at(*signals[i], begin, Side::after);
 }
 
-Input<double> Unbroken::at(double fraction, double dt) const {
-    static_assert(input_count == 2 * signal_count);
-    Array<double, input_count> numbers;
+void Unbroken::at(double fraction, double dt, double* inputs) const {
+    static_assert(kernel::input_count == 2 * signal_count);
     for (int i = 0; i < signal_count; ++i) {
         const Value found = along(*signals[i], piece[i], begin + fraction * dt);
-        numbers[2 * i] = found.value;
-        numbers[2 * i + 1] = found.rate;
+        inputs[2 * i] = found.value;
+        inputs[2 * i + 1] = found.rate;
     }
-    return shaped<Input<double>>(numbers);
 }
 
 void lay_out(const Signals& signals, const double* instants, std::size_t steps, double* inputs) {

@@ -1,6 +1,5 @@
 #pragma once
-#include <strainwave/drive.hpp>
-#include <strainwave/integrate/interval.hpp>
+#include <strainwave/array.hpp>
 
 #include <cstddef>
 #include <vector>
@@ -38,13 +37,11 @@ class Unbroken {
 public:
     Unbroken(const Signals& signals_, double begin_);
 
-    Input<double> at(double fraction, double dt) const;
-    Interval<Input<double>> part(double from, double to, double dt) const {
-        return {at(from, dt), at(0.5 * (from + to), dt), at(to, dt)};
-    }
+    /// Writes the inputs at a fraction of `dt` [s].
+    void at(double fraction, double dt, double* inputs) const;
 };
 
-/// The inputs through instants[0..steps], as `InputSchedule` holds them: the right limits at the start of a step, the left at
+/// The inputs through instants[0..steps], as a `kernel::Schedule` has them: the right limits at the start of a step, the left at
 /// its end.
 void lay_out(const Signals& signals, const double* instants, std::size_t steps, double* inputs);
 

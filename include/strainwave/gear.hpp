@@ -122,28 +122,8 @@ struct Gear {
     using Shafts = structure::Shafts<S>;
     using Inner = typename Structure::State;
 
-    /// Deformation of the bearing, where a structure puts bodies between wave generator and spring.
-    struct Between {
-        S deformation;       ///< What the error leaves of the gap, rad
-        S deformation_rate;  ///< rad/s
-        S per_twist;         ///< How the error follows the twist of the spring, rad/rad
-    };
     static constexpr bool always_rigid = size_of<S, Inner> == 0;
-    using Apart = typename detail::Either<always_rigid, Stateless<S>, Between>::type;
-
-    /// How the gear stands between its two shafts.
-    struct Mesh {
-        S error;         ///< Kinematic error e, rad
-        S per_input;     ///< Deformation per angle of the wave generator: 1/i - e', rad/rad
-        S per_output;    ///< and per output angle, without its sign; not 1 where the error of a rigid structure follows the load
-        S twist;         ///< of the spring, rad
-        S twist_rate;    ///< rad/s
-        S spring;        ///< Torque of the spring, its hysteresis and damping, N.m
-        S torque;        ///< on the output shaft, N.m
-        S input_torque;  ///< that holds the input shaft back, N.m
-        Apart apart;
-        Inner rate;  ///< of the bodies within the gear
-    };
+    using Mesh = structure::Mesh<S, Inner>;
 
     constexpr Shafts shafts(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
                             const S& output_speed) const {

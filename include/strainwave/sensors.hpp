@@ -6,9 +6,14 @@
 namespace strainwave {
 
 /// The state of each sensor of a drive.
-template <class S, class Each>
+template <class S, class InputAngle, class InputSpeed, class OutputAngle, class OutputSpeed, class Current, class Torque>
 struct SensorStates {
-    Each input_angle{}, input_speed{}, output_angle{}, output_speed{}, current{}, torque{};
+    InputAngle input_angle{};
+    InputSpeed input_speed{};
+    OutputAngle output_angle{};
+    OutputSpeed output_speed{};
+    Current current{};
+    Torque torque{};
 
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
@@ -21,14 +26,15 @@ struct SensorStates {
     }
 };
 
-template <class S, class Sensor>
+template <class S, class InputAngle, class InputSpeed = InputAngle, class OutputAngle = InputAngle, class OutputSpeed = InputAngle,
+          class Current = InputAngle, class Torque = InputAngle>
 struct Sensors {
-    Sensor input_angle{};
-    Sensor input_speed{};
-    Sensor output_angle{};
-    Sensor output_speed{};
-    Sensor current{};
-    Sensor torque{};
+    InputAngle input_angle{};
+    InputSpeed input_speed{};
+    OutputAngle output_angle{};
+    OutputSpeed output_speed{};
+    Current current{};
+    Torque torque{};
 
     static constexpr auto name = "sensors";
     static constexpr auto source = "definition";
@@ -53,27 +59,27 @@ struct Sensors {
     }
 
     constexpr auto compile() const {
-        return Sensors<S, decltype(compiled(torque))>{compiled(input_angle),  compiled(input_speed), compiled(output_angle),
-                                                      compiled(output_speed), compiled(current),     compiled(torque)};
+        return Sensors<S, decltype(compiled(input_angle)), decltype(compiled(input_speed)), decltype(compiled(output_angle)),
+                       decltype(compiled(output_speed)), decltype(compiled(current)), decltype(compiled(torque))>{
+            compiled(input_angle),  compiled(input_speed), compiled(output_angle),
+            compiled(output_speed), compiled(current),     compiled(torque)};
     }
 
-    using States = SensorStates<S, typename Sensor::State>;
-    static constexpr bool stateless = size_of<S, typename Sensor::State> == 0;
+    using States = SensorStates<S, typename InputAngle::State, typename InputSpeed::State, typename OutputAngle::State,
+                                typename OutputSpeed::State, typename Current::State, typename Torque::State>;
+    static constexpr bool stateless = size_of<S, States> == 0;
     using State = typename detail::Either<stateless, Stateless<S>, States>::type;
     using Measurement = control::Measurement<S>;
 
     constexpr State initial_state() const {
-        return each([](const Sensor& sensor, const auto&) { return strainwave::initial_state(sensor); }, Measurement{});
+        return each([](const auto& sensor, const S&) { return strainwave::initial_state(sensor); }, Measurement{});
     }
     /// What the sensors show of what there is.
     constexpr Measurement shown(const State& x, const Measurement& actual) const {
-        return {shown(input_angle, x, &States::input_angle, actual.input_angle),
-                shown(input_speed, x, &States::input_speed, actual.input_speed),
-                shown(output_angle, x, &States::output_angle, actual.output_angle),
-                shown(output_speed, x, &States::output_speed, actual.output_speed),
-                shown(current, x, &States::current, actual.current),
-                shown(torque, x, &States::torque, actual.torque),
-                actual.limits};
+        if constexpr (stateless)
+            return shown_by(States{}, actual);
+        else
+            return shown_by(x, actual);
     }
     constexpr State rate(const State& x, const Measurement& actual) const {
         if constexpr (stateless)
@@ -87,7 +93,7 @@ struct Sensors {
                     torque.rate(x.torque, actual.torque)};
     }
     constexpr State relaxation_rate() const {
-        return each([](const Sensor& sensor, const S&) { return sensor.relaxation_rate(); }, Measurement{});
+        return each([](const auto& sensor, const S&) { return sensor.relaxation_rate(); }, Measurement{});
     }
     constexpr S fastest() const {
         const S input = max(one(input_angle), one(input_speed)), output = max(one(output_angle), one(output_speed));
@@ -95,16 +101,22 @@ struct Sensors {
     }
     /// The state in which they show what there is.
     constexpr State settled(const Measurement& actual) const {
-        return each([](const Sensor& sensor, const S& value) { return sensor.settled(value); }, actual);
+        return each([](const auto& sensor, const S& value) { return sensor.settled(value); }, actual);
     }
 
 private:
-    static constexpr S one(const Sensor& sensor) { return strainwave::fastest<S>(sensor); }
-    static constexpr S shown(const Sensor& sensor, const State& x, typename Sensor::State States::* own, const S& value) {
-        if constexpr (stateless)
-            return sensor.shown({}, value);
-        else
-            return sensor.shown(x.*own, value);
+    template <class Sensor>
+    static constexpr S one(const Sensor& sensor) {
+        return strainwave::fastest<S>(sensor);
+    }
+    constexpr Measurement shown_by(const States& x, const Measurement& actual) const {
+        return {input_angle.shown(x.input_angle, actual.input_angle),
+                input_speed.shown(x.input_speed, actual.input_speed),
+                output_angle.shown(x.output_angle, actual.output_angle),
+                output_speed.shown(x.output_speed, actual.output_speed),
+                current.shown(x.current, actual.current),
+                torque.shown(x.torque, actual.torque),
+                actual.limits};
     }
     template <class F>
     constexpr State each(const F& f, const Measurement& of) const {

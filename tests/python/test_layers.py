@@ -15,12 +15,12 @@ ANALYSES = {"analysis", "identification", "rig", "studies"}
 LAYERS = {
     "files": {"files"},
     "native": {"files", "native"},
-    "simulation": {"files", "simulation"},
-    "analysis": {"files", "simulation", "analysis"},
-    "identification": {"files", "simulation", "identification"},
-    "rig": {"files", "simulation", "analysis", "identification", "rig"},
-    "studies": {"files", "simulation", "analysis", "studies"},
-    "report": {"files", "simulation", *ANALYSES, "report"},
+    "simulation": {"files", "native", "simulation"},
+    "analysis": {"files", "native", "simulation", "analysis"},
+    "identification": {"files", "native", "simulation", "identification"},
+    "rig": {"files", "native", "simulation", "analysis", "identification", "rig"},
+    "studies": {"files", "native", "simulation", "analysis", "studies"},
+    "report": {"files", "native", "simulation", *ANALYSES, "report"},
 }
 TOP = {
     "__main__",

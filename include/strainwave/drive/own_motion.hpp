@@ -65,18 +65,22 @@ constexpr S damping(const Drive& drive) {
 /// How fast the controller lets the current decay [1/s], beyond what the winding does by itself, which steps take exactly.
 template <class S, class Drive>
 constexpr S current_damping(const Drive& drive) {
-    if (!motor::has_current<S>(drive.motor)) return S(0.0);
-    const auto x = drive.rest();
-    const auto rate = [&](const S& current) {
-        auto y = x.continuous;
-        auto numbers = flattened<S>(y.motor);
-        numbers[0] = numbers[0] + current;
-        y.motor = refilled(y.motor, numbers);
-        return flattened<S>(drive.derivatives(x, y, typename Drive::Input{}).rate.motor)[0];
-    };
-    const S little{1e-3};  // A, so that no limit hides it
-    const S decay = (rate(S(0.0)) - rate(little)) / little;
-    return max(decay - flattened<S>(drive.motor.relaxation_rate())[0], S(0.0));
+    if constexpr (size_of<S, typename decltype(Drive{}.motor)::State> == 0) {
+        return S(0.0);
+    } else {
+        if (!motor::has_current<S>(drive.motor)) return S(0.0);
+        const auto x = drive.rest();
+        const auto rate = [&](const S& current) {
+            auto y = x.continuous;
+            auto numbers = flattened<S>(y.motor);
+            numbers[0] = numbers[0] + current;
+            y.motor = refilled(y.motor, numbers);
+            return flattened<S>(drive.derivatives(x, y, typename Drive::Input{}).rate.motor)[0];
+        };
+        const S little{1e-3};  // A, so that no limit hides it
+        const S decay = (rate(S(0.0)) - rate(little)) / little;
+        return max(decay - flattened<S>(drive.motor.relaxation_rate())[0], S(0.0));
+    }
 }
 
 }  // namespace detail

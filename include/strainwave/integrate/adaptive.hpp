@@ -1,14 +1,8 @@
 #pragma once
 #include <strainwave/integrate/event_driven.hpp>
+#include <strainwave/integrate/tolerance.hpp>
 
 namespace strainwave::integrate {
-
-/// What a continuous number, and the watched one, may err by: `absolute`, in its own unit, plus `relative` times the largest it has
-/// been.
-struct Tolerance {
-    double relative = 1e-6;
-    double absolute = 1e-12;
-};
 
 /// Steps as long as a tolerance allows, taken by `smooth`, which knows no events and is of fourth order; by Moreau and Jean's
 /// scheme where events chatter. The error of two steps is told by one of twice their length. A step ends at an event. Between its
@@ -47,7 +41,8 @@ public:
           next(first) {}
 
     /// The evaluation after the interval `u` of `dt` [s]. Calls within(done, to, end, at) for each step taken: between which
-    /// fractions of the interval, the evaluation at its end, and a function that gives it at any fraction in between.
+    /// fractions of the interval, the evaluation at its end, and a function that gives it at any fraction in between; ends where
+    /// that is false.
     template <class Within>
     constexpr Evaluation through(Evaluation from, const Inputs& u, const S& dt, const Within& within) {
         S done{0.0};
@@ -74,7 +69,7 @@ public:
             if (!stands(error(from, tried, taken), taken, cut)) continue;
             if (gave_up()) return from;
             if (stop.event) tried.end = apply_event(tried.end);
-            within(done, tried.to, tried.end, [&](const S& at) { return along(from, tried, u, dt, at); });
+            if (!within(done, tried.to, tried.end, [&](const S& at) { return along(from, tried, u, dt, at); })) return from;
             events = chatters() ? max_events - 1 : taken > S(brief) ? stop.event : events + stop.event;
             if (missed == 0) note(tried.end);
             from = tried.end;

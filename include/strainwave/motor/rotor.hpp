@@ -81,8 +81,14 @@ constexpr const char* taken_by(const Motor& motor) {
 /// Whether the current of a motor is a state: it does not follow the actuation at once.
 template <class S, class Motor>
 constexpr bool has_current(const Motor& motor) {
-    const auto rates = flattened<S>(motor.relaxation_rate());
-    return rates.size() > 0 && all(rates[0] > S(0.0));
+    if constexpr (requires { motor.has_current(); }) {
+        return motor.has_current();
+    } else if constexpr (size_of<S, decltype(motor.relaxation_rate())> == 0) {
+        return false;
+    } else {
+        const auto rates = flattened<S>(motor.relaxation_rate());
+        return rates.size() > 0 && all(rates[0] > S(0.0));
+    }
 }
 
 }  // namespace strainwave::motor

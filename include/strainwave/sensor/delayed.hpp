@@ -9,6 +9,7 @@ namespace strainwave::sensor {
 template <class S, class Law_ = Ideal<S>>
 struct Delayed {
     using Law = Law_;
+    static constexpr int room = 2;  ///< for the state of what it holds: at most that of a SecondOrder
     static constexpr int sections = 4;
 
     Law law{};
@@ -39,7 +40,7 @@ struct Delayed {
 
     struct State {
         Array<S, sections> section{};
-        Numbers<S, Law> own{};
+        Numbers<S, room> own{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
@@ -58,7 +59,7 @@ struct Delayed {
     }
     constexpr State rate(const State& x, const S& value) const {
         const typename Law::State own = state(law, x.own);
-        State rate{{}, numbers<S, Law>(law.rate(own, value))};
+        State rate{{}, numbers<S, room>(law.rate(own, value))};
         S passing = law.shown(own, value);
         for (int i = 0; i < sections; ++i) {
             rate.section[i] = (passing - x.section[i]) * per_second();
@@ -68,12 +69,12 @@ struct Delayed {
     }
     constexpr State relaxation_rate() const {
         // None of the sections: each follows another, so that a step which is exact for one alone is not for their chain.
-        return {{}, numbers<S, Law>(law.relaxation_rate())};
+        return {{}, numbers<S, room>(law.relaxation_rate())};
     }
     constexpr S fastest() const { return max(strainwave::fastest<S>(law), per_second()); }
     constexpr State settled(const S& value) const {
         const typename Law::State own = law.settled(value);
-        State x{{}, numbers<S, Law>(own)};
+        State x{{}, numbers<S, room>(own)};
         for (int i = 0; i < sections; ++i) x.section[i] = law.shown(own, value);
         return x;
     }

@@ -10,6 +10,7 @@ namespace strainwave::sensor {
 template <class S, class Law_ = Ideal<S>>
 struct Noisy {
     using Law = Law_;
+    static constexpr int room = 6;  ///< for the state of what it holds: at most that of a Delayed around a SecondOrder
 
     Law law{};
     S amplitude{0.0};
@@ -43,7 +44,7 @@ struct Noisy {
 
     struct State {
         S clock{0.0};
-        Numbers<S, Law> own{};
+        Numbers<S, room> own{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
@@ -65,10 +66,10 @@ struct Noisy {
             return law.shown(state(law, x.own), value) + weight * spectrum.sum(x.clock);
         }
         constexpr State rate(const State& x, const S& value) const {
-            return {S(1.0), numbers<S, Inner>(law.rate(state(law, x.own), value))};
+            return {S(1.0), numbers<S, room>(law.rate(state(law, x.own), value))};
         }
-        constexpr State relaxation_rate() const { return {S(0.0), numbers<S, Inner>(law.relaxation_rate())}; }
-        constexpr State settled(const S& value) const { return {S(0.0), numbers<S, Inner>(law.settled(value))}; }
+        constexpr State relaxation_rate() const { return {S(0.0), numbers<S, room>(law.relaxation_rate())}; }
+        constexpr State settled(const S& value) const { return {S(0.0), numbers<S, room>(law.settled(value))}; }
         constexpr S fastest() const { return strainwave::fastest<S>(law); }
     };
     constexpr Compiled compile() const {

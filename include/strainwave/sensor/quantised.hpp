@@ -9,6 +9,7 @@ namespace strainwave::sensor {
 template <class S, class Law_ = Ideal<S>>
 struct Quantised {
     using Law = Law_;
+    static constexpr int room = 7;  ///< for the state of what it holds: at most that of a Noisy around that
 
     Law law{};
     S resolution{1e-3};
@@ -36,7 +37,7 @@ struct Quantised {
     }
 
     struct State {
-        Numbers<S, Law> own{};
+        Numbers<S, room> own{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
@@ -54,9 +55,9 @@ struct Quantised {
         else
             return read;
     }
-    constexpr State rate(const State& x, const S& value) const { return {numbers<S, Law>(law.rate(state(law, x.own), value))}; }
-    constexpr State relaxation_rate() const { return {numbers<S, Law>(law.relaxation_rate())}; }
-    constexpr State settled(const S& value) const { return {numbers<S, Law>(law.settled(value))}; }
+    constexpr State rate(const State& x, const S& value) const { return {numbers<S, room>(law.rate(state(law, x.own), value))}; }
+    constexpr State relaxation_rate() const { return {numbers<S, room>(law.relaxation_rate())}; }
+    constexpr State settled(const S& value) const { return {numbers<S, room>(law.settled(value))}; }
     constexpr S fastest() const { return strainwave::fastest<S>(law); }
 };
 

@@ -5,7 +5,8 @@
 
 namespace strainwave::structure {
 
-template <class S, class Variation = variation::Constant<S>>
+template <class S, class CouplingVariation = variation::Constant<S>, class BearingVariation = CouplingVariation,
+          class MeshVariation = CouplingVariation, class SplineVariation = CouplingVariation>
 struct Staged {
     S pitch_radius{25e-3};
     S pressure_angle{0.3490658503988659};
@@ -20,10 +21,10 @@ struct Staged {
     S radial_mass{0.03};
     S flexspline_inertia{2e-5};
     S circular_spline_inertia{3e-4};
-    Variation coupling_variation{};
-    Variation bearing_variation{};
-    Variation mesh_variation{};
-    Variation circular_spline_variation{};
+    CouplingVariation coupling_variation{};
+    BearingVariation bearing_variation{};
+    MeshVariation mesh_variation{};
+    SplineVariation circular_spline_variation{};
 
     static constexpr auto name = "staged";
     static constexpr auto source =
@@ -175,9 +176,12 @@ struct Staged {
     };
 
     /// The chain of bodies at the output's scale: every radial displacement times tan(alpha_t) / r_g, every tangential one by r_g.
-    template <class Varying>
+    template <class CouplingVarying, class BearingVarying, class MeshVarying, class SplineVarying>
     struct Chain {
-        Joint<Varying> coupling, bearing, mesh, spline;
+        Joint<CouplingVarying> coupling;
+        Joint<BearingVarying> bearing;
+        Joint<MeshVarying> mesh;
+        Joint<SplineVarying> spline;
         S radial_inertia, flexspline_inertia, spline_inertia;  ///< kg.m2
         S lever;                                               ///< r_g / tan(alpha_t), m: force of the bearing per torque
         S mesh_lever;                                          ///< r_g cos(alpha_t), m
@@ -213,7 +217,7 @@ struct Staged {
         template <class Mesh>
         constexpr Reaction<S, State> even_reaction(const State& inner, const Shafts<S>& at, const Mesh& stance,
                                                    const Load<S>& load) const {
-            const auto even = [](const Joint<Varying>&) { return variation::Factor<S>{}; };
+            const auto even = [](const auto&) { return variation::Factor<S>{}; };
             return reaction(joints(inner, at, stance, even), inner, at, stance, load);
         }
 
@@ -321,11 +325,13 @@ struct Staged {
             return {select(held_flexspline, of_flexspline, of_spline), select(held_flexspline, of_spline, of_flexspline)};
         }
 
+        template <class Varying>
         static constexpr Strained strained(const Joint<Varying>& joint, const variation::Factor<S>& factor, const S& deformation,
                                            const S& rate) {
             const S stiff = joint.stiffness * deformation, elastic = factor.value * stiff;
             return {deformation, rate, elastic, elastic + joint.damping * rate, S(0.5) * factor.slope * stiff * deformation};
         }
+        template <class Varying>
         static constexpr Strained resting(const Joint<Varying>& joint, const Angle<S>& angle, const S& torque) {
             const variation::Factor<S> factor = joint.factor(angle);
             const S deformation = torque / (joint.stiffness * factor.value);
@@ -354,7 +360,7 @@ struct Staged {
         template <class Mesh>
         constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance) const {
             const Angle<S> angle = generator(inner, at).angle;
-            return joints(inner, at, stance, [&](const Joint<Varying>& joint) { return joint.factor(angle); });
+            return joints(inner, at, stance, [&](const auto& joint) { return joint.factor(angle); });
         }
         template <class Mesh, class FactorOf>
         constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance, const FactorOf& factor) const {
@@ -413,20 +419,21 @@ struct Staged {
 
     /// The chain of these bodies, its numbers worked out once.
     constexpr auto compile() const {
-        using Varying = decltype(compiled(mesh_variation));
         const SinCos<S> flank = sincos(pressure_angle);
         const S lever = pitch_radius * flank.cos / flank.sin, mesh_lever = pitch_radius * flank.cos;
         const S of_bearing = lever * lever, of_mesh = mesh_lever * mesh_lever;
-        return Chain<Varying>{{coupling_stiffness, coupling_damping, compiled(coupling_variation)},
-                              {bearing_stiffness * of_bearing, bearing_damping * of_bearing, compiled(bearing_variation)},
-                              {mesh_stiffness * of_mesh, mesh_damping * of_mesh, compiled(mesh_variation)},
-                              {circular_spline_stiffness, circular_spline_damping, compiled(circular_spline_variation)},
-                              radial_mass * of_bearing,
-                              flexspline_inertia,
-                              circular_spline_inertia,
-                              lever,
-                              mesh_lever,
-                              pitch_radius};
+        return Chain<decltype(compiled(coupling_variation)), decltype(compiled(bearing_variation)),
+                     decltype(compiled(mesh_variation)), decltype(compiled(circular_spline_variation))>{
+            {coupling_stiffness, coupling_damping, compiled(coupling_variation)},
+            {bearing_stiffness * of_bearing, bearing_damping * of_bearing, compiled(bearing_variation)},
+            {mesh_stiffness * of_mesh, mesh_damping * of_mesh, compiled(mesh_variation)},
+            {circular_spline_stiffness, circular_spline_damping, compiled(circular_spline_variation)},
+            radial_mass * of_bearing,
+            flexspline_inertia,
+            circular_spline_inertia,
+            lever,
+            mesh_lever,
+            pitch_radius};
     }
 
     static constexpr bool rigid() { return false; }

@@ -40,6 +40,31 @@ struct Generator {
     S speed;  ///< rad/s
 };
 
+/// Deformation of the bearing, where a structure puts bodies between wave generator and spring.
+template <class S>
+struct Between {
+    S deformation;       ///< What the error leaves of the gap, rad
+    S deformation_rate;  ///< rad/s
+    S per_twist;         ///< How the error follows the twist of the spring, rad/rad
+};
+
+/// How a gear stands between its two shafts; `Inner` is the state of the bodies within it.
+template <class S, class Inner>
+struct Mesh {
+    using Apart = typename detail::Either<size_of<S, Inner> == 0, Stateless<S>, Between<S>>::type;
+
+    S error;         ///< Kinematic error e, rad
+    S per_input;     ///< Deformation per angle of the wave generator: 1/i - e', rad/rad
+    S per_output;    ///< and per output angle, without its sign; not 1 where the error of a rigid structure follows the load
+    S twist;         ///< of the spring, rad
+    S twist_rate;    ///< rad/s
+    S spring;        ///< Torque of the spring, its hysteresis and damping, N.m
+    S torque;        ///< on the output shaft, N.m
+    S input_torque;  ///< that holds the input shaft back, N.m
+    Apart apart;
+    Inner rate;  ///< of the bodies within the gear
+};
+
 /// What the rest of the gear does to the bodies within it.
 template <class S>
 struct Load {

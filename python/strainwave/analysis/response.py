@@ -14,6 +14,7 @@ from strainwave import Drive, _core, arguments
 from strainwave.analysis.steady import averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.messages import listed, quoted
+from strainwave.native import kernels
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
@@ -197,6 +198,7 @@ class _Sines:
         while True:
             outputs = beginning(self.drive, state, excitation.first(), channels, len(time_grid.times))
             keep, method = time_grid.samples[1:], _core.Method.exponential
+            kernels.prepare(self.drive, "simulate", len(time_grid.instants))
             state = _core.simulate(self.drive, state, time_grid.instants, inputs, keep, method, channels, outputs, 1)
             run = recording(self.drive, time_grid, recorded, outputs, temperature)
             yield {name: run[name] for name in run.names if name != "time"}

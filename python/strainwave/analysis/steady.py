@@ -130,7 +130,7 @@ class Rates(ComparedByFields):
     @np.errstate(over="ignore", invalid="ignore")
     def of(cls, drive: Drive, state: Array, inputs: Array) -> Rates:
         values, slopes = _core.differentiate_rates(drive, state, inputs)
-        count = len(values) - _core.output_count
+        count = len(slopes) - len(inputs)
         by_numbers, by_inputs = np.split(slopes.T, [count], axis=1)
         size = np.abs(by_numbers[:count]) @ np.abs(state[:count]) + np.abs(by_inputs[:count]) @ np.abs(inputs)
         layout = Layout(drive)

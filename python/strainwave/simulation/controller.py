@@ -13,6 +13,7 @@ from strainwave import Drive, _core, arguments, control
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
+from strainwave.native import kernels
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.memory import check_acting
@@ -154,6 +155,7 @@ def _run(
     drive, instants = course.drive, course.time_grid.instants
     steps, held, asked, acted = len(given), 0.0, 0.0, 0.0
     outputs, first = np.empty((0, 0)), 0
+    kernels.prepare(drive, "simulate", steps)
     for number, (begin, end) in enumerate(pairwise([*_places(instants, actions), steps])):
         if number % 2 == 1:
             held = asked

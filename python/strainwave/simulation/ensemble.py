@@ -17,6 +17,7 @@ from strainwave.files.ensemble_folder import EnsembleFolder, fingerprint
 from strainwave.files.recording import Recording
 from strainwave.files.writing import claiming, making
 from strainwave.messages import listed, one_line, quoted
+from strainwave.native import kernels
 from strainwave.parameters import every, unknown
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
@@ -206,6 +207,7 @@ class _Plan(ComparedByFields):
         values = np.ascontiguousarray([column[first:last] for column in self.parameters.values()])
         channels = [each.channel for each in self.recorded.values()]
         outputs = np.empty((len(channels), last - first, len(self.time)))
+        kernels.prepare(self.drive, "simulate_many", self.members * self.steps)
         sound, twists, fastest, on_bristles, refusals = _core.simulate_many(
             self.drive,
             self.numbers,

@@ -15,6 +15,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
+from strainwave.native import kernels
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE, Excitation
 from strainwave.simulation.initial import beginning_numbers, known
@@ -179,6 +180,7 @@ def simulate(
     if method != "rosenbrock":  # whoever asks for it may want vibrations that a step cannot follow damped
         course.check_steps(0.0, excitation.first()[TEMPERATURE])
     taken = method or "exponential"
+    kernels.prepare(drive, "simulate", len(time_grid.instants))
     outputs, first = course.beginning(state, excitation.first()), 1
     with progressing(progress, len(time_grid.instants) - 1) as shown:
         for number, chunk in enumerate(time_grid.chunks()):
@@ -356,10 +358,12 @@ def simulate_adaptively(
     excitation.check_temperature(ends)
     channels = [each.channel for each in recorded.values()]
     outputs = beginning(drive, state, excitation.first(), channels, len(samples))
+    kernels.prepare(drive, "simulate_adaptively", kernels.ADAPTIVE_STEPS * len(ends))
     with progressing(progress, len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
             drive, state, *excitation.signals, ends, rtol, atol, max_steps, samples[1:], channels, outputs, 1, shown
         )
+    kernels.note(drive, "simulate_adaptively", kernels.ADAPTIVE_STEPS * (accepted + rejected))
     check_meaning(samples, recorded, outputs, "check the parameters")
     kept = f"adaptive, rtol {rtol:g}, atol {atol:g}: {accepted} steps, {rejected} given up"
     end = _finite(State.of(drive, state), "check the parameters")
@@ -399,7 +403,8 @@ def differentiate(
         def run_by(group: list[int], told: Told) -> tuple[Array, Array]:
             return _core.differentiate(drive, beginning, time_grid.instants, inputs, kept, group, told)
 
-        groups = [list(numbers[first : first + _core.max_lanes]) for first in range(0, max(len(numbers), 1), _core.max_lanes)]
+        groups = [list(numbers[first : first + _core.slopes]) for first in range(0, max(len(numbers), 1), _core.slopes)]
+        kernels.prepare(drive, "differentiate", kernels.DERIVATIVE_STEPS * len(groups) * len(time_grid.instants))
         runs = side_by_side([partial(run_by, group) for group in groups])
         outputs, slopes = runs[0][0], np.concatenate([by_numbers for _, by_numbers in runs])
     channels = [each.channel for each in recorded.values()]

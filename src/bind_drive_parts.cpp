@@ -1,0 +1,14 @@
+#include "laws.hpp"
+
+namespace strainwave::host {
+
+void bind_drive_parts(nb::module_& core) {
+    bind_family<NoVerbs>(core, "motor", "Motors on the input shaft.", motor::Models{});
+    bind_family<NoVerbs>(core, "control", "What turns the command into the motor's voltage, current or torque.", control::Models{});
+    bind_family<NoVerbs>(core, "loads", "What the output shaft carries.", load::Models{});
+    bind_family<NoVerbs>(core, "sensor", "What a controller sees a quantity by.", sensor::Models{});
+    bind_family<NoVerbs>(core, "thermal", "Temperatures of a drive.", thermal::Models{});
+    bind_family<NoVerbs>(core, "meter", "Powers and energies of a drive.", meter::Models{});
+}
+
+}  // namespace strainwave::host

@@ -1,0 +1,22 @@
+#include "laws.hpp"
+
+namespace strainwave::host {
+
+void bind_gear_laws(nb::module_& core) {
+    bind_family<NoVerbs>(core, "kinematics", "Rigid motion: the signed ratio from the teeth and the fixed member.",
+                         kinematics::Models{});
+    nb::module_ error = family_module(core, "kinematic_error", "Pure kinematic error at the output, over the input angle.");
+    bind_list<ErrorVerbs>(core, error, "kinematic_error", kinematic_error::Models{});
+    bind_list<NoiseVerbs>(core, error, "kinematic_noise", kinematic_error::Noises{});
+    bind_family<FrictionVerbs>(core, "friction", "Friction torque of one side, over its speed.", friction::Models{});
+    bind_family<StiffnessVerbs>(core, "stiffness", "Elastic torque over the twist.", stiffness::Models{});
+    nb::module_ hysteresis = family_module(core, "hysteresis", "Torque that depends on the history of the twist.");
+    bind_model<NoVerbs, strainwave::hysteresis::PrandtlIshlinskii<double>>(hysteresis, "PrandtlIshlinskii", 0);
+    bind_list<NoVerbs>(core, hysteresis, "density", strainwave::hysteresis::Densities{});
+    bind_list<HysteresisVerbs>(core, hysteresis, "hysteresis", strainwave::hysteresis::Models{});
+    bind_family<VariationVerbs>(core, "variation", "How a stiffness varies as the wave generator turns.", variation::Models{});
+    bind_family<NoVerbs>(core, "structure", "What moves within a gear by itself.", structure::Models{});
+    bind_family<NoVerbs>(core, "softening", "How a gear gives way as it warms up.", softening::Models{});
+}
+
+}  // namespace strainwave::host

@@ -1,0 +1,33 @@
+#pragma once
+#include <algorithm>
+
+#include "arrays.hpp"
+#include "general/verbs.hpp"
+#include "members.hpp"
+#include "names.hpp"
+
+/// Drives and their states as Python holds them, for what runs them.
+namespace strainwave::host {
+
+inline Parts parts_of(const ParameterDrive& drive) { return parts_of(description_of<ParameterDrive>(), &drive); }
+inline Parts parts_of(const ParameterGear& gear) { return parts_of(description_of<ParameterGear>(), &gear); }
+inline const Layout& layout_of(const ParameterDrive& drive) { return layout_of(drive, parts_of(drive).laws); }
+
+inline void check_numbers(const Parts& parts, const std::vector<int>& numbers) {
+    for (const int number : numbers)
+        if (number < 0 || number >= int(parts.numbers.size())) throw nb::value_error("a drive has no such parameter");
+}
+
+/// The numbers of a state, refused unless there are as many as the drive has.
+inline general::State state_from(const Layout& layout, const Numbers& numbers) {
+    if (numbers.size() != layout.state.size()) throw nb::value_error("a state has as many numbers as its drive names");
+    return {numbers.data(), numbers.data() + numbers.size()};
+}
+inline general::State state_from(const ParameterDrive& drive, const Numbers& numbers) { return state_from(layout_of(drive), numbers); }
+inline Values array_of(const std::vector<double>& numbers) {
+    Values out = array({numbers.size()});
+    std::copy(numbers.begin(), numbers.end(), out.data());
+    return out;
+}
+
+}  // namespace strainwave::host

@@ -1,0 +1,87 @@
+#include "control.hpp"
+
+#include <strainwave/fastest.hpp>
+
+#include "laws.hpp"
+
+namespace strainwave::general {
+
+template <class S>
+using ControlLaws = Laws<S, control::Models, Control<S>>;
+
+template <class S>
+void Control<S>::read(kernel::Reader<S>& from) {
+    ControlLaws<S>::read(*this, from);
+}
+template <class S>
+void Control<S>::places(Places& found) const {
+    ControlLaws<S>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
+}
+template <class S>
+void Control<S>::discrete_places(Places& found) const {
+    ControlLaws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S, control::DiscreteOf<S, Law>>(law, found); });
+}
+template <class S>
+auto Control<S>::initial_state() const -> State {
+    return ControlLaws<S>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+}
+template <class S>
+auto Control<S>::initial_discrete() const -> Discrete {
+    return ControlLaws<S>::visit(*this, [](const auto& law) { return packed<Discrete>(control::initial_discrete<S>(law)); });
+}
+template <class S>
+S Control<S>::act(const State& x, const Command& command, const Measurement& measured) const {
+    return ControlLaws<S>::visit(*this, [&]<class Law>(const Law& law) {
+        if constexpr (requires { typename Law::Discrete; })
+            return S(0.0);  // no law that samples stands within another
+        else
+            return law.act(own<S>(law, x), command, measured);
+    });
+}
+template <class S>
+auto Control<S>::rate(const State& x, const Command& command, const Measurement& measured) const -> State {
+    return ControlLaws<S>::visit(*this,
+                                 [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), command, measured)); });
+}
+template <class S>
+auto Control<S>::relaxation_rate() const -> State {
+    return ControlLaws<S>::visit(*this, [](const auto& law) { return packed<State>(law.relaxation_rate()); });
+}
+template <class S>
+S Control<S>::fastest() const {
+    return ControlLaws<S>::visit(*this, [](const auto& law) { return strainwave::fastest<S>(law); });
+}
+template <class S>
+S Control<S>::actuation(const State& x, const Discrete& held, const Command& command, const Measurement& measured) const {
+    return ControlLaws<S>::visit(*this, [&](const auto& law) {
+        return control::actuation(law, own<S>(law, x), own_discrete<S>(law, held), command, measured);
+    });
+}
+template <class S>
+S Control<S>::held(const Discrete& x) const {
+    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::held<S>(law, own_discrete<S>(law, x)); });
+}
+template <class S>
+auto Control<S>::sampled(const Discrete& x, const S& within, const Command& command, const Measurement& measured) const
+    -> Discrete {
+    return ControlLaws<S>::visit(*this, [&](const auto& law) {
+        return packed<Discrete>(control::sampled(law, own_discrete<S>(law, x), within, command, measured));
+    });
+}
+template <class S>
+auto Control<S>::elapsed(const Discrete& x, const S& dt) const -> Discrete {
+    return ControlLaws<S>::visit(
+        *this, [&](const auto& law) { return packed<Discrete>(control::elapsed(law, own_discrete<S>(law, x), dt)); });
+}
+template <class S>
+bool Control<S>::due(const Discrete& x, const S& within) const {
+    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::due(law, own_discrete<S>(law, x), within); });
+}
+template <class S>
+control::Schedule<S> Control<S>::schedule(const Discrete& x) const {
+    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::schedule<S>(law, own_discrete<S>(law, x)); });
+}
+
+SW_GENERAL(Control)
+
+}  // namespace strainwave::general

@@ -1,0 +1,36 @@
+#pragma once
+#include <strainwave/kinematic_error/error.hpp>
+
+#include "part.hpp"
+
+namespace strainwave::general {
+
+/// Kinematic error by any law.
+template <class S>
+struct KinematicError : Part {
+    void read(kernel::Reader<S>& from);
+
+    kinematic_error::Error<S> at(const Angle<S>& angle) const;
+    S side(const Angle<S>& angle) const;
+    bool follows_load() const;
+    kinematic_error::Relief<S> relief(const S& torque) const;
+};
+
+/// How a random error changes at the most, at rest and without load.
+template <class S>
+struct MostChange {
+    S slope, per_torque, per_speed;
+};
+
+/// Random kinematic error by any law.
+template <class S>
+struct KinematicNoise : Part {
+    void read(kernel::Reader<S>& from);
+
+    bool active() const;
+    kinematic_error::Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const;
+    S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const;
+    MostChange<S> most() const;
+};
+
+}  // namespace strainwave::general

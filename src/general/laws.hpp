@@ -1,0 +1,176 @@
+#pragma once
+#include <strainwave/compiled.hpp>
+#include <strainwave/control/law.hpp>
+#include <strainwave/models.hpp>
+
+#include <cstring>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include "../kernel/assemble.hpp"
+#include "part.hpp"
+
+/// What the families of parts share in their sources: the laws of a list as the general drive holds them.
+namespace strainwave::general {
+
+/// The laws that a drive has chosen, for as long as it lives.
+using Kept = std::vector<std::shared_ptr<const void>>;
+
+namespace detail {
+
+/// A law that holds another holds one chosen at run time.
+template <class Law, class Inner>
+struct Around {
+    using type = Law;
+};
+template <template <class, class> class Outer, class S, class Law, class Inner>
+struct Around<Outer<S, Law>, Inner> {
+    using type = Outer<S, Inner>;
+};
+
+/// The described struct in which a law keeps its state.
+template <class S, class Law>
+constexpr auto state_of() {
+    if constexpr (requires { typename Law::State; })
+        return typename Law::State{};
+    else
+        return Stateless<S>{};
+}
+template <class S, class Law>
+constexpr auto output_of() {
+    if constexpr (requires { typename Law::Output; })
+        return typename Law::Output{};
+    else
+        return Stateless<S>{};
+}
+
+}  // namespace detail
+
+/// The laws of a list; those that hold another hold an `Inner`.
+template <class S, class L, class Inner = void>
+struct Laws;
+template <class S, template <class...> class... Law, class Inner>
+struct Laws<S, List<Law...>, Inner> {
+    template <class Chosen>
+    using Whole = typename detail::Around<Chosen, Inner>::type;
+    using All = std::tuple<Whole<Law<S>>...>;
+    static constexpr int count = sizeof...(Law);
+
+    template <int i>
+    using Compiled = decltype(compiled(std::tuple_element_t<i, All>{}));
+
+    /// f of the law chosen.
+    template <int i = 0, class F>
+    static decltype(auto) visit(const Part& part, F&& f) {
+        if constexpr (i + 1 == count) {
+            return f(*static_cast<const Compiled<i>*>(part.law));
+        } else {
+            if (part.chosen == i) return f(*static_cast<const Compiled<i>*>(part.law));
+            return visit<i + 1>(part, f);
+        }
+    }
+
+    /// Reads which law it is and its parameters, and keeps it.
+    static void read(Part& part, kernel::Reader<S>& from) {
+        part.chosen = *from.laws++;
+        read_chosen<0>(part, from, [](const auto&) {});
+    }
+    /// The same, and calls note(law) with the law as it was written.
+    template <class Note>
+    static void read(Part& part, kernel::Reader<S>& from, const Note& note) {
+        part.chosen = *from.laws++;
+        read_chosen<0>(part, from, note);
+    }
+
+private:
+    template <int i, class Note>
+    static void read_chosen(Part& part, kernel::Reader<S>& from, const Note& note) {
+        if constexpr (i < count) {
+            if (part.chosen != i) return read_chosen<i + 1>(part, from, note);
+            const auto law = kernel::assembled<std::tuple_element_t<i, All>>(from);
+            note(law);
+            auto made = std::make_shared<const Compiled<i>>(compiled(law));
+            part.law = made.get();
+            static_cast<Kept*>(from.kept)->push_back(std::move(made));
+        }
+    }
+};
+
+// A state is nothing but scalars, so it fits the slots as it lies in memory. Slots that hold none stand for no history.
+
+/// The state of a law, out of the slots of its part.
+template <class X, class S, int n, int few>
+X unpacked(const Storage<S, n, few>& slots) {
+    if constexpr (std::is_same_v<X, Storage<S, n, few>>) {  // a law that varies another has its state
+        return slots;
+    } else {
+        X x{};
+        if constexpr (size_of<S, X> > 0) {
+            static_assert(sizeof x == size_of<S, X> * sizeof(S) && size_of<S, X> <= n);
+            if (slots.slot.size() >= size_of<S, X>) std::memcpy(static_cast<void*>(&x), slots.slot.item, sizeof x);
+        }
+        return x;
+    }
+}
+template <class S, class Law, class Slots>
+auto own(const Law&, const Slots& slots) {
+    return unpacked<decltype(detail::state_of<S, Law>()), S>(slots);
+}
+template <class S, class Law, class Slots>
+auto own_discrete(const Law&, const Slots& slots) {
+    return unpacked<control::DiscreteOf<S, Law>, S>(slots);
+}
+
+/// A state or an output of a law in the slots of its part.
+template <class Slots, class X>
+Slots packed(const X& x) {
+    if constexpr (std::is_same_v<Slots, X>) {
+        return x;
+    } else {
+        Slots slots{};
+        using S = std::remove_cvref_t<decltype(slots.slot[0])>;
+        constexpr int count = size_of<S, X>;
+        if constexpr (count > 0) {
+            static_assert(count <= Slots::capacity, "the storage of this family has too few slots for a law");
+            if constexpr (requires { slots.slot.count; }) slots.slot.count = count;
+            std::memcpy(static_cast<void*>(slots.slot.item), &x, sizeof x);
+        }
+        return slots;
+    }
+}
+
+/// Which slots the numbers of a state or an output take, in order. Of a law within a law those that it has.
+template <class S, class X, class Law>
+void add_places(const Law& law, Places& found, int first = 0) {
+    X names{};
+    X::fields(names, [&]<class T>(const T& member, const Field&) {
+        if constexpr (is_storage<T>) {
+            Places within;
+            law.law.places(within);
+            for (int i = 0; i < within.count; ++i) found.add(first + within.slot[i]);
+            first += T::capacity;
+        } else if constexpr (Described<T>) {
+            add_places<S, T>(law, found, first);
+            first += size_of<S, T>;
+        } else if constexpr (requires { member.item; }) {
+            for (int i = 0; i < member.size(); ++i) found.add(first++);
+        } else {
+            found.add(first++);
+        }
+    });
+}
+template <class S, class Law>
+void add_state_places(const Law& law, Places& found) {
+    using X = decltype(detail::state_of<S, Law>());
+    if constexpr (is_storage<X>)
+        law.law.places(found);
+    else
+        add_places<S, X>(law, found);
+}
+
+#define SW_GENERAL(Name)           \
+    template struct Name<double>; \
+    template struct Name<Slope>;
+
+}  // namespace strainwave::general

@@ -1,0 +1,34 @@
+#include "load.hpp"
+
+#include "laws.hpp"
+
+namespace strainwave::general {
+
+template <class S>
+using LoadLaws = Laws<S, load::Models>;
+
+template <class S>
+void Load<S>::read(kernel::Reader<S>& from) {
+    LoadLaws<S>::read(*this, from);
+    LoadLaws<S>::visit(*this, [this]<class Law>(const Law& law) {
+        inertia = strainwave::inertia_of<S>(law);
+        prescribes = load::can_prescribe<Law>;
+        brakes = load::can_brake<Law>;
+    });
+}
+template <class S>
+S Load<S>::load_torque(const S& angle, const S& speed, const S& input) const {
+    return LoadLaws<S>::visit(*this, [&](const auto& law) { return strainwave::load_torque<S>(law, angle, speed, input); });
+}
+template <class S>
+S Load<S>::steepest() const {
+    return LoadLaws<S>::visit(*this, [](const auto& law) { return load_stiffness<S>(law); });
+}
+template <class S>
+Braking<S> Load<S>::braking(const S& input) const {
+    return LoadLaws<S>::visit(*this, [&](const auto& law) { return strainwave::braking<S>(law, input); });
+}
+
+SW_GENERAL(Load)
+
+}  // namespace strainwave::general

@@ -1,0 +1,45 @@
+#pragma once
+#include <strainwave/field.hpp>
+#include <strainwave/scalar/dual.hpp>
+
+#include "../kernel/assemble.hpp"
+#include "../kernel/places.hpp"
+#include "../kernel/table.hpp"
+
+/// The parts of the general drive: each is a law chosen at run time, and is a law itself. What its verbs do is compiled once, beside
+/// the laws of its family; a drive only calls them. So a law costs the build what its own code costs.
+namespace strainwave::general {
+
+using kernel::Places;
+
+using kernel::slopes;
+using Slope = Dual<slopes>;
+
+/// Which law of its family a part is, counted from 0, and where its parameters are.
+struct Part {
+    const void* law = nullptr;
+    int chosen = 0;
+};
+
+/// Numbers of whichever law was chosen, at most n. Up to `few` are all carried along; of more, those that the law has.
+template <class S, int n, int few = 4>
+struct Storage {
+    static constexpr int capacity = n;
+    typename detail::Either<(n <= few), Array<S, (n > 0 ? n : 1)>, Counted<S, n>>::type slot{};
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self& m, Visit&& visit) {
+        visit(SW_FIELD(m, slot, "1", "State of the law chosen, in the order it lists it"));
+    }
+};
+
+template <class T>
+inline constexpr bool is_storage = false;
+template <class S, int n, int few>
+inline constexpr bool is_storage<Storage<S, n, few>> = true;
+
+/// Recorded numbers of whichever law was chosen: their places do not depend on it.
+template <class S, int n>
+using OutputStorage = Storage<S, n, n>;
+
+}  // namespace strainwave::general

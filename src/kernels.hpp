@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "general/verbs.hpp"
+#include "kernel/table.hpp"
+
+/// The kernels that are loaded, by the laws of their drives. Needs Python's lock.
+namespace strainwave::host {
+
+/// What is loaded for drives of these laws: nothing but null entries at first.
+kernel::Table& loaded_kernel(const std::vector<int>& laws);
+
+/// A kernel for drives of these laws that has an entry; the general drive if none has.
+template <class Entry>
+const kernel::Table& kernel_with(Entry kernel::Table::* entry, const std::vector<int>& laws) {
+    const kernel::Table& loaded = loaded_kernel(laws);
+    return loaded.*entry ? loaded : general::table;
+}
+
+/// Adds what a kernel can do. It stays loaded.
+void add_kernel(const std::vector<int>& laws, const kernel::Table& table);
+
+}  // namespace strainwave::host

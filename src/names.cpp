@@ -1,0 +1,108 @@
+#include "names.hpp"
+
+#include <functional>
+#include <map>
+
+#include "general/drive.hpp"
+
+namespace strainwave::host {
+
+namespace {
+
+/// The described struct in which a law keeps such numbers.
+template <class Law>
+constexpr auto state_of_law() {
+    if constexpr (requires { typename Law::State; })
+        return typename Law::State{};
+    else
+        return Stateless<double>{};
+}
+template <class Law>
+constexpr auto output_of_law() {
+    if constexpr (requires { typename Law::Output; })
+        return typename Law::Output{};
+    else
+        return Stateless<double>{};
+}
+
+using Number = std::function<void(const std::string& name, int element, const Field&)>;
+
+/// Calls number(name, element, field) for each number of a struct of a law, whose name begins with `before`.
+template <class X, class Law>
+void each_name(const Law& law, const std::string& before, const Number& number) {
+    if constexpr (is_of_chosen<X>) {  // a law that varies another has its state
+        law.law.visit(
+            [&]<class Inner>(const Inner& inner) { each_name<decltype(state_of_law<Inner>())>(inner, before, number); });
+    } else {
+        X names{};
+        X::fields(names, [&]<class T>(const T& member, const Field& field) {
+            if constexpr (is_of_chosen<T>)
+                each_name<T>(law, before + field.name + ".", number);
+            else if constexpr (Described<T>)
+                each_name<T>(law, before + field.name + "_", number);
+            else if constexpr (requires { member.item; })
+                for (int i = 0; i < member.size(); ++i) number(before + field.name, i, field);
+            else
+                number(before + field.name, -1, field);
+        });
+    }
+}
+
+/// Goes through a struct of the general drive; the names of what a part keeps come from the law that the drive has there.
+template <bool of_output>
+struct NameWalk {
+    const ParameterDrive& drive;
+    std::vector<Name>& names;
+    std::string path = "";
+    bool discrete = false;
+
+    template <class T>
+    void operator()(const T& member, const Field& field) const {
+        const std::string name = field.name;
+        if constexpr (kernel::Slots<T>) {
+            drive.stateful_parts([&](const char* part, const auto& choice) {
+                if (path + name == part) choice.visit([&](const auto& law) { each_of(law, part); });
+            });
+        } else if constexpr (Described<T>) {
+            const bool is_part = name != "continuous" && name != "discrete";
+            T::fields(member, NameWalk{drive, names, is_part ? path + name + "." : path, discrete || name == "discrete"});
+        } else {
+            names.push_back({"", name, -1, field});
+        }
+    }
+
+private:
+    template <class Law>
+    void each_of(const Law& law, const std::string& part) const {
+        const auto named = [&](const std::string& name, int element, const Field& field) {
+            names.push_back({part, name, element, field});
+        };
+        if constexpr (of_output)
+            each_name<decltype(output_of_law<Law>())>(law, "", named);
+        else if (discrete)
+            each_name<control::DiscreteOf<double, Law>>(law, "", named);
+        else
+            each_name<decltype(state_of_law<Law>())>(law, "", named);
+    }
+};
+
+template <bool of_output, class X>
+std::vector<Name> names_in(const X& numbers, const ParameterDrive& drive) {
+    std::vector<Name> names;
+    X::fields(numbers, NameWalk<of_output>{drive, names});
+    return names;
+}
+
+}  // namespace
+
+const Layout& layout_of(const ParameterDrive& drive, const std::vector<int>& laws) {
+    using General = general::GeneralDrive<double>;
+    static std::map<std::vector<int>, Layout> known;
+    const auto found = known.find(laws);
+    if (found != known.end()) return found->second;
+    const Layout layout{names_in<false>(General::State{}, drive), names_in<true>(General::Output{}, drive),
+                        names_in<false>(General::Continuous{}, drive).size()};
+    return known.emplace(laws, layout).first->second;
+}
+
+}  // namespace strainwave::host

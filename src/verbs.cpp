@@ -1,0 +1,432 @@
+#include "verbs.hpp"
+
+#include "general/friction.hpp"
+#include "general/hysteresis.hpp"
+#include "general/kinematic_error.hpp"
+#include "general/spring_factors.hpp"
+#include "general/stiffness.hpp"
+
+namespace strainwave::host {
+
+Argument numbers(nb::handle values, const char* name) {
+    const nb::object given = nb::module_::import_("strainwave.arguments").attr("numbers")(name, values);
+    const auto array = nb::cast<Argument>(nb::module_::import_("numpy").attr("asarray")(given, nb::arg("order") = "C"));
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        let_interrupt(i);
+        if (!std::isfinite(array.data()[i]))
+            throw nb::value_error(
+                (std::string(name) + "[" + std::to_string(i) + "] = " + shortest(array.data()[i]) + " is not finite").c_str());
+    }
+    return array;
+}
+
+Argument path_of(nb::handle values, const char* name) {
+    const auto path = numbers(values, name);
+    if (path.ndim() != 1 || path.size() == 0)
+        throw nb::value_error((std::string(name) + " must be a one-dimensional sequence of at least one number").c_str());
+    return path;
+}
+
+Argument steps_of(nb::handle values, const char* name, const char* unit) {
+    const auto path = path_of(values, name);
+    const auto [low, high] = std::minmax_element(path.data(), path.data() + path.size());
+    if (!std::isfinite(16.0 * (*high - *low)))
+        throw nb::value_error(
+            (std::string(name) + " from " + shortest(*low) + " to " + with_unit(*high, unit) + " is wider than numbers reach")
+                .c_str());
+    return path;
+}
+
+std::pair<Values, double*> like(const Argument& model) {
+    std::vector<std::size_t> shape;
+    for (std::size_t i = 0; i < model.ndim(); ++i) shape.push_back(model.shape(i));
+    Values out = array(shape);
+    return {out, out.data()};
+}
+
+Angle<double> turned(double angle) {
+    const double turns = std::rint(angle / (2.0 * pi));
+    if (std::abs(turns) > 9007199254740992.0) return {std::remainder(angle, 2.0 * pi), clip(turns, -1e300, 1e300)};
+    return {angle - 2.0 * pi * turns, turns};
+}
+
+void check_domain(const std::string& law, const Domain<double>& domain) {
+    if (domain.holds()) return;
+    throw nb::value_error((law + ": " + outside(domain)).c_str());
+}
+
+namespace {
+
+/// The part of the general drive that a law is, by itself: called with what Python holds.
+template <class Part>
+Alone<Part> alone(const BoundLaw& of, const void* model) {
+    return {of.description, model, of.law};
+}
+
+/// Defines f(part, number) of one number, for a number or an array of any shape.
+template <class Part, class F>
+void function(const BoundLaw& of, const char* name, const char* argument, const char* doc, F f) {
+    define_function(of.type, of.description, name, {{argument, "float"}}, doc,
+                    [of, f](const void* model, const double* x) { return f(alone<Part>(of, model).part, *x); });
+    define_verb(of.type, of.description, name, {{argument, SW_NUMBERS}}, SW_ARRAY, doc,
+                [of, f, argument](const void* model, const Call& call) -> nb::object {
+                    const auto x = numbers(call[argument], argument);
+                    const auto law = alone<Part>(of, model);
+                    if (x.ndim() == 0) return nb::float_(f(law.part, *x.data()));
+                    auto [out, y] = like(x);
+                    for (std::size_t i = 0; i < x.size(); ++i) {
+                        let_interrupt(i);
+                        y[i] = f(law.part, x.data()[i]);
+                    }
+                    return nb::cast(out);
+                });
+}
+
+/// The harmonics of whole order up to `highest` that a kinematic error has over one turn of the input.
+kinematic_error::Fourier<double> harmonics_of(const general::KinematicError<double>& law, int highest) {
+    constexpr int points = 4096;
+    kinematic_error::Fourier<double> found{};
+    if (highest < 1 || highest > found.capacity)
+        throw nb::value_error(
+            ("highest = " + std::to_string(highest) + " must lie in [1, " + std::to_string(found.capacity) + "]").c_str());
+    found.order.count = found.amplitude.count = found.phase.count = highest;
+    std::vector<double> error(points);
+    for (int i = 0; i < points; ++i) error[i] = law.at({2.0 * pi * i / points - pi, 0.0}).value;
+    for (int n = 1; n <= highest; ++n) {
+        double sine = 0.0, cosine = 0.0;
+        for (int i = 0; i < points; ++i) {
+            const double angle = 2.0 * pi * ((long long)(n)*i % points) / points - n * pi;
+            sine += error[i] * std::sin(angle);
+            cosine += error[i] * std::cos(angle);
+        }
+        found.order[n - 1] = n;
+        found.amplitude[n - 1] = std::hypot(sine, cosine) * 2.0 / points;
+        found.phase[n - 1] = std::atan2(cosine, sine);
+    }
+    return found;
+}
+
+}  // namespace
+
+void stiffness_verbs(const BoundLaw& of) {
+    using Part = general::Stiffness<double>;
+    const auto within = [name = of.description.name](const Part& law, double x) {
+        check_domain(name, law.domain(x));
+        return x;
+    };
+    function<Part>(of, "torque", "twist", "Torque [N.m] at `twist` [rad].",
+                   [=](const Part& law, double x) { return law.torque(within(law, x)); });
+    function<Part>(of, "twist", "torque", "Twist [rad] at `torque` [N.m], the inverse of `torque`.",
+                   [](const Part& law, double x) { return law.twist(x); });
+    function<Part>(of, "tangent", "twist", "Stiffness dT/d(twist) [N.m/rad] at `twist` [rad].",
+                   [=](const Part& law, double x) { return law.tangent(within(law, x)); });
+    function<Part>(of, "energy", "twist", "Elastic energy [J] at `twist` [rad].",
+                   [=](const Part& law, double x) { return law.energy(within(law, x)); });
+}
+
+void error_verbs(const BoundLaw& of) {
+    using Part = general::KinematicError<double>;
+    function<Part>(of, "error", "angle", "Kinematic error [rad] at input `angle` [rad].",
+                   [](const Part& law, double x) { return law.at(turned(x)).value; });
+    function<Part>(of, "slope", "angle", "Its derivative [rad/rad] by the input angle.",
+                   [](const Part& law, double x) { return law.at(turned(x)).slope; });
+    define_verb(
+        of.type, of.description, "harmonics", {{"highest", "int", "8"}},
+        python_type<kinematic_error::Fourier<double>>(false),
+        "Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.",
+        [of](const void* model, const Call& call) {
+            return nb::cast(harmonics_of(alone<Part>(of, model).part, call.whole("highest")));
+        });
+}
+
+void variation_verbs(const BoundLaw& of) {
+    function<general::Variation<double>>(of, "factor", "angle",
+                                         "What the stiffness is multiplied by [1] at an `angle` [rad] of the wave generator.",
+                                         [](const auto& law, double x) { return law.at(turned(x)).value; });
+}
+
+namespace {
+
+/// What is taken of a random error, for an angle or an array of any shape.
+template <class F>
+void noise_verb(const BoundLaw& of, const char* name, const char* doc, F what) {
+    using Part = general::KinematicNoise<double>;
+    define_function(of.type, of.description, name,
+                    {{"angle", "float"}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, doc,
+                    [of, what](const void* model, const double* x) {
+                        return what(alone<Part>(of, model).part.at(turned(x[0]), x[1], x[2]));
+                    });
+    define_verb(of.type, of.description, name,
+                {{"angle", SW_NUMBERS}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, SW_ARRAY, doc,
+                [of, what](const void* model, const Call& call) -> nb::object {
+                    const auto x = numbers(call["angle"], "angle");
+                    const double torque = call.number("torque"), speed = call.number("speed");
+                    const auto law = alone<Part>(of, model);
+                    if (x.ndim() == 0) return nb::float_(what(law.part.at(turned(*x.data()), torque, speed)));
+                    auto [out, y] = like(x);
+                    for (std::size_t i = 0; i < x.size(); ++i) {
+                        let_interrupt(i);
+                        y[i] = what(law.part.at(turned(x.data()[i]), torque, speed));
+                    }
+                    return nb::cast(out);
+                });
+}
+
+}  // namespace
+
+void noise_verbs(const BoundLaw& of) {
+    noise_verb(of, "error",
+               "Random kinematic error [rad] at input `angle` [rad], under `torque` [N.m] at `speed` [rad/s] of the input.",
+               [](const auto& error) { return error.value; });
+    noise_verb(of, "slope", "Its derivative [rad/rad] by the input angle, at constant amplitude.",
+               [](const auto& error) { return error.slope; });
+}
+
+// States. A law has one of its own, or that of any law of its family, which it varies.
+
+namespace {
+
+/// A state that Python gave, in the slots of a part; without a history if none was given.
+template <class State>
+State state_in(const BoundLaw& of, const Call& call) {
+    State slots{};
+    const nb::object given = of.state ? call.optional("state", *of.state) : nb::object();
+    if (!given.is_valid()) return slots;
+    const std::vector<double> numbers = parts_of(*of.state, nb::inst_ptr<void>(given)).numbers;
+    slots.slot.count = int(numbers.size());
+    std::copy(numbers.begin(), numbers.end(), slots.slot.item);
+    return slots;
+}
+/// A state as Python holds it.
+template <class State>
+nb::object state_out(const BoundLaw& of, const State& slots) {
+    if (of.state == &description_of<State>()) return nb::cast(slots);
+    nb::object state = of.state->cast(of.state->defaults);  // Python's alone until it is handed over
+    if (slots.slot.count > 0) set_numbers(*of.state, nb::inst_ptr<void>(state), slots.slot.item);
+    return state;
+}
+
+using Hysteresis = general::Hysteresis<double>;
+
+/// What value(law, state, increment, i) gives at each point of a path of twist, the state brought up to date after each.
+template <class F>
+Values along_path(const BoundLaw& of, const void* model, const Call& call, F&& value) {
+    const auto law = alone<Hysteresis>(of, model);
+    const auto path = steps_of(call["twist"], "twist", "rad");
+    auto [out, y] = like(path);
+    auto x = state_in<Hysteresis::State>(of, call);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        let_interrupt(i);
+        const double increment = i > 0 ? path.data()[i] - path.data()[i - 1] : 0.0;
+        y[i] = value(law.part, x, increment, i);
+        if (i > 0) x = law.part.advance(x, increment);
+    }
+    return out;
+}
+
+}  // namespace
+
+void hysteresis_verbs(const BoundLaw& of) {
+    using State = Hysteresis::State;
+    const std::vector<Accepted> path{{"twist", SW_NUMBERS}, {"state", "State", "..."}};
+    const auto define = [&](const char* name, const char* result, const char* doc, auto f) {
+        define_verb(of.type, of.description, name, path, result, doc,
+                    [of, f](const void* model, const Call& call) -> nb::object { return nb::cast(f(of, model, call)); });
+    };
+    define("trace", SW_ARRAY,
+           "Torque [N.m], shape (n,), along a path of `twist` [rad], shape (n,), monotone between its points.\n\n"
+           "The history starts with `state`, which stands at the first point; without it the model is virgin.",
+           [](const BoundLaw& law, const void* model, const Call& call) {
+               return along_path(law, model, call, [](const Hysteresis& m, const State& x, double increment, std::size_t) {
+                   return m.torque(x, increment);
+               });
+           });
+    define("work", SW_ARRAY, "Work [J] put in so far, shape (n,), along a path of `twist` [rad]; exact, as `trace` is.",
+           [](const BoundLaw& law, const void* model, const Call& call) {
+               double sum = 0.0;
+               return along_path(law, model, call, [&](const Hysteresis& m, const State& x, double increment, std::size_t i) {
+                   sum += m.work(x, increment);
+                   if (!std::isfinite(sum))
+                       throw nb::value_error(("twist[" + std::to_string(i) + "] leads to more work than numbers reach").c_str());
+                   return sum;
+               });
+           });
+    define("advance", "State", "The state at the end of a path of `twist` [rad].",
+           [](const BoundLaw& of_law, const void* model, const Call& call) {
+               const auto law = alone<Hysteresis>(of_law, model);
+               const auto twist = steps_of(call["twist"], "twist", "rad");
+               State x = state_in<State>(of_law, call);
+               for (std::size_t i = 1; i < twist.size(); ++i) {
+                   let_interrupt(i);
+                   x = law.part.advance(x, twist.data()[i] - twist.data()[i - 1]);
+               }
+               return state_out(of_law, x);
+           });
+    if (of.stores)
+        define("stored", SW_ARRAY,
+               "Elastic energy [J] held, shape (n,), along a path of `twist` [rad]; work less stored is dissipated.",
+               [](const BoundLaw& law, const void* model, const Call& call) {
+                   return along_path(law, model, call, [](const Hysteresis& m, const State& x, double increment, std::size_t) {
+                       return m.stored(m.advance(x, increment));
+                   });
+               });
+}
+
+namespace {
+
+/// One argument of a verb that takes several: a number, or one for each of `n` points.
+struct Series {
+    Argument values;
+
+    Series(nb::handle given, const char* name, std::size_t n) : values(numbers(given, name)) {
+        if (values.ndim() != 0 && (values.ndim() != 1 || values.size() != n))
+            throw nb::value_error((std::string(name) + " must be a number, or " + std::to_string(n) + " of them").c_str());
+    }
+    double operator[](std::size_t i) const { return values.data()[values.ndim() == 0 ? 0 : i]; }
+};
+
+using Friction = general::Friction<double>;
+using Contact = friction::Contact<double>;
+
+#define SW_CONTACT_DOC                                                                                                        \
+    "under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and " \
+    "`temperature` [K]. The law looks at what it depends on."
+
+/// An argument and what a contact depends on, each of the same type.
+std::vector<Accepted> contacted(const Accepted& first) {
+    return {first, {"angle", first.type, "0.0"}, {"load", first.type, "0.0"}, {"temperature", first.type, "293.15"}};
+}
+
+/// Defines f(law, contact, x) of one number and the contact, for numbers or arrays that broadcast.
+template <class F>
+void over_contacts(const BoundLaw& of, const char* name, const char* argument, const char* otherwise, const char* doc, F f) {
+    const auto at = [f, owner = of.description.name](const Friction& law, double x, double angle, double load, double temperature) {
+        const Contact contact{0.0, 1.0, turned(angle), load, temperature};
+        check_domain(owner, law.domain(contact));
+        return f(law, contact, x);
+    };
+    const std::vector<Accepted> one = contacted({argument, "float", otherwise}),
+                                any = contacted({argument, SW_NUMBER_OR, otherwise});
+    define_function(of.type, of.description, name, one, doc, [of, at](const void* model, const double* x) {
+        return at(alone<Friction>(of, model).part, x[0], x[1], x[2], x[3]);
+    });
+    // a number where all are numbers, else an array
+    define_verb(of.type, of.description, name, any, "typing.Any", doc,
+                [of, at, argument](const void* model, const Call& call) -> nb::object {
+                    nb::list given;
+                    for (const char* each : {argument, "angle", "load", "temperature"}) given.append(numbers(call[each], each));
+                    std::vector<Argument> each;
+                    for (nb::handle broadcast : nb::list(nb::module_::import_("numpy").attr("broadcast_arrays")(*given)))
+                        each.push_back(numbers(broadcast, argument));
+                    const auto law = alone<Friction>(of, model);
+                    auto [out, y] = like(each[0]);
+                    for (std::size_t i = 0; i < each[0].size(); ++i) {
+                        let_interrupt(i);
+                        y[i] = at(law.part, each[0].data()[i], each[1].data()[i], each[2].data()[i], each[3].data()[i]);
+                    }
+                    if (each[0].ndim() == 0) return nb::float_(y[0]);
+                    return nb::cast(out);
+                });
+}
+
+Values friction_trace(const BoundLaw& of, const void* model, const Call& call) {
+    const auto t = steps_of(call["time"], "time", "s"), v = path_of(call["speed"], "speed");
+    if (t.size() != v.size()) throw nb::value_error("time and speed must have the same length");
+    const Series loads(call["load"], "load", t.size()), temperatures(call["temperature"], "temperature", t.size());
+    const auto alone_law = alone<Friction>(of, model);
+    const Friction& law = alone_law.part;
+    Friction::State state = state_in<Friction::State>(of, call);
+    double angle = call.number("angle");
+    const auto contact = [&](std::size_t i, double at_speed) {
+        const Contact at{at_speed, sign(at_speed), turned(angle), loads[i], temperatures[i]};
+        check_domain(of.description.name, law.domain(at));
+        return at;
+    };
+    auto [out, torque] = like(t);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        let_interrupt(i);
+        if (i > 0) {
+            const double dt = t.data()[i] - t.data()[i - 1], mean = 0.5 * v.data()[i - 1] + 0.5 * v.data()[i];
+            if (!(dt > 0.0))
+                throw nb::value_error(
+                    ("time[" + std::to_string(i) + "] = " + with_unit(t.data()[i], "s") + " must lie after the time before it")
+                        .c_str());
+            state = friction::advance(law, state, contact(i, mean), dt);
+            angle += mean * dt;
+            if (!std::isfinite(angle))
+                throw nb::value_error(("speed[" + std::to_string(i) + "] = " + with_unit(v.data()[i], "rad/s") +
+                                       " leads to a larger angle than numbers reach")
+                                          .c_str());
+        }
+        torque[i] = friction::torque(law, state, contact(i, v.data()[i]));
+    }
+    return out;
+}
+
+/// A speed [rad/s] so slow that no rate shows beside a torque and every time [s] has passed that a law relaxes in. A power of two:
+/// a displacement over it, times it, is the displacement again.
+constexpr double quasistatic_speed = 0x1p-500;
+
+Values friction_quasistatic(const BoundLaw& of, const void* model, const Call& call) {
+    const auto path = steps_of(call["displacement"], "displacement", "rad");
+    const Series loads(call["load"], "load", path.size()), temperatures(call["temperature"], "temperature", path.size());
+    const double angle = call.number("angle");
+    const auto alone_law = alone<Friction>(of, model);
+    const Friction& law = alone_law.part;
+    Friction::State state{};
+    double sense = 0.0;
+    auto [out, torque] = like(path);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        let_interrupt(i);
+        const double step = i > 0 ? path.data()[i] - path.data()[i - 1] : 0.0;
+        if (step != 0.0) sense = sign(step);
+        const Contact at{0.0, sense, turned(angle + path.data()[i]), loads[i], temperatures[i]};
+        check_domain(of.description.name, law.domain(at));
+        if (step != 0.0)
+            state = friction::advance(law, state, at.moving(sense * quasistatic_speed), std::abs(step) / quasistatic_speed);
+        torque[i] = friction::set_valued(law) ? along(sense, sense == 0.0 ? 0.0 : friction::hold(law, at))
+                                              : friction::torque(law, state, at);
+    }
+    return out;
+}
+
+}  // namespace
+
+void friction_verbs(const BoundLaw& of) {
+    over_contacts(of, "steady", "speed", "", "Torque [N.m] that opposes steady sliding at `speed` [rad/s], " SW_CONTACT_DOC,
+                  [](const Friction& law, const Contact& at, double v) { return friction::steady(law, at.moving(v)); });
+    over_contacts(of, "hold", "sense", "1.0",
+                  "The largest torque [N.m] it balances at rest, pushed towards `sense`, " SW_CONTACT_DOC
+                  "\n\nZero for a law that does not stick.",
+                  [](const Friction& law, const Contact& at, double s) { return friction::hold(law, at.pushed(sign(s))); });
+    define_property(of.type, of.description, "set_valued", "bool", "Whether it can hold at rest.",
+                    [of](const void* model) { return nb::cast(alone<Friction>(of, model).part.set_valued()); });
+    const Accepted angle{"angle", "float", "0.0"}, load{"load", SW_NUMBER_OR, "0.0"},
+        temperature{"temperature", SW_NUMBER_OR, "293.15"};
+    std::vector<Accepted> traced{{"time", SW_NUMBERS}, {"speed", SW_NUMBERS}, angle, load, temperature};
+    if (of.state) traced.push_back({"state", "State", "..."});
+    define_verb(of.type, of.description, "trace", traced, SW_ARRAY,
+                "Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).\n\n"
+                "`angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for "
+                "a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A "
+                "law that sticks shows no torque at rest: what it holds depends on what drives it.",
+                [of](const void* model, const Call& call) { return nb::cast(friction_trace(of, model, call)); });
+    define_verb(
+        of.type, of.description, "quasistatic", {{"displacement", SW_NUMBERS}, angle, load, temperature}, SW_ARRAY,
+        "Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit "
+        "of infinite slowness.\n\n"
+        "No torque follows from a speed, and no rate. A law that sticks shows the largest torque it balances, in the sense of "
+        "the last motion, and none before the first. A law with memory starts virgin, keeps its torque at rest, and is exact "
+        "over each step, whatever its length. `angle` [rad] is where displacement is zero; `load` [N.m] and `temperature` [K] "
+        "are numbers or of shape (n,). What varies with them is taken over a step as it is at its end.",
+        [of](const void* model, const Call& call) { return nb::cast(friction_quasistatic(of, model, call)); });
+    if (of.description.check_passivity)
+        define_verb(of.type, of.description, "check", {}, "None",
+                    "Warns with PassivityWarning, stating both sides, if the parameters let the model create energy.",
+                    [check = of.description.check_passivity](const void* model, const Call&) -> nb::object {
+                        check(model);
+                        return nb::none();
+                    });
+}
+
+}  // namespace strainwave::host
