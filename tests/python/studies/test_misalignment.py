@@ -38,7 +38,9 @@ def test_the_levels_have_the_amplitudes_of_the_geometry(levels: dict[str, Levels
     row = study.SWEEPS["e1"][1].index(20e-6)
     arcmin = 60.0 * 180.0 / pi
     assert arcmin * levels["single"].column("e1", "error_1")[row] == pytest.approx(1.001, abs=5e-4)
-    outer = levels["max"]
+    assert arcmin * levels["single"].column("e1", "error_swing")[row] == pytest.approx(1.001, abs=5e-4)
+    outer = levels["max"]  # the outer lobe carries, so that the error lies between 0 and 1.001 arcmin
+    assert arcmin * outer.column("e1", "error_swing")[row] == pytest.approx(1.001 / 2.0, abs=5e-4)
     assert outer.column("e1", "error_2")[row] == pytest.approx(8.492e-6 * PER_METRE, rel=2e-4)
     assert outer.column("e1", "error_4")[row] == pytest.approx(1.698e-6 * PER_METRE, rel=1e-3)
     assert arcmin * outer.column("e1", "error_2")[row] == pytest.approx(0.425, abs=5e-4)
