@@ -318,6 +318,9 @@ void bind_runs(nb::module_& core) {
     core.def("add_kernel", &add_kernel_at, nb::arg("drive"), nb::arg("address"),
              nb::sig("def add_kernel(drive: Drive, address: int) -> None"),
              "Uses a kernel that is loaded, its table at an address, for all drives of the laws of one.");
+    core.def(
+        "forget_kernels", [](const ParameterDrive& drive) { forget_kernels(parts_of(drive).laws); }, nb::arg("drive"),
+        nb::sig("def forget_kernels(drive: Drive) -> None"), "Lets the general drive run drives of the laws of one again.");
     core.def("loaded_jobs", &loaded_jobs, nb::arg("drive"), nb::sig("def loaded_jobs(drive: Drive) -> list[str]"),
              "What a kernel is loaded for, for drives of the laws of one.");
     core.def(

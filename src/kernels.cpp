@@ -20,4 +20,6 @@ void add_kernel(const std::vector<int>& laws, const kernel::Table& table) {
     if (table.differentiate) known.differentiate = table.differentiate;
 }
 
+void forget_kernels(const std::vector<int>& laws) { loaded_kernel(laws) = {}; }
+
 }  // namespace strainwave::host

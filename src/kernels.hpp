@@ -17,7 +17,8 @@ const kernel::Table& kernel_with(Entry kernel::Table::* entry, const std::vector
     return loaded.*entry ? loaded : general::table;
 }
 
-/// Adds what a kernel can do. It stays loaded.
+/// Adds what a kernel can do. It stays loaded; after `forget_kernels` the general drive runs such drives again.
 void add_kernel(const std::vector<int>& laws, const kernel::Table& table);
+void forget_kernels(const std::vector<int>& laws);
 
 }  // namespace strainwave::host

@@ -1,5 +1,12 @@
 #pragma once
 
+/// Before what a step spends its time in: a kernel asks to inline every call on the way there, and that once, not for each stage.
+#ifdef SW_INLINE_RATES
+#define SW_RATES [[gnu::flatten, gnu::noinline]]
+#else
+#define SW_RATES
+#endif
+
 namespace strainwave {
 
 /// The law as the integrator wants it: rearranged for speed where the law knows how.

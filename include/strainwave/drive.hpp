@@ -179,7 +179,7 @@ struct Drive {
         x.continuous.transmission_error = found.transmission_error;
     }
 
-    constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u) const {
+    SW_RATES constexpr Derivatives derivatives(const State& x, const Continuous& y, const Input& u) const {
         if constexpr (load::can_prescribe<Load>) {
             if (prescribes(load)) {
                 const Continuous z = prescribed_motion::placed<S>(*this, x, y, u);
@@ -190,7 +190,7 @@ struct Drive {
     }
 
     /// Brings the memory of a state up to date.
-    constexpr Evaluation evaluate(State x, const Input& u) const {
+    SW_RATES constexpr Evaluation evaluate(State x, const Input& u) const {
         prescribed_motion::place<S>(*this, x, u);
         const auto geometry = this->geometry(x, x.continuous);
         commit(x, geometry);

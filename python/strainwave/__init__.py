@@ -58,6 +58,8 @@ if TYPE_CHECKING:
     from strainwave.identification.orders.ripple import Ripple, ripple
     from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
     from strainwave.identification.twin import Twin, twin
+    from strainwave.native.cache import KernelWarning
+    from strainwave.native.compile import Compilation, compile
     from strainwave.simulation import scenario
     from strainwave.simulation.controller import Seen, simulate_controlled
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
@@ -69,6 +71,7 @@ _LAZY = {
     "Agreement": "analysis.agreement",
     "BearingOrders": "analysis.orders",
     "Bootstrap": "identification.fitting.bootstrap",
+    "Compilation": "native.compile",
     "Combination": "identification.fitting.combinations",
     "Difference": "analysis.difference",
     "Derivatives": "analysis.sensitivity",
@@ -80,6 +83,7 @@ _LAZY = {
     "FrequencyResponse": "analysis.response",
     "GearSet": "files.gear_set",
     "Identified": "identification.identify",
+    "KernelWarning": "native.cache",
     "Linearisation": "analysis.linear",
     "Minima": "identification.fitting.minima",
     "Orders": "analysis.orders",
@@ -100,6 +104,7 @@ _LAZY = {
     "check_ratings": "files.ratings",
     "combinations": "identification.fitting.combinations",
     "compare": "analysis.compare",
+    "compile": "native.compile",
     "derivatives": "analysis.sensitivity",
     "equilibrium": "analysis.steady",
     "fit": "identification.fitting.fit",
@@ -132,6 +137,7 @@ __all__ = [
     "BearingOrders",
     "Bootstrap",
     "Combination",
+    "Compilation",
     "Derivatives",
     "Difference",
     "Drive",
@@ -144,6 +150,7 @@ __all__ = [
     "Gear",
     "GearSet",
     "Identified",
+    "KernelWarning",
     "Linearisation",
     "Minima",
     "Orders",
@@ -166,6 +173,7 @@ __all__ = [
     "check_ratings",
     "combinations",
     "compare",
+    "compile",
     "control",
     "derivatives",
     "drives",

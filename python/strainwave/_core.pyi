@@ -403,8 +403,6 @@ class Drive:
         The state `dt` [s] later, the command moving at `command_rate`; where the load prescribes the motion of the output shaft, that at `output_speed` from `output_angle`. A sampled controller acts within the step. `ValueError` for a state of another drive, for what is not finite, for a `dt` or a `temperature` that is not positive, and where a part is not valid; `FloatingPointError` if the step diverges.
         """
 
-output_count: int = 53
-
 def outputs(drive: Drive) -> list[tuple[str, str, str, str, int]]:
     """
     Name, unit, doc, part and channel of each number that a drive shows of itself.
@@ -509,10 +507,17 @@ def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]
     Every number of a set of parameters: path, value, unit, doc, lower and upper limit.
     """
 
+def parts(drive: Drive) -> tuple[list[int], list[int], numpy.typing.NDArray[numpy.float64]]:
+    """
+    The laws that a drive has chosen, its other whole numbers (counts, teeth, options), and its numbers.
+    """
+
 def with_numbers(model: Any, numbers: Sequence[float]) -> Any:
     """The same models with other numbers, in the order of `parameters`."""
 
 max_lanes: int = 8
+
+slopes: int = 4
 
 largest: float = 1000000000000000.0
 
@@ -546,7 +551,18 @@ def no_beginning(known: bool) -> str:
     """
 
 def instruction_set() -> str:
-    """The instruction set that the loops over time are compiled for."""
+    """The instruction set that kernels are compiled for."""
+
+def add_kernel(drive: Drive, address: int) -> None:
+    """
+    Uses a kernel that is loaded, its table at an address, for all drives of the laws of one.
+    """
+
+def forget_kernels(drive: Drive) -> None:
+    """Lets the general drive run drives of the laws of one again."""
+
+def loaded_jobs(drive: Drive) -> list[str]:
+    """What a kernel is loaded for, for drives of the laws of one."""
 
 def differentiate(drive: Drive, initial: tuple[Sequence[int], numpy.typing.NDArray[numpy.float64]] | None, instants: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], keep: numpy.typing.NDArray[numpy.uint8], parameters: Sequence[int], progress: Callable[[int], None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from strainwave.cache_command import cache
+from strainwave.compile_command import compile
 from strainwave.file_options import number_option
 from strainwave.identify_command import identify
 from strainwave.messages import listed, one_line, pairs, quoted, unquoted, with_options
@@ -51,6 +52,7 @@ app.command()(rank)
 app.command()(orders)
 app.command()(plan_experiments)
 app.command()(cache)
+app.command()(compile)
 
 
 def _show_version(wanted: bool) -> None:

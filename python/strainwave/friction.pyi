@@ -582,30 +582,6 @@ class LuGre:
 
     fields: tuple[dict[str, Any], ...]
 
-    @overload
-    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
-
-    @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
-        """
-        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
-        """
-
-    @overload
-    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
-
-    @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
-        """
-        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
-
-        Zero for a law that does not stick.
-        """
-
-    @property
-    def set_valued(self) -> bool:
-        """Whether it can hold at rest."""
-
     class State:
         """
         Parameters
@@ -644,6 +620,30 @@ class LuGre:
         name: str = 'lugre.state'
 
         fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
 
     def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -768,30 +768,6 @@ class MaxwellSlipFriction:
 
     fields: tuple[dict[str, Any], ...]
 
-    @overload
-    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
-
-    @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
-        """
-        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
-        """
-
-    @overload
-    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
-
-    @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
-        """
-        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
-
-        Zero for a law that does not stick.
-        """
-
-    @property
-    def set_valued(self) -> bool:
-        """Whether it can hold at rest."""
-
     class State:
         """
         Parameters
@@ -837,6 +813,30 @@ class MaxwellSlipFriction:
         name: str = 'maxwell_slip_friction.state'
 
         fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
 
     def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1433,30 +1433,6 @@ class TorqueEfficiency:
 
     fields: tuple[dict[str, Any], ...]
 
-    @overload
-    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
-
-    @overload
-    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
-        """
-        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
-        """
-
-    @overload
-    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
-
-    @overload
-    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
-        """
-        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
-
-        Zero for a law that does not stick.
-        """
-
-    @property
-    def set_valued(self) -> bool:
-        """Whether it can hold at rest."""
-
     class State:
         """
         Parameters
@@ -1495,6 +1471,30 @@ class TorqueEfficiency:
         name: str = 'torque_efficiency.state'
 
         fields: tuple[dict[str, Any], ...]
+
+    @overload
+    def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def steady(self, speed: float | Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        Torque [N.m] that opposes steady sliding at `speed` [rad/s], under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+        """
+
+    @overload
+    def hold(self, sense: float = 1.0, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
+
+    @overload
+    def hold(self, sense: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 1.0, angle: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15) -> Any:
+        """
+        The largest torque [N.m] it balances at rest, pushed towards `sense`, under `load` [N.m], the torque transmitted where it acts, positive if it drives a positive speed; at `angle` [rad] and `temperature` [K]. The law looks at what it depends on.
+
+        Zero for a law that does not stick.
+        """
+
+    @property
+    def set_valued(self) -> bool:
+        """Whether it can hold at rest."""
 
     def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1588,6 +1588,45 @@ class Asymmetric:
 
     fields: tuple[dict[str, Any], ...]
 
+    class State:
+        """
+        Parameters
+        ----------
+        slot: State of the law chosen, in the order it lists it; default ()
+
+        Raises
+        ------
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
+
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
+
+        @property
+        def slot(self) -> tuple[float, ...]:
+            """State of the law chosen, in the order it lists it"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
+
+        name: str = 'asymmetric.state'
+
+        fields: tuple[dict[str, Any], ...]
+
     @overload
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
@@ -1611,45 +1650,6 @@ class Asymmetric:
     @property
     def set_valued(self) -> bool:
         """Whether it can hold at rest."""
-
-    class State:
-        """
-        Parameters
-        ----------
-        slot: State of the model chosen, in the order it lists it; default ()
-
-        Raises
-        ------
-        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
-        ValueError: a number that is not finite or out of its range
-        """
-
-        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
-
-        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
-            """
-            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
-            """
-
-        @property
-        def slot(self) -> tuple[float, ...]:
-            """State of the model chosen, in the order it lists it"""
-
-        def __repr__(self) -> str: ...
-
-        def __eq__(self, other: object, /) -> bool: ...
-
-        def __hash__(self) -> int: ...
-
-        def __getstate__(self) -> dict[str, object]: ...
-
-        def __setstate__(self, state: dict[str, object], /) -> None: ...
-
-        def __reduce__(self) -> tuple[Any, ...]: ...
-
-        name: str = 'asymmetric.state'
-
-        fields: tuple[dict[str, Any], ...]
 
     def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1743,6 +1743,45 @@ class Cyclic:
 
     fields: tuple[dict[str, Any], ...]
 
+    class State:
+        """
+        Parameters
+        ----------
+        slot: State of the law chosen, in the order it lists it; default ()
+
+        Raises
+        ------
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
+
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
+
+        @property
+        def slot(self) -> tuple[float, ...]:
+            """State of the law chosen, in the order it lists it"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
+
+        name: str = 'asymmetric.state'
+
+        fields: tuple[dict[str, Any], ...]
+
     @overload
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
@@ -1766,45 +1805,6 @@ class Cyclic:
     @property
     def set_valued(self) -> bool:
         """Whether it can hold at rest."""
-
-    class State:
-        """
-        Parameters
-        ----------
-        slot: State of the model chosen, in the order it lists it; default ()
-
-        Raises
-        ------
-        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
-        ValueError: a number that is not finite or out of its range
-        """
-
-        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
-
-        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
-            """
-            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
-            """
-
-        @property
-        def slot(self) -> tuple[float, ...]:
-            """State of the model chosen, in the order it lists it"""
-
-        def __repr__(self) -> str: ...
-
-        def __eq__(self, other: object, /) -> bool: ...
-
-        def __hash__(self) -> int: ...
-
-        def __getstate__(self) -> dict[str, object]: ...
-
-        def __setstate__(self, state: dict[str, object], /) -> None: ...
-
-        def __reduce__(self) -> tuple[Any, ...]: ...
-
-        name: str = 'asymmetric.state'
-
-        fields: tuple[dict[str, Any], ...]
 
     def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1894,6 +1894,45 @@ class Thermal:
 
     fields: tuple[dict[str, Any], ...]
 
+    class State:
+        """
+        Parameters
+        ----------
+        slot: State of the law chosen, in the order it lists it; default ()
+
+        Raises
+        ------
+        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
+        ValueError: a number that is not finite or out of its range
+        """
+
+        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
+
+        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
+            """
+            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
+            """
+
+        @property
+        def slot(self) -> tuple[float, ...]:
+            """State of the law chosen, in the order it lists it"""
+
+        def __repr__(self) -> str: ...
+
+        def __eq__(self, other: object, /) -> bool: ...
+
+        def __hash__(self) -> int: ...
+
+        def __getstate__(self) -> dict[str, object]: ...
+
+        def __setstate__(self, state: dict[str, object], /) -> None: ...
+
+        def __reduce__(self) -> tuple[Any, ...]: ...
+
+        name: str = 'asymmetric.state'
+
+        fields: tuple[dict[str, Any], ...]
+
     @overload
     def steady(self, speed: float, angle: float = 0.0, load: float = 0.0, temperature: float = 293.15) -> float: ...
 
@@ -1917,45 +1956,6 @@ class Thermal:
     @property
     def set_valued(self) -> bool:
         """Whether it can hold at rest."""
-
-    class State:
-        """
-        Parameters
-        ----------
-        slot: State of the model chosen, in the order it lists it; default ()
-
-        Raises
-        ------
-        TypeError: an unknown parameter, one of the wrong kind, or none where it is required
-        ValueError: a number that is not finite or out of its range
-        """
-
-        def __init__(self, *, slot: float | Sequence[float] = ...) -> None: ...
-
-        def replace(self, changes: dict[str, Any] = ..., /, *, slot: float | Sequence[float] = ...) -> Asymmetric.State:
-            """
-            The same with the named parameters changed. A dictionary names them by their paths: {"friction_input.viscous": 1e-4}.
-            """
-
-        @property
-        def slot(self) -> tuple[float, ...]:
-            """State of the model chosen, in the order it lists it"""
-
-        def __repr__(self) -> str: ...
-
-        def __eq__(self, other: object, /) -> bool: ...
-
-        def __hash__(self) -> int: ...
-
-        def __getstate__(self) -> dict[str, object]: ...
-
-        def __setstate__(self, state: dict[str, object], /) -> None: ...
-
-        def __reduce__(self) -> tuple[Any, ...]: ...
-
-        name: str = 'asymmetric.state'
-
-        fields: tuple[dict[str, Any], ...]
 
     def trace(self, time: Sequence[float] | numpy.typing.NDArray[numpy.float64], speed: Sequence[float] | numpy.typing.NDArray[numpy.float64], angle: float = 0.0, load: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 0.0, temperature: float | Sequence[float] | numpy.typing.NDArray[numpy.float64] = 293.15, state: State = ...) -> numpy.typing.NDArray[numpy.float64]:
         """

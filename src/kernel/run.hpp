@@ -92,9 +92,9 @@ typename Drive::Evaluation begun(const Drive& drive, const typename Drive::State
     return system::up_to_date(drive, drive.evaluate(drive.consistent(start), u), u, within);
 }
 
-/// A step without events. In a kernel every call on the way is inlined.
+/// A step without events. A kernel may ask to inline every call on the way.
 template <class S, class Drive>
-#ifdef SW_KERNEL
+#ifdef SW_INLINE_STEPS
 [[gnu::flatten]]
 #endif
 [[gnu::noinline]] typename Drive::Evaluation smooth_step(const Drive& drive, const typename Drive::Evaluation& from,

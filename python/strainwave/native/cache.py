@@ -153,7 +153,12 @@ def _or_warning(action: Callable[[], Path | None]) -> Path | None:
         return action()
     except OSError as error:
         reason = one_line(f"{error.strerror}: {cache_folder()}" if error.strerror else str(error))
+    warn_once(reason)
+    return None
+
+
+def warn_once(reason: str) -> None:
+    """Warn that no kernel is used, and why; of each reason once in a process."""
     if reason not in _warned:
         _warned.add(reason)
         warnings.warn(f"runs take longer, because no kernel is used: {reason}", KernelWarning, stacklevel=2)
-    return None

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import sys
 from collections import defaultdict
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
-from strainwave import Drive, _core
+from strainwave import Drive, _core, structure
 
 if TYPE_CHECKING:
     from strainwave.native.kernel import Kernel
@@ -35,8 +37,10 @@ def source(drive: Drive, jobs: Sequence[Job]) -> str:
     """Return the C++ of a kernel that does these jobs for all drives with the laws of one."""
     from strainwave.native.static_type import static_type
 
+    # To inline each stage of a step takes minutes where bodies move within the gear, and gains nothing there.
+    inlining = "SW_INLINE_STEPS" if isinstance(drive.gear.structure, structure.Lumped) else "SW_INLINE_RATES"
     entries = "".join(f",\n    {ENTRIES[job] if job in jobs else 'nullptr'}" for job in JOBS)
-    return f"""#define SW_KERNEL
+    return f"""#define {inlining}
 #include <strainwave/kernel/entries.hpp>
 #include <strainwave/models.hpp>
 
@@ -82,7 +86,7 @@ def note(drive: Drive, job: Job, steps: float) -> None:
 
 def load(drive: Drive, job: Job, *, compile_it: bool) -> bool:
     """True if a kernel does this job from now on: one compiled before, or else compiled now."""
-    from strainwave.native.cache import find_kernel, kernel_file
+    from strainwave.native.cache import find_kernel, kernel_file, warn_once
 
     kernel = kernel_of(drive, job)
     path = find_kernel(kernel)
@@ -91,6 +95,27 @@ def load(drive: Drive, job: Job, *, compile_it: bool) -> bool:
         path = kernel_file(kernel)
     if path is None:
         return False
-    table = ctypes.c_char.in_dll(ctypes.CDLL(str(path)), "strainwave_kernel")
-    _core.add_kernel(drive, ctypes.addressof(table))
+    try:
+        _use(drive, path)
+    except OSError as error:  # a file system that runs no code, or a symbol that is missing
+        warn_once(f"{path} cannot be loaded: {error}")
+        return False
     return True
+
+
+def load_or_raise(drive: Drive, job: Job) -> None:
+    """Load the kernel of a job, compiled now if it was not before.
+
+    Raises:
+        OSError: there is no compiler, it reports an error, or the cache or the kernel cannot be used
+    """
+    from strainwave.native.cache import find_kernel, make_kernel
+
+    kernel = kernel_of(drive, job)
+    _use(drive, find_kernel(kernel) or make_kernel(kernel))
+
+
+def _use(drive: Drive, path: Path) -> None:
+    """Load a shared object, and do its jobs by it for drives with the laws of one."""
+    table = ctypes.c_char.in_dll(ctypes.CDLL(str(path), ctypes.RTLD_LOCAL | os.RTLD_NOW), "strainwave_kernel")
+    _core.add_kernel(drive, ctypes.addressof(table))
