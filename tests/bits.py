@@ -2,6 +2,7 @@
 
     python -m tests.bits write bits.txt                 before the change
     python -m tests.bits compare bits.txt               after it
+    python -m tests.bits kernels --drives 200           the general drive and kernels, which must give the same
 
 Random drives of all models, as those of `tests.stress`: each run by every method, to a tolerance, in a pack of eight, and with
 derivatives. What is refused must be refused again. The file has a digest of each run; nobody needs to keep it.
@@ -21,6 +22,9 @@ from typing import Any
 import numpy as np
 import strainwave as sw
 from strainwave import _core
+from strainwave.native import kernels
+from strainwave.native.cache import find_kernel, make_kernel
+from strainwave.native.kernel import Kernel
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import METHODS, differentiate
 from strainwave.simulation.signals import outputs
@@ -30,6 +34,7 @@ from tests.workers import answers
 
 DERIVATIVES = 12
 LIMIT = 120.0  # s, for all runs of a drive
+KERNEL_LIMIT = 600.0  # s, with its kernels compiled
 
 
 def digest(number: int) -> dict[str, str]:
@@ -51,6 +56,18 @@ def digest(number: int) -> dict[str, str]:
     runs["many"] = partial(sw.simulate_many, drive, volts, varied, dt, record=list(outputs(drive)), **course)
     runs["derivatives"] = partial(differentiate, drive, Excitation(volts), free, dt, sample)
     return {kind: bits(run) for kind, run in runs.items()}
+
+
+def digest_by_kernel(number: int) -> dict[str, str]:
+    """Of each run of a drive that differs by its kernels; empty if none does."""
+    drive = model(sw.Drive, np.random.default_rng(number))
+    _core.forget_kernels(drive)
+    expected = digest(number)
+    for jobs in (kernels.JOBS[:-1], kernels.JOBS[-1:]):  # derivatives are compiled in another way
+        kernel = Kernel(kernels.source(drive, jobs), " ".join(jobs), str(number))
+        kernels.use(drive, find_kernel(kernel) or make_kernel(kernel))
+    found = digest(number)
+    return {kind: f"{expected[kind]}, by its kernel {found[kind]}" for kind in found if found[kind] != expected[kind]}
 
 
 def bits(run: Callable[[], Any]) -> str:
@@ -78,6 +95,15 @@ def arrays(found: Any) -> Iterator[Any]:
         yield from found.columns.values()
 
 
+def differences(drives: int, processes: int) -> Iterator[str]:
+    """What kernels do to the bits of random drives."""
+    for number, found in answers(digest_by_kernel, range(drives), processes, KERNEL_LIMIT):
+        if not isinstance(found, dict):
+            yield f"{number}: {found}"
+        else:
+            yield from (f"{number} {kind}: {value}" for kind, value in found.items())
+
+
 def lines(drives: int, processes: int) -> Iterator[str]:
     for number, found in answers(digest, range(drives), processes, LIMIT):
         kinds = found if isinstance(found, dict) else {"all": "no answer"}
@@ -86,11 +112,15 @@ def lines(drives: int, processes: int) -> Iterator[str]:
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("verb", choices=["write", "compare"])
-    options.add_argument("file", type=Path)
+    options.add_argument("verb", choices=["write", "compare", "kernels"])
+    options.add_argument("file", type=Path, nargs="?")
     options.add_argument("--drives", type=int, default=1000)
     options.add_argument("--processes", type=int, default=2)
     given = options.parse_args()
+    if given.verb == "kernels":
+        other = list(differences(given.drives, given.processes))
+        print("\n".join(other[:40]) or f"{given.drives} drives, all runs the same by their kernels")
+        sys.exit(bool(other))
     found = sorted(lines(given.drives, given.processes))
     if given.verb == "write":
         given.file.write_text("\n".join(found) + "\n")

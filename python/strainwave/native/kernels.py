@@ -37,8 +37,9 @@ def source(drive: Drive, jobs: Sequence[Job]) -> str:
     """Return the C++ of a kernel that does these jobs for all drives with the laws of one."""
     from strainwave.native.static_type import static_type
 
-    # To inline each stage of a step takes minutes where bodies move within the gear, and gains nothing there.
-    inlining = "SW_INLINE_STEPS" if isinstance(drive.gear.structure, structure.Lumped) else "SW_INLINE_RATES"
+    # To inline each stage of a step takes minutes where bodies move within the gear, and gains nothing there, nor for slopes.
+    is_short = isinstance(drive.gear.structure, structure.Lumped) and "differentiate" not in jobs
+    inlining = "SW_INLINE_STEPS" if is_short else "SW_INLINE_RATES"
     entries = "".join(f",\n    {ENTRIES[job] if job in jobs else 'nullptr'}" for job in JOBS)
     return f"""#define {inlining}
 #include <strainwave/kernel/entries.hpp>
@@ -96,7 +97,7 @@ def load(drive: Drive, job: Job, *, compile_it: bool) -> bool:
     if path is None:
         return False
     try:
-        _use(drive, path)
+        use(drive, path)
     except OSError as error:  # a file system that runs no code, or a symbol that is missing
         warn_once(f"{path} cannot be loaded: {error}")
         return False
@@ -112,10 +113,10 @@ def load_or_raise(drive: Drive, job: Job) -> None:
     from strainwave.native.cache import find_kernel, make_kernel
 
     kernel = kernel_of(drive, job)
-    _use(drive, find_kernel(kernel) or make_kernel(kernel))
+    use(drive, find_kernel(kernel) or make_kernel(kernel))
 
 
-def _use(drive: Drive, path: Path) -> None:
+def use(drive: Drive, path: Path) -> None:
     """Load a shared object, and do its jobs by it for drives with the laws of one."""
     table = ctypes.c_char.in_dll(ctypes.CDLL(str(path), ctypes.RTLD_LOCAL | os.RTLD_NOW), "strainwave_kernel")
     _core.add_kernel(drive, ctypes.addressof(table))
