@@ -16,9 +16,10 @@ from tests.cplusplus import INCLUDE, ROOT, STRICT, compilation, compiler
 
 HEADERS = INCLUDE / "strainwave"
 LIST = HEADERS / "models.hpp"
+SOURCE = ROOT / "src"
 SOURCES = [
     path
-    for folder in (INCLUDE, ROOT / "src", ROOT / "python" / "strainwave")
+    for folder in (INCLUDE, SOURCE, ROOT / "python" / "strainwave")
     for path in sorted(folder.rglob("*"))
     if path.suffix in {".hpp", ".cpp", ".py"}
 ]
@@ -28,7 +29,6 @@ LOG = "viscous friction becomes Coulomb's where a log is to tell it"
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
 DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
-USUAL = "one of the models whose drives run in code of their own, for speed"
 REACHED = "a log reaches some of the segments that a gear has, the first of them as one line"
 SERIES = "stages become one spring, with which runs are faster"
 PRINTED = "of a gear that a printed table of four stiffnesses is made into"
@@ -36,15 +36,16 @@ SHEET = "what a data sheet tells of a gear"
 AT_REST = "a law of sliding of which the numbers stand in a law of bristles, too"
 SAID = "the ratio that a person says of files"
 RIGID = "what a rigid drive that is moved by hand or motor carries"
+HEAT = "another Thermal: the heat of a drive, by any law"
 TRIED = "identification/candidates/"  # where a fit of each model starts that is tried on a measurement, is said there
 ELSEWHERE = {
     "Fourier": {
         "files/datasheet.py": SHEET,
         "identification/orders/two_encoders.py": "orders that two encoders tell are of this form",
-        "specialised.hpp": USUAL,
         "kinematic_error/scaled.hpp": "what it scales by default",
         "kinematic_error/misalignment.hpp": "what a misalignment is to leading order",
-        "verbs.hpp": "the harmonics of any error are of this form",
+        "laws.hpp": "what a misalignment is to leading order",
+        "verbs.cpp": "the harmonics of any error are of this form",
         "analysis/steady.py": STEADY_RUNNING,
         "identification/dynamics/log.py": "harmonics found in a log are of this form",
         "studies/pure_error.py": "the assumed curve of the study of misalignment",
@@ -53,19 +54,18 @@ ELSEWHERE = {
     "Misalignment": {"studies/actuator_ramp.py": "the law that its study is about"},
     "Staged": {
         "identification/experiments/stages.py": "whose springs a loop has in series with that of the flexspline",
-        "any.hpp": BOUND_TO_ANY,
+        "choice.hpp": BOUND_TO_ANY,
         "studies/actuator_ramp.py": SERIES,
     },
     "Lumped": {
         "gear.hpp": DEFAULT,
-        "specialised.hpp": USUAL,
+        "native/kernels.py": "bodies within the gear make a step too long to be inlined",
         "studies/actuator_ramp.py": SERIES,
         "identification/between_encoders.py": "a log does not tell the springs of stages apart",
     },
     "Constant": {"gear.hpp": DEFAULT, "structure/staged.hpp": "what its springs do where nothing else is said"},
-    "Scaled": {"any.hpp": BOUND_TO_ANY},
+    "Scaled": {"choice.hpp": BOUND_TO_ANY},
     "Viscous": {
-        "specialised.hpp": USUAL,
         "identification/dynamics/log.py": LOG,
         "identification/experiments/motion_log.py": "by which a place without friction is known",
     },
@@ -78,7 +78,6 @@ ELSEWHERE = {
     "Coulomb": {
         "demo.py": "runs document P's experiment with each reading of its table",
         "files/datasheet.py": SHEET,
-        "specialised.hpp": USUAL,
         "analysis/linear.py": "holds the input while the output vibrates",
         "friction/asymmetric.hpp": "what it modulates by default",
         "friction/thermal.hpp": "what it modulates by default",
@@ -87,43 +86,33 @@ ELSEWHERE = {
     },
     "Stribeck": {
         "identification/contact.py": AT_REST,
-        "specialised.hpp": USUAL,
         "friction/cyclic.hpp": "what it modulates by default",
     },
     "Asymmetric": {
-        "any.hpp": BOUND_TO_ANY,
+        "choice.hpp": BOUND_TO_ANY,
     },
-    "AngleSpeedMap": {},
-    "CurvedViscous": {},
-    "MixedLubrication": {},
-    "MaxwellSlipFriction": {},
-    "PositionDependent": {},
-    "DC": {"specialised.hpp": USUAL, "identification/prepared_log.py": "of a log of voltage alone, less what a motor induces"},
+    "DC": {"identification/prepared_log.py": "of a log of voltage alone, less what a motor induces"},
     "OpenLoop": {
-        "specialised.hpp": USUAL,
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
         "identification/experiments/driven_log.py": "the motion of a log is the command itself",
         "studies/position_control.py": "pulses without a controller",
     },
-    "PID": {"specialised.hpp": USUAL, "control/sampled.hpp": "what it samples by default"},
-    "Sampled": {"any.hpp": BOUND_TO_ANY},
+    "PID": {"control/sampled.hpp": "what it samples by default"},
+    "Sampled": {"choice.hpp": BOUND_TO_ANY},
     "BrushlessDC": {"files/gear_set.py": "suits every controller, so a set without a motor is checked with one"},
     "TorqueSource": {"analysis/linear.py": "a motor of which nothing counts but its inertia"},
     "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
     "Ideal": {
-        "specialised.hpp": USUAL,
         "sensor/delayed.hpp": "what it delays by default",
         "sensor/noisy.hpp": "what it adds noise to by default",
         "sensor/quantised.hpp": "what it reads in steps by default",
     },
-    "Delayed": {"any.hpp": BOUND_TO_ANY},
-    "Noisy": {"any.hpp": BOUND_TO_ANY},
-    "Quantised": {"any.hpp": BOUND_TO_ANY},
+    "Delayed": {"choice.hpp": BOUND_TO_ANY},
+    "Noisy": {"choice.hpp": BOUND_TO_ANY},
+    "Quantised": {"choice.hpp": BOUND_TO_ANY},
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
-    "ThermalSoftening": {"specialised.hpp": USUAL},
     "Inertia": {
-        "specialised.hpp": USUAL,
         "identification/prepared_log.py": RIGID,
         "identification/experiments/motion_log.py": RIGID,
     },
@@ -132,49 +121,45 @@ ELSEWHERE = {
         "identification/identify.py": SAID,
         "identification/evidence/explain.py": "the ratio that two encoders show, as one of teeth",
     },
-    "Stochastic": {"specialised.hpp": USUAL, "analysis/steady.py": STEADY_RUNNING},
+    "Stochastic": {"analysis/steady.py": STEADY_RUNNING},
     "LuGre": {
         "identification/contact.py": "whose breakaway torque ramps tell",
-        "specialised.hpp": USUAL,
     },
     "Cyclic": {
-        "any.hpp": BOUND_TO_ANY,
+        "choice.hpp": BOUND_TO_ANY,
         "identification/steady_runs.py": "waves found over the angle, around the friction that is known",
     },
     "Thermal": {
-        "any.hpp": BOUND_TO_ANY,
+        "choice.hpp": BOUND_TO_ANY,
+        "general/heat.hpp": HEAT,
+        "general/heat.cpp": HEAT,
+        "general/drive.hpp": HEAT,
         "identification/warmed.py": "how the friction that is known falls while a drive warms up",
     },
-    "Preisach": {"any.hpp": BOUND_TO_ANY},
+    "Preisach": {"choice.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {
         "identification/experiments/motion_log.py": RIGID,
-        "specialised.hpp": USUAL,
         "identification/experiments/drive_log.py": "a run under gravity starts hanging, so must the log that it is fitted to",
     },
     "Linear": {
-        "specialised.hpp": USUAL,
         "studies/actuator_ramp.py": SERIES,
         "rig/virtual/printed.py": PRINTED,
         "identification/between_encoders.py": REACHED,
     },
     "PlainRatio": {"identification/identify.py": SAID, "rig/virtual/printed.py": PRINTED},
     "Regimes": {"rig/virtual/printed.py": PRINTED},
-    "Piecewise": {"specialised.hpp": USUAL},
     "ThreeSegment": {
         "files/datasheet.py": SHEET,
-        "specialised.hpp": USUAL,
         "identification/between_encoders.py": REACHED,
     },
     "Cubic": {
-        "specialised.hpp": USUAL,
         "stiffness/backlash.hpp": "the spring behind its play by default",
     },
     "MultiCompliance": {"hysteresis/frictional_windup.hpp": "the two springs that it has friction between"},
-    "Backlash": {"any.hpp": BOUND_TO_ANY},
+    "Backlash": {"choice.hpp": BOUND_TO_ANY},
     "MaxwellSlip": {
         "files/datasheet.py": SHEET,
-        "specialised.hpp": USUAL,
     },
 }
 
@@ -203,7 +188,7 @@ def defining(model: Any) -> list[Path]:
 
 
 def name_of(path: Path) -> str:
-    bases = (HEADERS, ROOT / "src", ROOT / "python" / "strainwave")
+    bases = (HEADERS, SOURCE, ROOT / "python" / "strainwave")
     return next(path.relative_to(base).as_posix() for base in bases if path.is_relative_to(base))
 
 
@@ -261,17 +246,52 @@ struct Quadratic {
 """
 MAIN = """
 #include <cstdio>
-#include <strainwave/any.hpp>
+#include <memory>
 #include <strainwave/integrate.hpp>
+#include <vector>
+
+#include "choice.hpp"
+#include "general/friction.hpp"
 
 using namespace strainwave;
 
+/// The laws chosen, and the numbers, of parameters as Python holds them.
+struct Apart {
+    std::vector<int> laws;
+    std::vector<double> numbers;
+
+    template <class T>
+    void operator()(const T& member, const Field&) {
+        if constexpr (requires { member.model; }) {
+            laws.push_back(int(member.model.index()));
+            member.visit([&](const auto& law) { law.fields(law, *this); });
+        } else if constexpr (std::is_same_v<T, double>) {
+            numbers.push_back(member);
+        }
+    }
+};
+
+using Friction = general::Friction<double>;
+using Chosen = AnyOf<double, friction::Models>;
+template <class S>
+using Varied = AtRunTime<friction::Thermal, S>;
+using Viscous = friction::Viscous<double>;
+using OneGear = Gear<double, kinematics::StrainWave<double>, kinematic_error::Fourier<double>,
+                     kinematic_error::Stochastic<double>, stiffness::Linear<double>, hysteresis::MaxwellSlip<double>, Friction,
+                     Viscous, Viscous, softening::ThermalSoftening<double>, structure::Lumped<double>>;
+using OneDrive = Drive<double, control::OpenLoop<double>, motor::DC<double>, OneGear, load::Inertia<double>,
+                       Sensors<double, sensor::Ideal<double>>>;
+
 int main() {
-    AnyDrive<double> drive{};
-    drive.motor.model = motor::DC<double>{.resistance = 2.0, .torque_constant = 0.05, .back_emf = 0.05, .inertia = 1e-4};
+    Apart apart;
+    apart(Chosen{Varied<double>{{friction::Quadratic<double>{.drag = 2e-5}}}}, {});
+    std::vector<std::shared_ptr<const void>> kept;
+    kernel::Reader<double> from{apart.laws.data(), nullptr, apart.numbers.data(), &kept};
+
+    OneDrive drive{};
+    drive.motor = {.resistance = 2.0, .torque_constant = 0.05, .back_emf = 0.05, .inertia = 1e-4};
     drive.gear.damping = 1.0;
-    drive.gear.friction_input.model =
-        friction::Thermal<double, AnyOf<double, friction::Varying>>{{friction::Quadratic<double>{.drag = 2e-5}}};
+    drive.gear.friction_input.read(from);
     auto state = drive.rest();
     const Interval<Input<double>> input{{12.0}, {12.0}, {12.0}};
     for (int i = 0; i < 20000; ++i) state = step(drive, state, input, 1e-4);
@@ -298,12 +318,17 @@ def with_one_more(folder: Path) -> Path:
     return include
 
 
+def options(include: Path) -> list[str]:
+    """Those of a source that includes headers of this folder and of the host."""
+    own = [f"-I{include}" if option == f"-I{INCLUDE}" else option for option in STRICT]
+    return [*own, f"-I{SOURCE}", "-Wno-missing-field-initializers"]
+
+
 def test_one_more_model_runs_in_a_drive_that_chooses_it_at_run_time(tmp_path: Path) -> None:
     """It settles where the motor's torque is the drag: K (u - k v) / R = q v^2."""
-    include = with_one_more(tmp_path)
-    options = [f"-I{include}" if option == f"-I{INCLUDE}" else option for option in STRICT]
     (tmp_path / "main.cpp").write_text(MAIN)
-    command = [*compiler("g++"), *options, "-Wno-missing-field-initializers", "-O1", "main.cpp", "-o", "main"]
+    sources = ["main.cpp", SOURCE / "general" / "friction.cpp"]
+    command = [*compiler("g++"), *options(with_one_more(tmp_path)), "-O1", *sources, "-o", "main"]
     built = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (built.returncode, built.stderr) == (0, "")
     speed = float(subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout)
@@ -313,9 +338,12 @@ def test_one_more_model_runs_in_a_drive_that_chooses_it_at_run_time(tmp_path: Pa
 
 
 def test_a_model_that_is_not_in_the_list_is_not_there(tmp_path: Path) -> None:
-    """So that the run above does show the list at work."""
-    (tmp_path / "quadratic.hpp").write_text(QUADRATIC)
-    source = f'#include "quadratic.hpp"\n{MAIN}'
-    status, said = compilation(compiler("g++"), tmp_path, {"main.cpp": source}, *STRICT, "-fsyntax-only")
+    """So that the run above does show the list at work: all that is missing is the name in the list."""
+    include = with_one_more(tmp_path)
+    models = include / "strainwave/models.hpp"
+    models.write_text(models.read_text().replace(", Quadratic>", ">"))
+    status, said = compilation(compiler("g++"), tmp_path, {"main.cpp": MAIN}, *options(include), "-fsyntax-only")
     assert status != 0
-    assert "Quadratic" in said
+    errors = [line for line in said.splitlines() if " error: " in line]
+    assert errors
+    assert all("Quadratic" in error for error in errors)

@@ -46,9 +46,9 @@ auto adaptive() {
     const System system{};
     integrate::Adaptive<double, System, decltype(exponential)> steps(system, twisted<double>(), exponential, {1e-9, 1e-12}, 1e-3);
     const Interval<System::Input> torque{{0.3}, {0.3}, {0.3}};
-    const auto ignore = [](double, double, const auto&, const auto&) {};
+    const auto go_on = [](double, double, const auto&, const auto&) { return true; };
     return flattened<double>(
-        steps.through(system.evaluate(twisted<double>(), torque.start), torque, duration, ignore).state.continuous);
+        steps.through(system.evaluate(twisted<double>(), torque.start), torque, duration, go_on).state.continuous);
 }
 
 template <class Numbers, class Of>

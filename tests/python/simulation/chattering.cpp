@@ -118,6 +118,7 @@ void run_adaptively(double wall) {
         const Interval<Input<double>> u{voltage<double>(i * dt), voltage<double>((i + 0.5) * dt), voltage<double>((i + 1) * dt)};
         const auto within = [&](double, double, const typename Chatters::Evaluation& end, const auto&) {
             late += wall == unbounded && system::event_function<double>(drive, end) < -1e-9;
+            return true;
         };
         x = adaptive.through(drive.evaluate(x, u.start), u, dt, within).state;
     }
@@ -148,6 +149,7 @@ int late_after_settling() {
         integrate::Adaptive<double, Settling, decltype(smooth)> adaptive(drive, drive.rest(), smooth, {1e-6, 1e-12}, 1e-4);
         const auto within = [&](double, double, const typename Settling::Evaluation& end, const auto&) {
             late += system::event_function<double>(drive, end) < -1e-9;
+            return true;
         };
         Input<double> before{}, after{};
         before.load = 1.0;
