@@ -215,7 +215,7 @@ def run_ratio(fixed: str) -> float:
 
 
 @orientation
-@pytest.mark.parametrize("speed", [0.0, 3.0, -250.0])
+@pytest.mark.parametrize("speed", [0.0, 30.0, -250.0])
 def test_unloaded_and_aligned_the_output_turns_by_the_ratio_exactly(fixed: str, speed: float) -> None:
     """To rounding over a hundred turns, and no force anywhere."""
     gear = GEAR.replace(kinematics=FIXED[fixed], kinematic_error=sw.kinematic_error.Fourier())
