@@ -9,10 +9,14 @@ from pathlib import Path
 import pytest
 import strainwave
 from hypothesis import settings
+from strainwave.native import kernels
 
 # Before anything imports numpy, and for the processes of tests too: beside other workers, threads of BLAS wait for each other,
 # and take up to five times the processor time of one.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# For the processes of tests too: kernels are kept between runs of the tests, and never among the user's.
+os.environ.setdefault("STRAINWAVE_KERNELS", str(Path(__file__).parents[1] / "build" / "test-kernels"))
 
 # How long an example takes says more about the machine than about the example. The examples are the same on each run, so that a
 # failure tells of the change and not of the draw; `--hypothesis-profile=explore` draws others, and takes the whole of samples.
@@ -22,9 +26,10 @@ settings.load_profile("strainwave")
 
 
 @pytest.fixture(autouse=True)
-def no_ratings_remembered() -> Iterator[None]:
-    """Each test begins as a new process does: no gear was loaded from a file with ratings."""
+def nothing_remembered() -> Iterator[None]:
+    """Each test begins as a new process does: no gear was loaded from a file with ratings, and no drive has taken a step."""
     yield
+    kernels._steps_taken.clear()
     if ratings := sys.modules.get("strainwave.files.ratings"):
         ratings.forget()
 

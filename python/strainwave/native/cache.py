@@ -31,7 +31,7 @@ def kernel_file(kernel: Kernel) -> Path | None:
 
     None without a warning if the environment variable STRAINWAVE_KERNELS is `off`.
     """
-    if cache_folder() is None or kernel in _failed:
+    if not can_compile(kernel):
         return None
     found = find_kernel(kernel)
     if found is None:
@@ -39,6 +39,11 @@ def kernel_file(kernel: Kernel) -> Path | None:
     if found is None:
         _failed.add(kernel)
     return found
+
+
+def can_compile(kernel: Kernel) -> bool:
+    """True unless kernels are switched off, or this one could not be compiled before in this process."""
+    return cache_folder() is not None and kernel not in _failed
 
 
 def find_kernel(kernel: Kernel) -> Path | None:

@@ -87,11 +87,11 @@ def note(drive: Drive, job: Job, steps: float) -> None:
 
 def load(drive: Drive, job: Job, *, compile_it: bool) -> bool:
     """True if a kernel does this job from now on: one compiled before, or else compiled now."""
-    from strainwave.native.cache import find_kernel, kernel_file, warn_once
+    from strainwave.native.cache import can_compile, find_kernel, kernel_file, warn_once
 
     kernel = kernel_of(drive, job)
     path = find_kernel(kernel)
-    if path is None and compile_it:
+    if path is None and compile_it and can_compile(kernel):
         print(f"strainwave: compiling a kernel of this drive for {job}, once; it takes some seconds", file=sys.stderr)
         path = kernel_file(kernel)
     if path is None:
