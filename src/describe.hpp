@@ -4,6 +4,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <strainwave/condition.hpp>
+
 #include "choice.hpp"
 #include "kernel/assemble.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "describe.hpp"
 #include "kernel/table.hpp"
+#include "parameter_drive.hpp"
 
 namespace strainwave::host {
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "general/friction.hpp"
 #include "general/hysteresis.hpp"
+#include "parameter_drive.hpp"
 #include "verbs.hpp"
 
 /// Laws as Python binds them, each with its verbs.

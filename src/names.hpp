@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "choice.hpp"
+#include "parameter_drive.hpp"
 
 namespace strainwave::host {
 

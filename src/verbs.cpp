@@ -1,5 +1,7 @@
 #include "verbs.hpp"
 
+#include <strainwave/kinematic_error/fourier.hpp>
+
 #include "general/friction.hpp"
 #include "general/hysteresis.hpp"
 #include "general/kinematic_error.hpp"

@@ -1,4 +1,4 @@
-"""A model is its header and its name in models.hpp, and nothing else: counted in the sources, and tried with one more."""
+"""A model is its header and its name in the list of its family, and nothing else: counted in the sources, and tried with one more."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from strainwave import _core
 from tests.cplusplus import INCLUDE, ROOT, STRICT, compilation, compiler
 
 HEADERS = INCLUDE / "strainwave"
-LIST = HEADERS / "models.hpp"
 SOURCE = ROOT / "src"
 SOURCES = [
     path
@@ -54,7 +53,7 @@ ELSEWHERE = {
     "Misalignment": {"studies/actuator_ramp.py": "the law that its study is about"},
     "Staged": {
         "identification/experiments/stages.py": "whose springs a loop has in series with that of the flexspline",
-        "choice.hpp": BOUND_TO_ANY,
+        "parameter_drive.hpp": BOUND_TO_ANY,
         "studies/actuator_ramp.py": SERIES,
     },
     "Lumped": {
@@ -64,7 +63,7 @@ ELSEWHERE = {
         "identification/between_encoders.py": "a log does not tell the springs of stages apart",
     },
     "Constant": {"gear.hpp": DEFAULT, "structure/staged.hpp": "what its springs do where nothing else is said"},
-    "Scaled": {"choice.hpp": BOUND_TO_ANY},
+    "Scaled": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Viscous": {
         "identification/dynamics/log.py": LOG,
         "identification/experiments/motion_log.py": "by which a place without friction is known",
@@ -89,7 +88,7 @@ ELSEWHERE = {
         "friction/cyclic.hpp": "what it modulates by default",
     },
     "Asymmetric": {
-        "choice.hpp": BOUND_TO_ANY,
+        "parameter_drive.hpp": BOUND_TO_ANY,
     },
     "DC": {"identification/prepared_log.py": "of a log of voltage alone, less what a motor induces"},
     "OpenLoop": {
@@ -98,7 +97,7 @@ ELSEWHERE = {
         "studies/position_control.py": "pulses without a controller",
     },
     "PID": {"control/sampled.hpp": "what it samples by default"},
-    "Sampled": {"choice.hpp": BOUND_TO_ANY},
+    "Sampled": {"parameter_drive.hpp": BOUND_TO_ANY},
     "BrushlessDC": {"files/gear_set.py": "suits every controller, so a set without a motor is checked with one"},
     "TorqueSource": {"analysis/linear.py": "a motor of which nothing counts but its inertia"},
     "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
@@ -107,9 +106,9 @@ ELSEWHERE = {
         "sensor/noisy.hpp": "what it adds noise to by default",
         "sensor/quantised.hpp": "what it reads in steps by default",
     },
-    "Delayed": {"choice.hpp": BOUND_TO_ANY},
-    "Noisy": {"choice.hpp": BOUND_TO_ANY},
-    "Quantised": {"choice.hpp": BOUND_TO_ANY},
+    "Delayed": {"parameter_drive.hpp": BOUND_TO_ANY},
+    "Noisy": {"parameter_drive.hpp": BOUND_TO_ANY},
+    "Quantised": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
@@ -126,17 +125,17 @@ ELSEWHERE = {
         "identification/contact.py": "whose breakaway torque ramps tell",
     },
     "Cyclic": {
-        "choice.hpp": BOUND_TO_ANY,
+        "parameter_drive.hpp": BOUND_TO_ANY,
         "identification/steady_runs.py": "waves found over the angle, around the friction that is known",
     },
     "Thermal": {
-        "choice.hpp": BOUND_TO_ANY,
+        "parameter_drive.hpp": BOUND_TO_ANY,
         "general/heat.hpp": HEAT,
         "general/heat.cpp": HEAT,
         "general/drive.hpp": HEAT,
         "identification/warmed.py": "how the friction that is known falls while a drive warms up",
     },
-    "Preisach": {"choice.hpp": BOUND_TO_ANY},
+    "Preisach": {"parameter_drive.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
     "Pendulum": {
         "identification/experiments/motion_log.py": RIGID,
@@ -157,7 +156,7 @@ ELSEWHERE = {
         "stiffness/backlash.hpp": "the spring behind its play by default",
     },
     "MultiCompliance": {"hysteresis/frictional_windup.hpp": "the two springs that it has friction between"},
-    "Backlash": {"choice.hpp": BOUND_TO_ANY},
+    "Backlash": {"parameter_drive.hpp": BOUND_TO_ANY},
     "MaxwellSlip": {
         "files/datasheet.py": SHEET,
     },
@@ -187,6 +186,11 @@ def defining(model: Any) -> list[Path]:
     return [path for path in SOURCES if re.search(rf"\bstruct {model.__name__} {{", code(path))]
 
 
+def list_of(header: Path) -> Path:
+    """The list of a model's family: beside it, or above where the family is one header."""
+    return next(path for folder in (header.parent, HEADERS) if (path := folder / "models.hpp").exists())
+
+
 def name_of(path: Path) -> str:
     bases = (HEADERS, SOURCE, ROOT / "python" / "strainwave")
     return next(path.relative_to(base).as_posix() for base in bases if path.is_relative_to(base))
@@ -195,7 +199,7 @@ def name_of(path: Path) -> str:
 @pytest.mark.parametrize("model", EVERY_MODEL)
 def test_a_model_is_named_in_its_header_and_in_the_list_alone(model: Any) -> None:
     (header,) = defining(model)
-    elsewhere = {name_of(path) for path in naming(model) - {header, LIST}}
+    elsewhere = {name_of(path) for path in naming(model) - {header, list_of(header)}}
     elsewhere = {name for name in elsewhere if not name.startswith(TRIED)}
     assert elsewhere == set(ELSEWHERE.get(model.__name__, {}))
 
@@ -203,7 +207,7 @@ def test_a_model_is_named_in_its_header_and_in_the_list_alone(model: Any) -> Non
 @pytest.mark.parametrize("model", EVERY_MODEL)
 def test_the_list_names_a_model_once_and_includes_its_header_once(model: Any) -> None:
     (header,) = defining(model)
-    listed = code(LIST)
+    listed = code(list_of(header))
     assert len(re.findall(rf"\b{model.__name__}\b", listed)) == 1
     includes = re.findall(r"#include <strainwave/(\S+)>", listed)
     brings = [name for name in includes if name == name_of(header) or f"<strainwave/{name_of(header)}>" in code(HEADERS / name)]
@@ -250,7 +254,7 @@ MAIN = """
 #include <strainwave/integrate.hpp>
 #include <vector>
 
-#include "choice.hpp"
+#include "parameter_drive.hpp"
 #include "general/friction.hpp"
 
 using namespace strainwave;
@@ -305,7 +309,7 @@ def with_one_more(folder: Path) -> Path:
     include = folder / "include"
     shutil.copytree(INCLUDE, include)
     (include / "strainwave/friction/quadratic.hpp").write_text(QUADRATIC)
-    models = include / "strainwave/models.hpp"
+    models = include / "strainwave/friction/models.hpp"
     before = models.read_text()
     after = before.replace(
         "#include <strainwave/friction/stribeck.hpp>\n",
@@ -340,7 +344,7 @@ def test_one_more_model_runs_in_a_drive_that_chooses_it_at_run_time(tmp_path: Pa
 def test_a_model_that_is_not_in_the_list_is_not_there(tmp_path: Path) -> None:
     """So that the run above does show the list at work: all that is missing is the name in the list."""
     include = with_one_more(tmp_path)
-    models = include / "strainwave/models.hpp"
+    models = include / "strainwave/friction/models.hpp"
     models.write_text(models.read_text().replace(", Quadratic>", ">"))
     status, said = compilation(compiler("g++"), tmp_path, {"main.cpp": MAIN}, *options(include), "-fsyntax-only")
     assert status != 0

@@ -1,5 +1,6 @@
 #include "control.hpp"
 
+#include <strainwave/control/models.hpp>
 #include <strainwave/fastest.hpp>
 
 #include "laws.hpp"

@@ -1,5 +1,7 @@
 #include "friction.hpp"
 
+#include <strainwave/friction/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

@@ -1,6 +1,8 @@
 #include "heat.hpp"
 
 #include <strainwave/fastest.hpp>
+#include <strainwave/meter/models.hpp>
+#include <strainwave/thermal/models.hpp>
 
 #include "laws.hpp"
 

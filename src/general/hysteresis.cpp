@@ -1,5 +1,7 @@
 #include "hysteresis.hpp"
 
+#include <strainwave/hysteresis/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

@@ -1,5 +1,7 @@
 #include "kinematic_error.hpp"
 
+#include <strainwave/kinematic_error/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

@@ -1,5 +1,7 @@
 #include "kinematics.hpp"
 
+#include <strainwave/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/compiled.hpp>
 #include <strainwave/control/law.hpp>
-#include <strainwave/models.hpp>
+#include <strainwave/list.hpp>
 
 #include <cstring>
 #include <memory>

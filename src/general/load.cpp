@@ -1,5 +1,7 @@
 #include "load.hpp"
 
+#include <strainwave/load/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

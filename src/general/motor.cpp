@@ -1,5 +1,7 @@
 #include "motor.hpp"
 
+#include <strainwave/motor/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

@@ -1,6 +1,7 @@
 #include "sensor.hpp"
 
 #include <strainwave/fastest.hpp>
+#include <strainwave/sensor/models.hpp>
 
 #include "laws.hpp"
 

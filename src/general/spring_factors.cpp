@@ -1,5 +1,8 @@
 #include "spring_factors.hpp"
 
+#include <strainwave/softening/models.hpp>
+#include <strainwave/variation/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

@@ -1,5 +1,7 @@
 #include "stiffness.hpp"
 
+#include <strainwave/stiffness/models.hpp>
+
 #include "laws.hpp"
 
 namespace strainwave::general {

@@ -1,5 +1,7 @@
 #include "structure.hpp"
 
+#include <strainwave/structure/models.hpp>
+
 #include "laws.hpp"
 #include "spring_factors.hpp"
 

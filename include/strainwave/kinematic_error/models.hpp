@@ -1,0 +1,16 @@
+#pragma once
+#include <strainwave/kinematic_error/fourier.hpp>
+#include <strainwave/kinematic_error/misalignment.hpp>
+#include <strainwave/kinematic_error/scaled.hpp>
+#include <strainwave/kinematic_error/stochastic.hpp>
+#include <strainwave/kinematic_error/tooth_errors.hpp>
+#include <strainwave/list.hpp>
+
+/// The closed list of kinematic errors: one more is its header, and here its include and its name. The first is the default.
+namespace strainwave::kinematic_error {
+
+using Pure = List<Fourier, Misalignment, ToothErrors>;
+using Models = Extended<Pure, Scaled>;
+using Noises = List<Stochastic>;
+
+}  // namespace strainwave::kinematic_error
