@@ -13,12 +13,12 @@ from typing import Any
 import ensemble
 import single
 from measure import Result
-from reference_drive import DURATION
 from report import RUN, Column, circumstances, saved, tell, three_digits, write_json
 from rich.console import Console
+from strainwave import _core
 
 Content = Mapping[str, Any]  # of the JSON file of a part
-SHARE_OF_PEAK_TORQUE = 1.5e-4  # error allowed where a run is compared with real time
+LEAD_OVER_PRANGE = 12 if _core.instruction_set() == "avx512" else 8
 
 COLUMNS = (
     Column("target", words=True),
@@ -84,16 +84,6 @@ def ahead_of(*solvers: str) -> Callable[[Content], Found]:
     return found
 
 
-def times_real_time(content: Content) -> Found:
-    allowed = SHARE_OF_PEAK_TORQUE * content["peak_torque"]
-    own = [each for each in results(content) if each.solver.startswith(single.BASELINE) and each.torque_error <= allowed]
-    if not own:
-        return Found(None, "not measured")
-    fastest = min(own, key=lambda each: each.wall_time)
-    share = fastest.torque_error / content["peak_torque"]
-    return Found(DURATION / fastest.wall_time, f"{fastest.solver}, {fastest.setting}: error {share:.1e} of the peak")
-
-
 def rates(content: Content) -> list[ensemble.Rate]:
     return [ensemble.Rate(Result(**row["first"]), row["members"], row["threads"]) for row in content["results"]]
 
@@ -127,13 +117,6 @@ def two_threads(content: Content) -> Found:
     speeds = {(rate.threads, rate.first.setting): rate.trajectories for rate in own if rate.first.solver == solver}
     gains = [(two / speeds[1, setting], setting) for (threads, setting), two in speeds.items() if threads == 2]
     return Found(min(gains)[0], f"{solver}, {min(gains)[1]}") if gains else Found(None, "not measured")
-
-
-def share_of_most(content: Content) -> Found:
-    for use in content["results"]:
-        if use["run"].startswith("packs"):
-            return Found(use["operations"] / use["step"] / use["most"], use["run"])
-    return Found(None, "not measured")
 
 
 def beside(compare: Callable[[float, float], float], *words: str) -> Callable[[Content], Found]:
@@ -193,22 +176,16 @@ def milliseconds(without: float, including: float) -> float:
 
 
 TARGETS = (
-    Target("one trajectory: lead over expert LSODA", "single", 200, False, ahead_of("SciPy LSODA, expert")),
+    Target("one trajectory: lead over Numba with the same algorithm", "single", 1.5, False, ahead_of("Numba exponential")),
     Target("plain LSODA or Radau", "single", 1000, False, ahead_of("SciPy LSODA, Numba", "SciPy Radau, Numba")),
     Target("CasADi CVODES", "single", 100, False, ahead_of("CasADi CVODES", "CasADi CVODES, gcc")),
     Target("scikit-sundae CVODE", "single", 300, False, ahead_of("CVODE, Numba")),
-    Target("diffrax", "single", 500, False, ahead_of("diffrax Tsit5")),
-    Target(f"times real time at {SHARE_OF_PEAK_TORQUE:g} of the peak torque", "single", 1500, False, times_real_time),
     Target(
         "tilt actuator, staged gear: lead over CVODES", "actuator", 50, False, ahead_of("CasADi CVODES", "CasADi CVODES, gcc")
     ),
-    Target("ensemble: lead over JAX vmap", "ensemble", 30, False, many_ahead_of("JAX vmap, exponential")),
-    Target("Numba prange", "ensemble", 20, False, many_ahead_of("Numba prange, exponential")),
+    Target("ensemble: lead over Numba prange", "ensemble", LEAD_OVER_PRANGE, False, many_ahead_of("Numba prange, exponential")),
     Target("diffrax vmap", "ensemble", 1000, False, many_ahead_of("diffrax vmap, Tsit5")),
-    Target("CasADi map", "ensemble", 400, False, many_ahead_of("CasADi map, CVODES, gcc")),
-    Target("packs over one by one, a core", "ensemble", 10, False, many_ahead_of("strainwave, loop of simulate")),
     Target("two threads over one", "ensemble", 1.9, False, two_threads),
-    Target("share of the most multiply-adds", "peak", 0.6, False, share_of_most),
     Target("sticking over smooth, packs", "stick_slip", 1.4, True, sticking_over_smooth),
     Target("a call [ms]", "overhead", 0.2, True, beside(milliseconds, "a call")),
     Target("storing, one", "overhead", 0.05, True, beside(more, "storing all", "simulate")),

@@ -315,6 +315,8 @@ void bind_runs(nb::module_& core) {
     core.def("no_beginning", &no_beginning, nb::arg("known"),
              "Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.");
     core.def("instruction_set", &instruction_set, "The instruction set that kernels are compiled for.");
+    core.def("instruction_sets", &instruction_sets, nb::sig("def instruction_sets() -> list[str]"),
+             "Those of this machine that kernels can be compiled for, the widest first.");
     core.def("add_kernel", &add_kernel_at, nb::arg("drive"), nb::arg("address"),
              nb::sig("def add_kernel(drive: Drive, address: int) -> None"),
              "Uses a kernel that is loaded, its table at an address, for all drives of the laws of one.");

@@ -10,7 +10,7 @@ namespace strainwave::host {
 namespace {
 
 /// From the widest to what every machine has.
-constexpr std::string_view instruction_sets[] = {"avx512", "avx2", "baseline"};
+constexpr std::string_view all[] = {"avx512", "avx2", "baseline"};
 
 bool supported(std::string_view name) {
 #if defined(__x86_64__)
@@ -25,13 +25,19 @@ bool supported(std::string_view name) {
 
 }  // namespace
 
+std::vector<std::string> instruction_sets() {
+    std::vector<std::string> known;
+    for (const std::string_view name : all)
+        if (supported(name)) known.emplace_back(name);
+    return known;
+}
+
 std::string instruction_set() {
     const char* const wanted = std::getenv("STRAINWAVE_INSTRUCTION_SET");
     std::string known;
-    for (const std::string_view name : instruction_sets) {
-        if (!supported(name)) continue;
-        if (!wanted || !*wanted || name == wanted) return std::string(name);
-        known += (known.empty() ? "" : ", ") + std::string(name);
+    for (const std::string& name : instruction_sets()) {
+        if (!wanted || !*wanted || name == wanted) return name;
+        known += (known.empty() ? "" : ", ") + name;
     }
     throw nanobind::value_error(
         ("STRAINWAVE_INSTRUCTION_SET = " + std::string(wanted) + " is not one that this machine has: " + known).c_str());

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import reference_drive as reference
 from reference_drive import Array
+from strainwave import _core
 
 from peers import Crowd, Peer
 
 if TYPE_CHECKING:
     import strainwave as sw
+    from strainwave.native.kernels import Job
     from strainwave.simulation.run import Method
 
     Task = Callable[[], tuple[sw.Drive, sw.scenario.Scenario]]
@@ -98,8 +100,22 @@ def repeated(simulate: Callable[[], sw.Recording]) -> Callable[[], Array]:
     return solve
 
 
+def with_kernel(one: sw.Drive, job: Job) -> sw.Drive:
+    """The drive, of which a kernel does this job from now on."""
+    from strainwave.native import kernels
+
+    kernels.load_or_raise(one, job)
+    return one
+
+
 def prepare_steps(task: Task, method: Method, step: float) -> Callable[[], Array]:
     """A run of a method with this step, through the public interface."""
+    with_kernel(task()[0], "simulate")
+    return prepare_without_kernel(task, method, step)
+
+
+def prepare_without_kernel(task: Task, method: Method, step: float) -> Callable[[], Array]:
+    """The same by the general drive."""
     import strainwave as sw
 
     one, wanted = task()
@@ -111,6 +127,7 @@ def prepare_tolerance(task: Task, tolerance: float) -> Callable[[], Array]:
     import strainwave as sw
 
     one, wanted = task()
+    with_kernel(one, "simulate_adaptively")
     return repeated(lambda: sw.simulate_adaptively(one, wanted, tolerance, sample=reference.SAMPLE))
 
 
@@ -119,6 +136,8 @@ def peers(task: Task, steps: Mapping[Method, tuple[float, ...]], tolerances: tup
     for method, ladder in steps.items():
         name = "strainwave" if method == "exponential" else f"strainwave, {method}"
         yield Peer(name, ("strainwave",), "step", ladder, partial(prepare_steps, task, method))
+    general = partial(prepare_without_kernel, task, "exponential")
+    yield Peer("strainwave, without kernel", ("strainwave",), "step", steps["exponential"], general)
     yield Peer("strainwave, adaptive", ("strainwave",), "rtol", tolerances, partial(prepare_tolerance, task))
 
 
@@ -132,6 +151,7 @@ def prepare_crowd(instruction_set: str, members: int, threads: int, step: float)
     import strainwave as sw
 
     one, wanted, inertias = drive(), command(), {"load.inertia": reference.output_inertias(members)}
+    with_kernel(one, "simulate_many")
     outputs = ["output_angle", "torque"]
 
     def solve() -> Array:
@@ -146,7 +166,7 @@ def prepare_loop(members: int, step: float) -> Callable[[], Array]:
     """The same members one after the other."""
     import strainwave as sw
 
-    one, wanted = drive(), command()
+    one, wanted = with_kernel(drive(), "simulate"), command()
     drives = [one.replace({"load.inertia": inertia}) for inertia in reference.output_inertias(members).tolist()]
 
     def solve() -> Array:
@@ -168,7 +188,6 @@ PEERS = tuple(
         (1e-3, 1e-4, 1e-6, 1e-8),
     )
 )
-INSTRUCTION_SETS = ("avx512", "avx2", "baseline")
 MEMBERS, MEMBERS_OF_LOOP = 512, 32
 CROWDS = (
     *(
@@ -183,7 +202,7 @@ CROWDS = (
             MEMBERS,
             threads,
         )
-        for instruction_set in INSTRUCTION_SETS
+        for instruction_set in _core.instruction_sets()
         for threads in (1, 2)
     ),
     Crowd(

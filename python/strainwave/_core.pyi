@@ -553,6 +553,11 @@ def no_beginning(known: bool) -> str:
 def instruction_set() -> str:
     """The instruction set that kernels are compiled for."""
 
+def instruction_sets() -> list[str]:
+    """
+    Those of this machine that kernels can be compiled for, the widest first.
+    """
+
 def add_kernel(drive: Drive, address: int) -> None:
     """
     Uses a kernel that is loaded, its table at an address, for all drives of the laws of one.
