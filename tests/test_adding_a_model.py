@@ -1,4 +1,4 @@
-"""A model is its header and its name in the list of its family, and nothing else: counted in the sources, and tried with one more."""
+"""A model is its header and its name in the list of its family, and nothing else: counted, and tried with one more."""
 
 from __future__ import annotations
 

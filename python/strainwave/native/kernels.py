@@ -85,6 +85,11 @@ def note(drive: Drive, job: Job, steps: float) -> None:
     _steps_taken[tuple(_core.parts(drive)[0]), job] += steps
 
 
+def forget_steps() -> None:
+    """Begin to count the steps of the general drive anew."""
+    _steps_taken.clear()
+
+
 def load(drive: Drive, job: Job, *, compile_it: bool) -> bool:
     """True if a kernel does this job from now on: one compiled before, or else compiled now."""
     from strainwave.native.cache import can_compile, find_kernel, kernel_file, warn_once

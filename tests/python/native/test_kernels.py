@@ -1,0 +1,169 @@
+"""Kernels of drives: the same bits as the general drive, compiled when that pays, and done without where that fails."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import strainwave as sw
+from numpy.typing import NDArray
+from strainwave import _core
+from strainwave.native import kernels
+from strainwave.native.cache import KernelWarning, find_kernel, make_kernel
+from strainwave.native.kernel import Kernel
+from strainwave.native.static_type import in_words
+from strainwave.simulation.excitation import Excitation
+from strainwave.simulation.run import differentiate
+
+from tests.reference_drive import DRIVE, command
+
+Array = NDArray[np.float64]
+STEP = 2e-4
+
+# Laws within laws, a controller that samples, sensors that differ, and bodies within the gear.
+NESTED = sw.Drive(
+    gear=sw.Gear(
+        stiffness=sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=1e-5),
+        hysteresis=sw.hysteresis.Preisach(density=sw.hysteresis.PowerDensity(limit=2e-3, saturation=3.0, exponent=2.0)),
+        friction_input=sw.friction.Thermal(
+            law=sw.friction.Cyclic(law=DRIVE.gear.friction_input, order=[2], amplitude=[0.2], phase=[0.0]), viscous_fall=0.02
+        ),
+        friction_output=sw.friction.Coulomb(coulomb=0.5, breakaway=0.7, viscous=0.1),
+        kinematic_error=sw.kinematic_error.Scaled(law=DRIVE.gear.kinematic_error),
+        damping=10.0,
+    ),
+    motor=sw.motor.DC(resistance=0.5, inductance=5e-4, torque_constant=0.1, back_emf=0.1, inertia=1e-4),
+    control=sw.control.Sampled(law=sw.control.Cascade(), period=1e-3, delay=2e-4),
+    load=sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0),
+    sensors=sw.Sensors(
+        input_speed=sw.sensor.Noisy(law=sw.sensor.FirstOrder(time_constant=1e-3), amplitude=0.02, bandwidth=100.0, seed=7),
+        output_angle=sw.sensor.Delayed(law=sw.sensor.Encoder(counts=8192), delay=2e-3),
+    ),
+    thermal=sw.thermal.Heating(winding_capacity=100.0, winding_resistance=1.0, gear_capacity=500.0, gear_resistance=1.0),
+    meter=sw.meter.EnergyMeter(),
+)
+
+
+KEPT = os.environ["STRAINWAVE_KERNELS"]  # between runs of the tests
+
+
+@pytest.fixture(autouse=True)
+def _general_drive(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Each test begins and ends without kernels, and with nothing counted; those compiled before are there."""
+    monkeypatch.setenv("STRAINWAVE_KERNELS", KEPT)
+    for drive in (DRIVE, NESTED):
+        _core.forget_kernels(drive)
+    kernels.forget_steps()
+    yield
+    for drive in (DRIVE, NESTED):
+        _core.forget_kernels(drive)
+
+
+def results(drive: sw.Drive) -> dict[str, list[Array]]:
+    """What each job gives."""
+    asked, inertias = command(0.05), {"load.inertia": np.linspace(0.4, 0.6, 5)}
+    numbers = [0, 3, 5, 7, 8]
+    runs = [sw.simulate(drive, asked, STEP, method=method) for method in ("exponential", "rosenbrock", "moreau_jean")]
+    many = sw.simulate_many(drive, asked, inertias, STEP, record=["torque", "output_angle"])
+    recording, slopes = differentiate(drive, Excitation(asked), numbers, STEP, 1e-3)
+    return {
+        "simulate": [column for run in runs for column in run.columns.values()],
+        "simulate_adaptively": [*sw.simulate_adaptively(drive, asked, 1e-6).columns.values()],
+        "simulate_many": [*many.columns.values()],
+        "differentiate": [*recording.columns.values(), slopes],
+    }
+
+
+@pytest.mark.parametrize("drive", [DRIVE, NESTED], ids=["reference", "nested"])
+def test_a_kernel_gives_the_bits_of_the_general_drive(drive: sw.Drive) -> None:
+    general = results(drive)
+    kernel = Kernel(kernels.source(drive, kernels.JOBS), "all", in_words(drive))  # one source takes half the time of four
+    kernels.use(drive, find_kernel(kernel) or make_kernel(kernel))
+    assert _core.loaded_jobs(drive) == list(kernels.JOBS)
+    for job, found in results(drive).items():
+        assert len(found) == len(general[job])
+        assert all(np.array_equal(one, other) for one, other in zip(found, general[job], strict=True)), job
+
+
+def test_a_kernel_does_its_job_for_drives_of_the_same_laws_alone() -> None:
+    kernels.load_or_raise(DRIVE, "simulate")
+    assert _core.loaded_jobs(DRIVE.replace({"load.inertia": 0.7})) == ["simulate"]
+    assert _core.loaded_jobs(DRIVE.replace(load=sw.loads.Inertia(inertia=0.5))) == []
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
+    """Whether each load that `prepare` asks for may compile."""
+    calls: list[bool] = []
+
+    def load(drive: sw.Drive, job: kernels.Job, *, compile_it: bool) -> bool:
+        calls.append(compile_it)
+        return False
+
+    monkeypatch.setattr(kernels, "load", load)
+    return calls
+
+
+def test_short_work_asks_for_no_kernel(asked: list[bool]) -> None:
+    kernels.prepare(DRIVE, "simulate", kernels.LOOK_UP_STEPS - 1)
+    assert asked == []
+
+
+def test_longer_work_looks_a_kernel_up_once_and_long_work_compiles_it(asked: list[bool]) -> None:
+    for _ in range(3):
+        kernels.prepare(DRIVE, "simulate", kernels.LOOK_UP_STEPS)
+    assert asked == [False]
+    kernels.prepare(DRIVE, "simulate", kernels.COMPILE_STEPS)
+    assert asked == [False, True]
+
+
+def test_work_that_comes_in_many_pieces_is_long_work(asked: list[bool]) -> None:
+    pieces = 10
+    for _ in range(pieces + 1):
+        kernels.prepare(DRIVE, "differentiate", kernels.COMPILE_STEPS / pieces)
+    assert asked == [False, True, True]
+
+
+def test_jobs_and_laws_are_counted_apart(asked: list[bool]) -> None:
+    kernels.prepare(DRIVE, "simulate", 0.6 * kernels.COMPILE_STEPS)
+    kernels.prepare(DRIVE, "simulate_many", 0.6 * kernels.COMPILE_STEPS)
+    kernels.prepare(NESTED, "simulate", 0.6 * kernels.COMPILE_STEPS)
+    assert asked == [False] * 3
+
+
+def test_an_ensemble_compiles_its_kernel_and_announces_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(kernels, "COMPILE_STEPS", 1000)
+    monkeypatch.setattr(kernels, "LOOK_UP_STEPS", 100)
+    inertias = {"load.inertia": np.linspace(0.4, 0.6, 5)}
+    sw.simulate_many(DRIVE, command(0.05), inertias, STEP)
+    assert _core.loaded_jobs(DRIVE) == ["simulate_many"]
+    said = capsys.readouterr().err
+    assert said in ("", "strainwave: compiling a kernel of this drive for simulate_many, once; it takes some seconds\n")
+
+
+def test_a_file_that_cannot_be_loaded_is_done_without(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    broken = tmp_path / "kernel.so"
+    broken.write_bytes(b"no shared object")
+    monkeypatch.setattr("strainwave.native.cache.find_kernel", lambda kernel: broken)
+    with pytest.warns(KernelWarning, match="cannot be loaded"):
+        assert not kernels.load(DRIVE, "simulate", compile_it=False)
+    assert _core.loaded_jobs(DRIVE) == []
+
+
+def test_without_a_compiler_the_general_drive_goes_on_and_says_so_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("STRAINWAVE_KERNELS", str(tmp_path / "kernels"))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    monkeypatch.setattr("strainwave.native.compilers._zig", lambda: None)
+    monkeypatch.setattr(kernels, "COMPILE_STEPS", 1000)
+    monkeypatch.setattr(kernels, "LOOK_UP_STEPS", 100)
+    inertias = {"load.inertia": np.linspace(0.4, 0.6, 5)}
+    with pytest.warns(KernelWarning, match=r"no C\+\+20 compiler"):
+        first = sw.simulate_many(DRIVE, command(0.05), inertias, STEP)
+    second = sw.simulate_many(DRIVE, command(0.05), inertias, STEP)  # a second warning would be an error
+    assert np.array_equal(first["torque"], second["torque"])
