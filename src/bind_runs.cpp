@@ -239,6 +239,23 @@ nb::tuple run_derivatives(const ParameterDrive& drive, const nb::object& known, 
     return nb::make_tuple(out, slopes);
 }
 
+nb::tuple needed_torque(const ParameterDrive& drive, const Numbers& motion, const Numbers& inputs, const std::vector<int>& parameters) {
+    if (motion.ndim() != 2 || motion.shape(1) != 3 || inputs.ndim() != 2 || inputs.shape(0) != motion.shape(0) ||
+        inputs.shape(1) != std::size_t(kernel::input_count))
+        throw nb::value_error("n motions have shape (n, 3), and inputs of shape (n, 6)");
+    const Parts parts = parts_of(drive);
+    check_numbers(parts, parameters);
+    const std::size_t n = motion.shape(0);
+    Values torque = array({n}), slopes = array({parameters.size(), n});
+    const auto inverse_dynamics = kernel_with(&kernel::Table::inverse_dynamics, parts.laws).inverse_dynamics;
+    {
+        nb::gil_scoped_release free;
+        inverse_dynamics(parts.set(), motion.data(), inputs.data(), n, parameters.data(), parameters.size(), torque.data(),
+                         slopes.data());
+    }
+    return nb::make_tuple(torque, slopes);
+}
+
 /// Adds a kernel that is loaded, its table at an address, for drives as one.
 void add_kernel_at(const ParameterDrive& drive, std::size_t address) {
     add_kernel(parts_of(drive).laws, *reinterpret_cast<const kernel::Table*>(address));
@@ -255,6 +272,7 @@ nb::list loaded_jobs(const ParameterDrive& drive) {
     add(table.simulate_adaptively, "simulate_adaptively");
     add(table.run_members, "simulate_many");
     add(table.differentiate, "differentiate");
+    add(table.inverse_dynamics, "inverse_dynamics");
     return jobs;
 }
 
@@ -315,6 +333,12 @@ void bind_runs(nb::module_& core) {
     core.def("no_beginning", &no_beginning, nb::arg("known"),
              "Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.");
     core.def("instruction_set", &instruction_set, "The instruction set that kernels are compiled for.");
+    core.def("inverse_dynamics", &needed_torque, nb::arg("drive"), nb::arg("motion"), nb::arg("inputs"), nb::arg("parameters"),
+             nb::sig("def inverse_dynamics(drive: Drive, motion: " SW_ARRAY ", inputs: " SW_ARRAY
+                     ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+             "Torque [N.m] that the motor must give for each motion of the input, shape (n,), and derivatives, shape (parameters, n). "
+             "A motion is angle [rad], speed [rad/s] and acceleration [rad/s2]; the gear is as stiff as a rigid one, friction slides "
+             "steadily, and what acts is as in `inputs`, shape (n, 6).");
     core.def("instruction_sets", &instruction_sets, nb::sig("def instruction_sets() -> list[str]"),
              "Those of this machine that kernels can be compiled for, the widest first.");
     core.def("add_kernel", &add_kernel_at, nb::arg("drive"), nb::arg("address"),

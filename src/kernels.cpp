@@ -18,6 +18,7 @@ void add_kernel(const std::vector<int>& laws, const kernel::Table& table) {
         known.lanes = table.lanes;
     }
     if (table.differentiate) known.differentiate = table.differentiate;
+    if (table.inverse_dynamics) known.inverse_dynamics = table.inverse_dynamics;
 }
 
 void forget_kernels(const std::vector<int>& laws) { loaded_kernel(laws) = {}; }

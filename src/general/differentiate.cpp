@@ -9,6 +9,7 @@
 namespace strainwave::general {
 
 decltype(kernel::Table::differentiate) differentiate_entry() { return &kernel::Entries<Drives>::differentiate<slopes>; }
+decltype(kernel::Table::inverse_dynamics) inverse_dynamics_entry() { return &kernel::Entries<Drives>::inverse_dynamics<slopes>; }
 
 namespace {
 

@@ -15,7 +15,8 @@ using Entries = kernel::Entries<Drives>;
 
 // Derivatives are in a source of their own, so that both compile side by side.
 decltype(kernel::Table::differentiate) differentiate_entry();
+decltype(kernel::Table::inverse_dynamics) inverse_dynamics_entry();
 
-const kernel::Table table{1, &Entries::simulate, &Entries::simulate_adaptively, &Entries::run_members<double>, differentiate_entry()};
+const kernel::Table table{1, &Entries::simulate, &Entries::simulate_adaptively, &Entries::run_members<double>, differentiate_entry(), inverse_dynamics_entry()};
 
 }  // namespace strainwave::general

@@ -1,5 +1,6 @@
 #pragma once
 #include "differentiate.hpp"
+#include "inverse_dynamics.hpp"
 #include "members.hpp"
 #include "simulate.hpp"
 
@@ -52,6 +53,18 @@ struct Entries {
             });
         }
         return outcome;
+    }
+    template <int n>
+    static void inverse_dynamics(const Set& set, const double* motion, const double* inputs, std::size_t instants,
+                                 const int* parameters, std::size_t count, double* torque, double* slopes) {
+        Buffer<Dual<n>> numbers(std::size_t(set.count));
+        for (std::size_t first = 0; first == 0 || first < count; first += n) {
+            seed(set, parameters, count, first, numbers.data());
+            Drives::with(set, static_cast<const Dual<n>*>(numbers.data()), [&](const auto& drive) {
+                needed_torques<n>(drive, motion, inputs, instants, first, count, torque, slopes);
+                return Outcome{};
+            });
+        }
     }
 };
 

@@ -122,6 +122,10 @@ struct Table {
     /// slopes[(p * rows.count + r) * samples + k].
     Outcome (*differentiate)(const Set& set, const Beginning& beginning, const Schedule& schedule, const int* parameters,
                              std::size_t parameter_count, const Rows& rows, double* slopes, const Progress& progress);
+    /// The torque that each of n motions of the input needs, and its derivatives by numbered parameters: motion[3 i ...] are angle
+    /// [rad], speed [rad/s] and acceleration [rad/s2], inputs[input_count i ...] what acts; slopes[p * n + i].
+    void (*inverse_dynamics)(const Set& set, const double* motion, const double* inputs, std::size_t n, const int* parameters,
+                             std::size_t parameter_count, double* torque, double* slopes);
 };
 
 }  // namespace strainwave::kernel

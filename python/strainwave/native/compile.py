@@ -33,7 +33,7 @@ class CompiledJob:
     """A job of a kernel.
 
     Args:
-        job: what it does: one of simulate, simulate_adaptively, simulate_many, differentiate
+        job: what it does: one of simulate, simulate_adaptively, simulate_many, differentiate, inverse_dynamics
         seconds: time to compile and load it [s]; some milliseconds if it was in the cache
         times_faster: time of the general drive over that of the kernel, of the same short run
     """
@@ -69,7 +69,7 @@ def compile(drive: Drive | GearSet, jobs: Sequence[str] = JOBS) -> Compilation:
 
     Args:
         drive: a drive, or a gear set with one
-        jobs: which of simulate, simulate_adaptively, simulate_many and differentiate to compile
+        jobs: which of simulate, simulate_adaptively, simulate_many, differentiate and inverse_dynamics to compile
 
     Returns:
         Compilation: time to compile and ratio to the general drive, for each job
@@ -125,7 +125,10 @@ def _trial(drive: Drive, job: Job) -> Callable[[], Any]:
     if job == "simulate_many":
         values, many = np.full((1, TRIAL_MEMBERS), numbers[0]), np.empty((1, TRIAL_MEMBERS, 2))
         return partial(_core.simulate_many, drive, [0], values, None, instants, inputs, keep, [TWIST], np.inf, 1, many)
-    return partial(_core.differentiate, drive, None, instants, inputs, keep, list(range(min(_core.slopes, len(numbers)))))
+    free = list(range(min(_core.slopes, len(numbers))))
+    if job == "inverse_dynamics":
+        return partial(_core.inverse_dynamics, drive, np.ones((TRIAL_STEPS, 3)), np.ascontiguousarray(inputs[:, 0]), free)
+    return partial(_core.differentiate, drive, None, instants, inputs, keep, free)
 
 
 def _constant(level: float) -> _core.Signal:

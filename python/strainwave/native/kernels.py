@@ -15,7 +15,7 @@ from strainwave import Drive, _core, structure
 if TYPE_CHECKING:
     from strainwave.native.kernel import Kernel
 
-Job = Literal["simulate", "simulate_adaptively", "simulate_many", "differentiate"]
+Job = Literal["simulate", "simulate_adaptively", "simulate_many", "differentiate", "inverse_dynamics"]
 JOBS: tuple[Job, ...] = get_args(Job)
 LOOK_UP_STEPS = 20_000  # of the general drive: from then on a kernel that was compiled before is worth its look-up of some ms
 COMPILE_STEPS = 4_000_000  # of the general drive, some 6 to 10 s: several times what a compilation takes
@@ -28,6 +28,7 @@ ENTRIES: dict[Job, str] = {
     "simulate_adaptively": "&Entries::simulate_adaptively",
     "simulate_many": "&Entries::run_members<strainwave::Pack<lanes>>",
     "differentiate": "&Entries::differentiate<strainwave::kernel::slopes>",
+    "inverse_dynamics": "&Entries::inverse_dynamics<strainwave::kernel::slopes>",
 }
 
 _steps_taken: dict[tuple[tuple[int, ...], Job], float] = defaultdict(float)  # by the general drive in this process, by laws
@@ -38,7 +39,7 @@ def source(drive: Drive, jobs: Sequence[Job]) -> str:
     from strainwave.native.static_type import static_type
 
     # To inline each stage of a step takes minutes where bodies move within the gear, and gains nothing there, nor for slopes.
-    is_short = isinstance(drive.gear.structure, structure.Lumped) and "differentiate" not in jobs
+    is_short = isinstance(drive.gear.structure, structure.Lumped) and not {"differentiate", "inverse_dynamics"} & {*jobs}
     inlining = "SW_INLINE_STEPS" if is_short else "SW_INLINE_RATES"
     entries = "".join(f",\n    {ENTRIES[job] if job in jobs else 'nullptr'}" for job in JOBS)
     return f"""#define {inlining}

@@ -47,6 +47,9 @@ NESTED = sw.Drive(
 )
 
 
+MOTION = np.column_stack([np.linspace(-40.0, 40.0, 50), np.linspace(-100.0, 100.0, 50), np.full(50, 30.0)])
+ACTING = np.tile([0.0, 0.0, 2.0, 0.0, 300.0, 0.0], (50, 1))  # command, input of the load and temperature, with their rates
+
 KEPT = os.environ["STRAINWAVE_KERNELS"]  # between runs of the tests
 
 
@@ -74,6 +77,7 @@ def results(drive: sw.Drive) -> dict[str, list[Array]]:
         "simulate_adaptively": [*sw.simulate_adaptively(drive, asked, 1e-6).columns.values()],
         "simulate_many": [*many.columns.values()],
         "differentiate": [*recording.columns.values(), slopes],
+        "inverse_dynamics": [*_core.inverse_dynamics(drive, MOTION, ACTING, numbers)],
     }
 
 
