@@ -140,6 +140,12 @@ Slots packed(const X& x) {
     }
 }
 
+/// Slots of the law within a law. A function of its own, because Clang looks for that law wherever a generic lambda names it.
+template <class Law>
+void add_inner_places(const Law& law, Places& found) {
+    law.law.places(found);
+}
+
 /// Which slots the numbers of a state or an output take, in order. Of a law within a law those that it has.
 template <class S, class X, class Law>
 void add_places(const Law& law, Places& found, int first = 0) {
@@ -147,7 +153,7 @@ void add_places(const Law& law, Places& found, int first = 0) {
     X::fields(names, [&]<class T>(const T& member, const Field&) {
         if constexpr (is_storage<T>) {
             Places within;
-            law.law.places(within);
+            add_inner_places(law, within);
             for (int i = 0; i < within.count; ++i) found.add(first + within.slot[i]);
             first += T::capacity;
         } else if constexpr (Described<T>) {
@@ -169,7 +175,7 @@ void add_state_places(const Law& law, Places& found) {
         add_places<S, X>(law, found);
 }
 
-#define SW_GENERAL(Name)           \
+#define SW_GENERAL(Name)          \
     template struct Name<double>; \
     template struct Name<Slope>;
 

@@ -7,71 +7,87 @@
 
 namespace strainwave::general {
 
-/// Stands for whatever sensor another leaves room for.
-struct SensorOfItsRoom {};
+/// Stands for whatever sensor another holds.
+struct SensorWithin {};
 
 namespace detail {
-template <template <class, class> class Outer, class S, class Law>
-struct Around<Outer<S, Law>, SensorOfItsRoom> {
-    using type = Outer<S, SensorWithin<S, Outer<S, Law>::room>>;
-};
-}  // namespace detail
 
-template <int room>
-struct SensorList;
+template <class L, class Law>
+inline constexpr bool lists = false;
+template <template <class...> class... Each, template <class, class> class Outer, class S, class Law>
+inline constexpr bool lists<List<Each...>, Outer<S, Law>> = (std::is_same_v<Each<S>, Outer<S, Law>> || ...);
+
+template <template <class, class> class Outer, class S, class Law>
+struct Around<Outer<S, Law>, SensorWithin> {
+    static constexpr SensorList before = lists<sensor::Late, Outer<S, Law>>   ? plain_sensor
+                                         : lists<sensor::Loud, Outer<S, Law>> ? late_sensor
+                                                                              : loud_sensor;
+    using type = Outer<S, SensorOf<S, before>>;
+};
+
+template <SensorList list>
+struct LawsOf;
 template <>
-struct SensorList<2> {
+struct LawsOf<plain_sensor> {
     using type = sensor::Plain;
 };
 template <>
-struct SensorList<6> {
+struct LawsOf<late_sensor> {
     using type = sensor::Late;
 };
 template <>
-struct SensorList<7> {
+struct LawsOf<loud_sensor> {
+    using type = sensor::Loud;
+};
+template <>
+struct LawsOf<any_sensor> {
     using type = sensor::Models;
 };
-template <class S, int room>
-using SensorLaws = Laws<S, typename SensorList<room>::type, SensorOfItsRoom>;
 
-template <class S, int room>
-void SensorWithin<S, room>::read(kernel::Reader<S>& from) {
-    SensorLaws<S, room>::read(*this, from);
+}  // namespace detail
+
+template <class S, SensorList list>
+using SensorLaws = Laws<S, typename detail::LawsOf<list>::type, SensorWithin>;
+
+template <class S, SensorList list>
+void SensorOf<S, list>::read(kernel::Reader<S>& from) {
+    SensorLaws<S, list>::read(*this, from);
 }
-template <class S, int room>
-void SensorWithin<S, room>::places(Places& found) const {
-    SensorLaws<S, room>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
+template <class S, SensorList list>
+void SensorOf<S, list>::places(Places& found) const {
+    SensorLaws<S, list>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
 }
-template <class S, int room>
-auto SensorWithin<S, room>::initial_state() const -> State {
-    return SensorLaws<S, room>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
+template <class S, SensorList list>
+auto SensorOf<S, list>::initial_state() const -> State {
+    return SensorLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(strainwave::initial_state(law)); });
 }
-template <class S, int room>
-S SensorWithin<S, room>::shown(const State& x, const S& value) const {
-    return SensorLaws<S, room>::visit(*this, [&](const auto& law) { return law.shown(own<S>(law, x), value); });
+template <class S, SensorList list>
+S SensorOf<S, list>::shown(const State& x, const S& value) const {
+    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return law.shown(own<S>(law, x), value); });
 }
-template <class S, int room>
-auto SensorWithin<S, room>::rate(const State& x, const S& value) const -> State {
-    return SensorLaws<S, room>::visit(*this, [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), value)); });
+template <class S, SensorList list>
+auto SensorOf<S, list>::rate(const State& x, const S& value) const -> State {
+    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), value)); });
 }
-template <class S, int room>
-auto SensorWithin<S, room>::relaxation_rate() const -> State {
-    return SensorLaws<S, room>::visit(*this, [](const auto& law) { return packed<State>(law.relaxation_rate()); });
+template <class S, SensorList list>
+auto SensorOf<S, list>::relaxation_rate() const -> State {
+    return SensorLaws<S, list>::visit(*this, [](const auto& law) { return packed<State>(law.relaxation_rate()); });
 }
-template <class S, int room>
-auto SensorWithin<S, room>::settled(const S& value) const -> State {
-    return SensorLaws<S, room>::visit(*this, [&](const auto& law) { return packed<State>(law.settled(value)); });
+template <class S, SensorList list>
+auto SensorOf<S, list>::settled(const S& value) const -> State {
+    return SensorLaws<S, list>::visit(*this, [&](const auto& law) { return packed<State>(law.settled(value)); });
 }
-template <class S, int room>
-S SensorWithin<S, room>::fastest() const {
-    return SensorLaws<S, room>::visit(*this, [](const auto& law) { return strainwave::fastest<S>(law); });
+template <class S, SensorList list>
+S SensorOf<S, list>::fastest() const {
+    return SensorLaws<S, list>::visit(*this, [](const auto& law) { return strainwave::fastest<S>(law); });
 }
 
-#define SW_WITHIN(room)                           \
-    template struct SensorWithin<double, room>; \
-    template struct SensorWithin<Slope, room>;
-SW_WITHIN(2)
-SW_WITHIN(6)
-SW_WITHIN(7)
+#define SW_SENSORS(list)                    \
+    template struct SensorOf<double, list>; \
+    template struct SensorOf<Slope, list>;
+SW_SENSORS(plain_sensor)
+SW_SENSORS(late_sensor)
+SW_SENSORS(loud_sensor)
+SW_SENSORS(any_sensor)
 
 }  // namespace strainwave::general

@@ -3,10 +3,15 @@
 
 namespace strainwave::general {
 
-/// A sensor by any law whose state has at most `room` numbers: a sensor holds one of fewer.
-template <class S, int room>
-struct SensorWithin : Part {
-    using State = Storage<S, room, 0>;  // most sensors have no state, so none is carried along for them
+/// Lists of sensors, each of which may hold one of the list before, and the numbers of a state that its laws have at most.
+enum SensorList { plain_sensor, late_sensor, loud_sensor, any_sensor };
+inline constexpr int sensor_slots[]{2, 6, 7, 7};
+
+/// A sensor by any law of a list.
+template <class S, SensorList list>
+struct SensorOf : Part {
+    // Most sensors have no state, so none is carried along for them. Within another, the slots are some of its own.
+    using State = Storage<S, sensor_slots[list], (list == any_sensor ? 0 : sensor_slots[list])>;
 
     void read(kernel::Reader<S>& from);
     void places(Places& found) const;
@@ -19,6 +24,6 @@ struct SensorWithin : Part {
     S fastest() const;
 };
 template <class S>
-using Sensor = SensorWithin<S, 7>;
+using Sensor = SensorOf<S, any_sensor>;
 
 }  // namespace strainwave::general

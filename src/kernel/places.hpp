@@ -3,8 +3,8 @@
 
 #include <type_traits>
 
-/// The numbers of a state, and of what a drive shows of itself, one after the other. A part that chooses its law at run time has room for
-/// any; its law uses some of that.
+/// The numbers of a state, and of what a drive shows of itself, one after the other. A part that chooses its law at run time has
+/// room for any; its law uses some of that.
 namespace strainwave::kernel {
 
 /// Indices of slots of a part, in order.
@@ -66,10 +66,6 @@ private:
 template <class Drive, class State, class Number>
 void each_number(const Drive& drive, State& state, const Number& number) {
     State::fields(state, StateWalk<Drive, Number>{drive, number});
-}
-template <class Drive, class Number>
-void each_number(const Drive& drive, const typename Drive::State& state, const Number& number) {
-    Drive::State::fields(state, StateWalk<Drive, Number>{drive, number});
 }
 
 /// The state of a drive that has these numbers.

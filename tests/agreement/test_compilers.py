@@ -9,23 +9,19 @@ from pathlib import Path
 
 import nanobind
 import pytest
+import strainwave as sw
+from strainwave.native import kernel, kernels
 
 from tests.cplusplus import HEADERS, INCLUDE, ROOT, STRICT, checker, compilation, compiled_before, compiler, drives, zig
 
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
 
-SOURCES = sorted(path.name for path in (ROOT / "src").glob("*.cpp"))
+SOURCES = sorted(path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src").rglob("*.cpp"))
 # Headers of other projects, whose warnings are no errors here.
 FOREIGN = (f"-isystem{nanobind.include_dir()}", f"-isystem{sysconfig.get_path('include')}")
 MATH = "strainwave/math.hpp"
-MODULE = ('-DSW_MODULE="_time"', "-DSW_INITIALISE=PyInit__time", '-DSW_INSTRUCTION_SETS=",baseline,"')
-
-RUN_TIME_CHOICE = """
-#include <strainwave/any.hpp>
-#include <strainwave/integrate.hpp>
-#include <strainwave/scalar/dual.hpp>
-#include <strainwave/scalar/pack.hpp>
-"""
+SCALARS = ("double", "float", "strainwave::Dual<4>", "strainwave::Pack<8>")
+SCALAR_HEADERS = "#include <strainwave/scalar/dual.hpp>\n#include <strainwave/scalar/pack.hpp>\n"
 
 
 def stepped(scalar: str, drive: str) -> str:
@@ -65,22 +61,22 @@ def alone(headers: set[str]) -> dict[str, str]:
 
 @both
 def test_every_model_steps_in_a_drive_of_static_type(name: str, tmp_path: Path) -> None:
-    steps = [stepped(scalar, drive) for scalar in ("double", "float") for drive in drives(scalar)]
-    assert compilation(checker(name), tmp_path, {"static.cpp": HEADERS + "".join(steps)}) == (0, "")
+    steps = [stepped(scalar, drive) for scalar in SCALARS for drive in drives(scalar)]
+    assert compilation(checker(name), tmp_path, {"static.cpp": SCALAR_HEADERS + HEADERS + "".join(steps)}) == (0, "")
 
 
 @both
-def test_models_chosen_at_run_time_step_in_every_scalar(name: str, tmp_path: Path) -> None:
-    scalars = ("double", "strainwave::Dual<4>", "strainwave::Pack<8>")
-    steps = [stepped(scalar, f"strainwave::AnyDrive<{scalar}>") for scalar in scalars]
-    assert compilation(checker(name), tmp_path, {"any.cpp": RUN_TIME_CHOICE + "".join(steps)}) == (0, "")
+def test_a_kernel_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
+    """Users see none of its warnings."""
+    source = {"kernel.cpp": kernels.source(sw.Drive(), kernels.JOBS)}
+    assert compilation(checker(name), tmp_path, source, f"-I{kernel.INCLUDE}", "-Wno-unknown-pragmas") == (0, "")
 
 
 @pytest.mark.parametrize("source", SOURCES)
 def test_clang_compiles_every_source_of_the_extension(source: str, tmp_path: Path) -> None:
     """With the warnings with which g++ compiles them whenever the package is built for the tests."""
     including = {"source.cpp": f'#include "{ROOT / "src" / source}"\n'}
-    assert compilation(checker("clang++"), tmp_path, including, *FOREIGN, *MODULE) == (0, "")
+    assert compilation(checker("clang++"), tmp_path, including, *FOREIGN) == (0, "")
 
 
 def test_a_pack_steps_in_the_vector_registers_of_neon(tmp_path: Path) -> None:

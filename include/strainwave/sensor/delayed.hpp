@@ -2,14 +2,12 @@
 #include <strainwave/compiled.hpp>
 #include <strainwave/fastest.hpp>
 #include <strainwave/sensor/ideal.hpp>
-#include <strainwave/sensor/nested.hpp>
 
 namespace strainwave::sensor {
 
 template <class S, class Law_ = Ideal<S>>
 struct Delayed {
     using Law = Law_;
-    static constexpr int room = 2;  ///< for the state of what it holds: at most that of a SecondOrder
     static constexpr int sections = 4;
 
     Law law{};
@@ -40,12 +38,12 @@ struct Delayed {
 
     struct State {
         Array<S, sections> section{};
-        Numbers<S, room> own{};
+        typename Law::State own{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_FIELD(m, section, "1", "What is under way, in the unit of what it measures"));
-            visit(SW_FIELD(m, own, "1", "State of the sensor without delay"));
+            visit(SW_PART(m, own, "State of the sensor without delay"));
         }
     };
 
@@ -53,14 +51,13 @@ struct Delayed {
 
     constexpr State initial_state() const { return {}; }
     constexpr S shown(const State& x, const S& value) const {
-        S passing = law.shown(state(law, x.own), value);
+        S passing = law.shown(x.own, value);
         for (int i = 0; i < sections; ++i) passing = S(2.0) * x.section[i] - passing;
         return passing;
     }
     constexpr State rate(const State& x, const S& value) const {
-        const typename Law::State own = state(law, x.own);
-        State rate{{}, numbers<S, room>(law.rate(own, value))};
-        S passing = law.shown(own, value);
+        State rate{{}, law.rate(x.own, value)};
+        S passing = law.shown(x.own, value);
         for (int i = 0; i < sections; ++i) {
             rate.section[i] = (passing - x.section[i]) * per_second();
             passing = S(2.0) * x.section[i] - passing;
@@ -69,13 +66,12 @@ struct Delayed {
     }
     constexpr State relaxation_rate() const {
         // None of the sections: each follows another, so that a step which is exact for one alone is not for their chain.
-        return {{}, numbers<S, room>(law.relaxation_rate())};
+        return {{}, law.relaxation_rate()};
     }
     constexpr S fastest() const { return max(strainwave::fastest<S>(law), per_second()); }
     constexpr State settled(const S& value) const {
-        const typename Law::State own = law.settled(value);
-        State x{{}, numbers<S, room>(own)};
-        for (int i = 0; i < sections; ++i) x.section[i] = law.shown(own, value);
+        State x{{}, law.settled(value)};
+        for (int i = 0; i < sections; ++i) x.section[i] = law.shown(x.own, value);
         return x;
     }
 

@@ -3,14 +3,12 @@
 #include <strainwave/fastest.hpp>
 #include <strainwave/random.hpp>
 #include <strainwave/sensor/ideal.hpp>
-#include <strainwave/sensor/nested.hpp>
 
 namespace strainwave::sensor {
 
 template <class S, class Law_ = Ideal<S>>
 struct Noisy {
     using Law = Law_;
-    static constexpr int room = 6;  ///< for the state of what it holds: at most that of a Delayed around a SecondOrder
 
     Law law{};
     S amplitude{0.0};
@@ -44,12 +42,12 @@ struct Noisy {
 
     struct State {
         S clock{0.0};
-        Numbers<S, room> own{};
+        typename Law::State own{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
             visit(SW_FIELD(m, clock, "s", "Time since the start"));
-            visit(SW_FIELD(m, own, "1", "State of the sensor without noise"));
+            visit(SW_PART(m, own, "State of the sensor without noise"));
         }
     };
 
@@ -62,14 +60,10 @@ struct Noisy {
         Spectrum<S> spectrum{};
 
         constexpr State initial_state() const { return {}; }
-        constexpr S shown(const State& x, const S& value) const {
-            return law.shown(state(law, x.own), value) + weight * spectrum.sum(x.clock);
-        }
-        constexpr State rate(const State& x, const S& value) const {
-            return {S(1.0), numbers<S, room>(law.rate(state(law, x.own), value))};
-        }
-        constexpr State relaxation_rate() const { return {S(0.0), numbers<S, room>(law.relaxation_rate())}; }
-        constexpr State settled(const S& value) const { return {S(0.0), numbers<S, room>(law.settled(value))}; }
+        constexpr S shown(const State& x, const S& value) const { return law.shown(x.own, value) + weight * spectrum.sum(x.clock); }
+        constexpr State rate(const State& x, const S& value) const { return {S(1.0), law.rate(x.own, value)}; }
+        constexpr State relaxation_rate() const { return {S(0.0), law.relaxation_rate()}; }
+        constexpr State settled(const S& value) const { return {S(0.0), law.settled(value)}; }
         constexpr S fastest() const { return strainwave::fastest<S>(law); }
     };
     constexpr Compiled compile() const {

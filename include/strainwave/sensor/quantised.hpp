@@ -2,14 +2,12 @@
 #include <strainwave/compiled.hpp>
 #include <strainwave/fastest.hpp>
 #include <strainwave/sensor/ideal.hpp>
-#include <strainwave/sensor/nested.hpp>
 
 namespace strainwave::sensor {
 
 template <class S, class Law_ = Ideal<S>>
 struct Quantised {
     using Law = Law_;
-    static constexpr int room = 7;  ///< for the state of what it holds: at most that of a Noisy around that
 
     Law law{};
     S resolution{1e-3};
@@ -37,11 +35,11 @@ struct Quantised {
     }
 
     struct State {
-        Numbers<S, room> own{};
+        typename Law::State own{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
-            visit(SW_FIELD(m, own, "1", "State of the sensor without steps"));
+            visit(SW_PART(m, own, "State of the sensor without steps"));
         }
     };
 
@@ -49,15 +47,15 @@ struct Quantised {
 
     constexpr State initial_state() const { return {}; }
     constexpr S shown(const State& x, const S& value) const {
-        const S exact = law.shown(state(law, x.own), value), read = resolution * rint(exact / resolution);
+        const S exact = law.shown(x.own, value), read = resolution * rint(exact / resolution);
         if constexpr (differentiates<S>)
             return exact + detached(read - exact);
         else
             return read;
     }
-    constexpr State rate(const State& x, const S& value) const { return {numbers<S, room>(law.rate(state(law, x.own), value))}; }
-    constexpr State relaxation_rate() const { return {numbers<S, room>(law.relaxation_rate())}; }
-    constexpr State settled(const S& value) const { return {numbers<S, room>(law.settled(value))}; }
+    constexpr State rate(const State& x, const S& value) const { return {law.rate(x.own, value)}; }
+    constexpr State relaxation_rate() const { return {law.relaxation_rate()}; }
+    constexpr State settled(const S& value) const { return {law.settled(value)}; }
     constexpr S fastest() const { return strainwave::fastest<S>(law); }
 };
 
