@@ -116,6 +116,10 @@ class Excitation:
 
     def first(self) -> Array:
         """Command, input of the load and temperature, each with its rate, at t = 0."""
+        return self._first
+
+    @cached_property
+    def _first(self) -> Array:
         start: Array = _core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0]
         return start
 

@@ -437,8 +437,8 @@ def check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, w
 
 def _finite(end: State, what_to_do: str) -> State:
     """A state at the end of a run; what nobody recorded, as the state of a sensor, may have diverged alone."""
-    wrong = [name for name, number in zip(end, end.numbers, strict=True) if not np.isfinite(number)]
-    if wrong:
+    if not np.isfinite(end.numbers).all():
+        wrong = [name for name, number in zip(end, end.numbers, strict=True) if not np.isfinite(number)]
         raise FloatingPointError(f"the simulation diverged ({listed(wrong)} at the end); {what_to_do}")
     return end
 
