@@ -75,8 +75,7 @@ nb::tuple rate_derivatives(const ParameterDrive& drive, const Numbers& numbers, 
     const Layout& layout = layout_of(drive, parts.laws);
     const std::size_t rates = layout.continuous, outputs = layout.outputs.size();
     Values out = array({rates + outputs}), slopes = array({rates + kernel::input_count, rates + outputs});
-    general::differentiate_rates(parts.set(), state_from(layout, numbers), input_of(u), rates, outputs, out.data(),
-                                 slopes.data());
+    general::differentiate_rates(parts.set(), state_from(layout, numbers), input_of(u), rates, outputs, out.data(), slopes.data());
     return nb::make_tuple(out, slopes);
 }
 
@@ -238,7 +237,9 @@ void bind_drives(nb::module_& core) {
         return nb::module_::import_("strainwave.simulation.state").attr("State").attr("of")(self, numbers);
     };
     verb(drive, "rest", {}, "strainwave.simulation.state.State", "The state at rest, untwisted and without history, input angle 0.",
-         [as_state](const ParameterDrive& self, const Call&) { return as_state(self, array_of(general::rest(parts_of(self).set()))); });
+         [as_state](const ParameterDrive& self, const Call&) {
+             return as_state(self, array_of(general::rest(parts_of(self).set())));
+         });
     verb(
         drive, "step",
         {{"state", "strainwave.simulation.state.State"},
@@ -311,8 +312,8 @@ void bind_drives(nb::module_& core) {
         "The fastest that fixed steps must follow at twists up to `twist` [rad], as an angular frequency [rad/s], where a run of "
         "this `temperature` [K] begins: the vibration of gear and load, the decay of speeds, sensors and controller.");
     core.def(
-        "bristle_frequency", [](const ParameterDrive& drive) { return general::bristle_frequency(parts_of(drive).set()); }, nb::arg("drive"),
-        nb::sig("def bristle_frequency(drive: Drive) -> float"),
+        "bristle_frequency", [](const ParameterDrive& drive) { return general::bristle_frequency(parts_of(drive).set()); },
+        nb::arg("drive"), nb::sig("def bristle_frequency(drive: Drive) -> float"),
         "The fastest angular frequency [rad/s] at which a shaft vibrates on the bristles that hold it.");
     core.def("now", &now, nb::arg("drive"), nb::arg("state"), nb::arg("inputs"),
              nb::sig("def now(drive: Drive, state: " SW_ARRAY ", inputs: " SW_ARRAY ") -> " SW_ARRAY),
@@ -401,8 +402,7 @@ void bind_drives(nb::module_& core) {
     core.def("parameters", &parameters_in, nb::arg("model"),
              nb::sig("def parameters(model: object) -> list[tuple[str, float, str, str, float, float]]"),
              "Every number of a set of parameters: path, value, unit, doc, lower and upper limit.");
-    core.def("parts", &parts_in, nb::arg("drive"),
-             nb::sig("def parts(drive: Drive) -> tuple[list[int], list[int], " SW_ARRAY "]"),
+    core.def("parts", &parts_in, nb::arg("drive"), nb::sig("def parts(drive: Drive) -> tuple[list[int], list[int], " SW_ARRAY "]"),
              "The laws that a drive has chosen, its other whole numbers (counts, teeth, options), and its numbers.");
     core.def("with_numbers", &model_with_numbers, nb::arg("model"), nb::arg("numbers"),
              nb::sig("def with_numbers(model: typing.Any, numbers: collections.abc.Sequence[float]) -> typing.Any"),

@@ -24,7 +24,7 @@ Values evaluated(const Signal& signal, const Numbers& instants, bool before) {
     for (std::size_t axis = 0; axis < instants.ndim(); ++axis) shape.push_back(instants.shape(axis));
     Values out = array(shape);
     evaluate(signal, instants.data(), instants.size(), before ? Side::before : Side::after, out.data(),
-                       out.data() + instants.size());
+             out.data() + instants.size());
     return out;
 }
 

@@ -23,7 +23,8 @@ struct Request {
 
     Request(const Numbers& instants, const Numbers& inputs, const Flags& keep)
         : schedule{instants.data(), inputs.data(), keep.data(), keep.size()} {
-        if (schedule.steps == 0 || instants.size() != schedule.steps + 1 || inputs.size() != 3 * kernel::input_count * schedule.steps)
+        if (schedule.steps == 0 || instants.size() != schedule.steps + 1 ||
+            inputs.size() != 3 * kernel::input_count * schedule.steps)
             throw nb::value_error("a schedule of n > 0 steps has n + 1 instants, inputs of shape (n, 3, 6) and n flags");
         for (std::size_t i = 0; i < schedule.steps; ++i) kept += keep.data()[i] != 0;
     }
@@ -126,8 +127,8 @@ nb::tuple run_adaptively(const ParameterDrive& drive, const Numbers& start, cons
     const Parts parts = parts_of(drive);
     const auto simulate = kernel_with(&kernel::Table::simulate_adaptively, parts.laws).simulate_adaptively;
     Asked asked{{{&command, &load, &temperature}}, {}};
-    const kernel::AdaptiveCourse course{{&Asked::at, &asked}, ends.data(),    ends.size(),    {relative, absolute},
-                                        max_steps,            samples.data(), samples.size()};
+    const kernel::AdaptiveCourse course{{&Asked::at, &asked}, ends.data(),   ends.size(), {relative, absolute}, max_steps,
+                                        samples.data(),       samples.size()};
     general::State state = state_from(drive, start);
     Pausing pausing(progress);
     const kernel::Outcome outcome = [&] {
@@ -195,8 +196,16 @@ nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers,
     const Start start = start_from(known, variation.members);
     if (out.shape(0) != recorded.size() || out.shape(1) != variation.members || out.shape(2) != request.kept + 1)
         throw nb::value_error("outputs of m members have shape (recorded, m, 1 + kept)");
-    const Ensemble ensemble{drive,    description_of<ParameterDrive>(), variation, start,           request.schedule, recorded,
-                            max_rate, out.data(),                       request.kept + 1, place_of_error(layout_of(drive, parts.laws))};
+    const Ensemble ensemble{drive,
+                            description_of<ParameterDrive>(),
+                            variation,
+                            start,
+                            request.schedule,
+                            recorded,
+                            max_rate,
+                            out.data(),
+                            request.kept + 1,
+                            place_of_error(layout_of(drive, parts.laws))};
     const kernel::Table& kernel = kernel_with(&kernel::Table::run_members, parts.laws);
     const Pausing pausing(progress);
     const std::vector<MemberResult> results = [&] {
@@ -233,13 +242,14 @@ nb::tuple run_derivatives(const ParameterDrive& drive, const nb::object& known, 
     Pausing pausing(progress);
     pausing.check([&] {
         nb::gil_scoped_release free;
-        return differentiate(parts.set(), {start.at_rest, start.of(0)}, request.schedule, parameters.data(), parameters.size(), rows,
-                             slopes.data(), pausing.progress());
+        return differentiate(parts.set(), {start.at_rest, start.of(0)}, request.schedule, parameters.data(), parameters.size(),
+                             rows, slopes.data(), pausing.progress());
     }());
     return nb::make_tuple(out, slopes);
 }
 
-nb::tuple needed_torque(const ParameterDrive& drive, const Numbers& motion, const Numbers& inputs, const std::vector<int>& parameters) {
+nb::tuple needed_torque(const ParameterDrive& drive, const Numbers& motion, const Numbers& inputs,
+                        const std::vector<int>& parameters) {
     if (motion.ndim() != 2 || motion.shape(1) != 3 || inputs.ndim() != 2 || inputs.shape(0) != motion.shape(0) ||
         inputs.shape(1) != std::size_t(kernel::input_count))
         throw nb::value_error("n motions have shape (n, 3), and inputs of shape (n, 6)");
@@ -333,12 +343,13 @@ void bind_runs(nb::module_& core) {
     core.def("no_beginning", &no_beginning, nb::arg("known"),
              "Says that a run cannot begin, where quantities are known at the start or only the motion that the load prescribes.");
     core.def("instruction_set", &instruction_set, "The instruction set that kernels are compiled for.");
-    core.def("inverse_dynamics", &needed_torque, nb::arg("drive"), nb::arg("motion"), nb::arg("inputs"), nb::arg("parameters"),
-             nb::sig("def inverse_dynamics(drive: Drive, motion: " SW_ARRAY ", inputs: " SW_ARRAY
-                     ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
-             "Torque [N.m] that the motor must give for each motion of the input, shape (n,), and derivatives, shape (parameters, n). "
-             "A motion is angle [rad], speed [rad/s] and acceleration [rad/s2]; the gear is as stiff as a rigid one, friction slides "
-             "steadily, and what acts is as in `inputs`, shape (n, 6).");
+    core.def(
+        "inverse_dynamics", &needed_torque, nb::arg("drive"), nb::arg("motion"), nb::arg("inputs"), nb::arg("parameters"),
+        nb::sig("def inverse_dynamics(drive: Drive, motion: " SW_ARRAY ", inputs: " SW_ARRAY
+                ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
+        "Torque [N.m] that the motor must give for each motion of the input, shape (n,), and derivatives, shape (parameters, n). "
+        "A motion is angle [rad], speed [rad/s] and acceleration [rad/s2]; the gear is as stiff as a rigid one, friction slides "
+        "steadily, and what acts is as in `inputs`, shape (n, 6).");
     core.def("instruction_sets", &instruction_sets, nb::sig("def instruction_sets() -> list[str]"),
              "Those of this machine that kernels can be compiled for, the widest first.");
     core.def("add_kernel", &add_kernel_at, nb::arg("drive"), nb::arg("address"),

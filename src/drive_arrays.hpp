@@ -23,7 +23,9 @@ inline general::State state_from(const Layout& layout, const Numbers& numbers) {
     if (numbers.size() != layout.state.size()) throw nb::value_error("a state has as many numbers as its drive names");
     return {numbers.data(), numbers.data() + numbers.size()};
 }
-inline general::State state_from(const ParameterDrive& drive, const Numbers& numbers) { return state_from(layout_of(drive), numbers); }
+inline general::State state_from(const ParameterDrive& drive, const Numbers& numbers) {
+    return state_from(layout_of(drive), numbers);
+}
 inline Values array_of(const std::vector<double>& numbers) {
     Values out = array({numbers.size()});
     std::copy(numbers.begin(), numbers.end(), out.data());

@@ -73,8 +73,7 @@ private:
         const kernel::Set set{parts.laws.data(), parts.shape.data(), numbers.data(), int(numbers.size())};
         general::State state = ensemble.start.at_rest
                                    ? general::rest(set)
-                                   : general::started(set, ensemble.start.of(member),
-                                                      shaped<Input<double>>(first_input()));
+                                   : general::started(set, ensemble.start.of(member), shaped<Input<double>>(first_input()));
         if (!std::isfinite(state[error_place])) state.clear();
         return state;
     }
@@ -98,7 +97,8 @@ private:
     }
 
     kernel::Outcome run(std::size_t first, std::size_t count, const std::vector<double>& starts) {
-        const kernel::Progress progress{[](void* self, std::size_t) { return bool(static_cast<EnsembleRun*>(self)->stopping); }, this};
+        const kernel::Progress progress{[](void* self, std::size_t) { return bool(static_cast<EnsembleRun*>(self)->stopping); },
+                                        this};
         std::vector<kernel::Tally> tallies(count);
         const kernel::Outcome outcome =
             kernel.run_members(parts.set(), ensemble.variation, first, count, starts.data(), starts.size() / count,

@@ -48,8 +48,8 @@ struct Ensemble {
 };
 
 /// Runs members side by side, as many to a pack as the kernel takes and packs on several threads. A member that ends early leaves
-/// not-a-number behind. Of a member whose gear vibrates faster than `max_rate` [rad/s] at rest the twist is 0. Calls `pause` with the
-/// number of steps done, on this thread; it may throw.
+/// not-a-number behind. Of a member whose gear vibrates faster than `max_rate` [rad/s] at rest the twist is 0. Calls `pause` with
+/// the number of steps done, on this thread; it may throw.
 std::vector<MemberResult> run_ensemble(const kernel::Table& kernel, const Ensemble& ensemble, int threads,
                                        const std::function<void(std::size_t)>& pause);
 

@@ -118,8 +118,8 @@ struct Path {
     std::string text() const { return outer ? outer->text() + outer->name + "." : ""; }
 };
 
-/// Calls visit(path, member, where it lies) for each member of a model and of its parts that is none itself, and law(index) for each
-/// law chosen, in order.
+/// Calls visit(path, member, where it lies) for each member of a model and of its parts that is none itself, and law(index) for
+/// each law chosen, in order.
 template <class Visit, class Law>
 void walk(const Description& description, const void* model, const Visit& visit, const Law& law, const Path* outer = nullptr) {
     for (const Member& member : description.members) {
@@ -135,9 +135,7 @@ void walk(const Description& description, const void* model, const Visit& visit,
 }
 constexpr auto any_law = [](int) {};
 
-double number_of(const Member& member, const void* at, int element) {
-    return *member.type->number(const_cast<void*>(at), element);
-}
+double number_of(const Member& member, const void* at, int element) { return *member.type->number(const_cast<void*>(at), element); }
 
 }  // namespace
 

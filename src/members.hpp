@@ -191,8 +191,8 @@ struct MemberType {
     void (*read)(void* member, nb::handle value, const Reader& reader, const Field& field);
     std::string (*python_type)(bool argument);
     nb::object (*options)();
-    PartOf (*part)(const void* member);           ///< null if it is none
-    int (*count)(const void* member);             ///< of its numbers; of one that counts or is listed, what it is
+    PartOf (*part)(const void* member);            ///< null if it is none
+    int (*count)(const void* member);              ///< of its numbers; of one that counts or is listed, what it is
     double* (*number)(void* member, int element);  ///< null if it has none
 };
 
@@ -202,9 +202,7 @@ template <class T>
 PartOf part_in(const void* member) {
     const T& part = *static_cast<const T*>(member);
     if constexpr (is_choice<T>)
-        return part.visit([&]<class Law>(const Law& law) {
-            return PartOf{&description_of<Law>(), &law, int(part.model.index())};
-        });
+        return part.visit([&]<class Law>(const Law& law) { return PartOf{&description_of<Law>(), &law, int(part.model.index())}; });
     else
         return {&description_of<T>(), member, -1};
 }

@@ -31,8 +31,7 @@ using Number = std::function<void(const std::string& name, int element, const Fi
 template <class X, class Law>
 void each_name(const Law& law, const std::string& before, const Number& number) {
     if constexpr (is_of_chosen<X>) {  // a law that varies another has its state
-        law.law.visit(
-            [&]<class Inner>(const Inner& inner) { each_name<decltype(state_of_law<Inner>())>(inner, before, number); });
+        law.law.visit([&]<class Inner>(const Inner& inner) { each_name<decltype(state_of_law<Inner>())>(inner, before, number); });
     } else {
         X names{};
         X::fields(names, [&]<class T>(const T& member, const Field& field) {

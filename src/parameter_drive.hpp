@@ -84,7 +84,8 @@ using ParameterGear =
          AnyOf<double, friction::Models>, AnyOf<double, friction::Models>, AnyOf<double, softening::Models>,
          AnyOf<double, structure::Models>, AnyOf<double, variation::Models>>;
 using ParameterSensors = Sensors<double, AnyOf<double, sensor::Models>>;
-using ParameterDrive = Drive<double, AnyOf<double, control::Models>, AnyOf<double, motor::Models>, ParameterGear,
-                             AnyOf<double, load::Models>, ParameterSensors, AnyOf<double, thermal::Models>, AnyOf<double, meter::Models>>;
+using ParameterDrive =
+    Drive<double, AnyOf<double, control::Models>, AnyOf<double, motor::Models>, ParameterGear, AnyOf<double, load::Models>,
+          ParameterSensors, AnyOf<double, thermal::Models>, AnyOf<double, meter::Models>>;
 
 }  // namespace strainwave

@@ -132,13 +132,12 @@ void error_verbs(const BoundLaw& of) {
                    [](const Part& law, double x) { return law.at(turned(x)).value; });
     function<Part>(of, "slope", "angle", "Its derivative [rad/rad] by the input angle.",
                    [](const Part& law, double x) { return law.at(turned(x)).slope; });
-    define_verb(
-        of.type, of.description, "harmonics", {{"highest", "int", "8"}},
-        python_type<kinematic_error::Fourier<double>>(false),
-        "Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.",
-        [of](const void* model, const Call& call) {
-            return nb::cast(harmonics_of(alone<Part>(of, model).part, call.whole("highest")));
-        });
+    define_verb(of.type, of.description, "harmonics", {{"highest", "int", "8"}},
+                python_type<kinematic_error::Fourier<double>>(false),
+                "Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.",
+                [of](const void* model, const Call& call) {
+                    return nb::cast(harmonics_of(alone<Part>(of, model).part, call.whole("highest")));
+                });
 }
 
 void variation_verbs(const BoundLaw& of) {
@@ -153,14 +152,11 @@ namespace {
 template <class F>
 void noise_verb(const BoundLaw& of, const char* name, const char* doc, F what) {
     using Part = general::KinematicNoise<double>;
-    define_function(of.type, of.description, name,
-                    {{"angle", "float"}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, doc,
-                    [of, what](const void* model, const double* x) {
-                        return what(alone<Part>(of, model).part.at(turned(x[0]), x[1], x[2]));
-                    });
-    define_verb(of.type, of.description, name,
-                {{"angle", SW_NUMBERS}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, SW_ARRAY, doc,
-                [of, what](const void* model, const Call& call) -> nb::object {
+    define_function(
+        of.type, of.description, name, {{"angle", "float"}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, doc,
+        [of, what](const void* model, const double* x) { return what(alone<Part>(of, model).part.at(turned(x[0]), x[1], x[2])); });
+    define_verb(of.type, of.description, name, {{"angle", SW_NUMBERS}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}},
+                SW_ARRAY, doc, [of, what](const void* model, const Call& call) -> nb::object {
                     const auto x = numbers(call["angle"], "angle");
                     const double torque = call.number("torque"), speed = call.number("speed");
                     const auto law = alone<Part>(of, model);
@@ -407,12 +403,13 @@ void friction_verbs(const BoundLaw& of) {
         temperature{"temperature", SW_NUMBER_OR, "293.15"};
     std::vector<Accepted> traced{{"time", SW_NUMBERS}, {"speed", SW_NUMBERS}, angle, load, temperature};
     if (of.state) traced.push_back({"state", "State", "..."});
-    define_verb(of.type, of.description, "trace", traced, SW_ARRAY,
-                "Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).\n\n"
-                "`angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for "
-                "a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A "
-                "law that sticks shows no torque at rest: what it holds depends on what drives it.",
-                [of](const void* model, const Call& call) { return nb::cast(friction_trace(of, model, call)); });
+    define_verb(
+        of.type, of.description, "trace", traced, SW_ARRAY,
+        "Torque [N.m], shape (n,), over `time` [s] and `speed` [rad/s], both of shape (n,).\n\n"
+        "`angle` [rad] is where the motion starts; `load` [N.m] and `temperature` [K] are numbers or of shape (n,). Exact for "
+        "a speed that is constant between samples, whatever the step; else the mean of two samples stands for their step. A "
+        "law that sticks shows no torque at rest: what it holds depends on what drives it.",
+        [of](const void* model, const Call& call) { return nb::cast(friction_trace(of, model, call)); });
     define_verb(
         of.type, of.description, "quasistatic", {{"displacement", SW_NUMBERS}, angle, load, temperature}, SW_ARRAY,
         "Torque [N.m], shape (n,), along a path of `displacement` [rad], shape (n,), monotone between its points, in the limit "

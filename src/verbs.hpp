@@ -4,8 +4,8 @@
 #include "call.hpp"
 #include "general/part.hpp"
 
-/// What a model can be asked from Python. What the laws of a family have in common is asked of the general drive's part, made of one
-/// law: compiled once, not once for each law.
+/// What a model can be asked from Python. What the laws of a family have in common is asked of the general drive's part, made of
+/// one law: compiled once, not once for each law.
 namespace strainwave::host {
 
 using Argument = nb::ndarray<const double, nb::c_contig>;
@@ -21,8 +21,8 @@ std::pair<Values, double*> like(const Argument& model);
 #define SW_NUMBER_OR "float | collections.abc.Sequence[float] | " SW_ARRAY
 #define SW_NUMBERS "collections.abc.Sequence[float] | " SW_ARRAY
 
-/// An angle in turns and rest. One too large to resolve its turn stands where it would if turns were of 2 pi as rounded; beyond 1e300
-/// turns none is told from another.
+/// An angle in turns and rest. One too large to resolve its turn stands where it would if turns were of 2 pi as rounded; beyond
+/// 1e300 turns none is told from another.
 Angle<double> turned(double angle);
 
 /// Refuses an argument outside of where a law is valid.
@@ -44,12 +44,12 @@ struct Alone {
     }
     template <class S, class... Law>
     explicit Alone(const Choice<S, Law...>& choice)
-        : Alone(choice.visit([&]<class Chosen>(const Chosen& law) {
-              return Alone(description_of<Chosen>(), &law, int(choice.model.index()));
-          })) {}
+        : Alone(choice.visit(
+              [&]<class Chosen>(const Chosen& law) { return Alone(description_of<Chosen>(), &law, int(choice.model.index())); })) {}
 };
 
-/// A law as Python binds it, while its verbs are added: which of its family it is, and the struct of its state, null if it has none.
+/// A law as Python binds it, while its verbs are added: which of its family it is, and the struct of its state, null if it has
+/// none.
 struct BoundLaw {
     nb::handle type;
     const Description& description;

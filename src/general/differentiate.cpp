@@ -89,9 +89,11 @@ void differentiate_steady(const Set& set, const Sliding& sliding, std::size_t n,
             for (std::size_t i = 0; i < n; ++i) {
                 at_point(i);
                 const double turns = rint(sliding.angle[i] / (2.0 * pi));
-                const friction::Contact<Slope> contact{Slope(sliding.speed[i]), Slope(1.0),
+                const friction::Contact<Slope> contact{Slope(sliding.speed[i]),
+                                                       Slope(1.0),
                                                        {Slope(sliding.angle[i] - 2.0 * pi * turns), Slope(turns)},
-                                                       Slope(sliding.load[i]), Slope(sliding.temperature[i])};
+                                                       Slope(sliding.load[i]),
+                                                       Slope(sliding.temperature[i])};
                 const Slope torque = friction::steady(gear.friction_input, contact);
                 out[i] = torque.value;
                 for (std::size_t p = first; p < first + slopes && p < parameters.size(); ++p)

@@ -18,11 +18,10 @@
 namespace strainwave::general {
 
 template <class S>
-using GeneralGear = Gear<S, Kinematics<S>, KinematicError<S>, KinematicNoise<S>, Stiffness<S>, Hysteresis<S>, Friction<S>, Friction<S>,
-                         Friction<S>, Softening<S>, Structure<S>, Variation<S>>;
+using GeneralGear = Gear<S, Kinematics<S>, KinematicError<S>, KinematicNoise<S>, Stiffness<S>, Hysteresis<S>, Friction<S>,
+                         Friction<S>, Friction<S>, Softening<S>, Structure<S>, Variation<S>>;
 
 template <class S>
-using GeneralDrive =
-    Drive<S, Control<S>, Motor<S>, GeneralGear<S>, Load<S>, Sensors<S, Sensor<S>>, Thermal<S>, Meter<S>>;
+using GeneralDrive = Drive<S, Control<S>, Motor<S>, GeneralGear<S>, Load<S>, Sensors<S, Sensor<S>>, Thermal<S>, Meter<S>>;
 
 }  // namespace strainwave::general

@@ -112,9 +112,8 @@ State advance_hysteresis(const Set& set, const State& x, double twist) {
 }
 
 State break_away(const Set& set, const State& x, const Input& u) {
-    return changed(set, x, [&](const auto& drive, const auto& state) {
-        return system::break_away(drive, drive.evaluate(state, u), u).state;
-    });
+    return changed(
+        set, x, [&](const auto& drive, const auto& state) { return system::break_away(drive, drive.evaluate(state, u), u).state; });
 }
 
 Outcome step_once(const Set& set, State& x, const Interval<Input>& u, double dt) {

@@ -42,8 +42,7 @@ S Friction<S>::hold(const Contact& at) const {
 }
 template <class S>
 auto Friction<S>::rate(const State& x, const Contact& at) const -> State {
-    return FrictionLaws<S>::visit(*this,
-                                  [&](const auto& law) { return packed<State>(friction::rate(law, own<S>(law, x), at)); });
+    return FrictionLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(friction::rate(law, own<S>(law, x), at)); });
 }
 template <class S>
 auto Friction<S>::relaxation_rate(const State& x, const Contact& at) const -> State {
@@ -57,13 +56,13 @@ auto Friction<S>::clamped(const State& x, const Contact& at) const -> State {
 }
 template <class S>
 auto Friction<S>::update_mode(const State& x, const Contact& at) const -> State {
-    return FrictionLaws<S>::visit(
-        *this, [&](const auto& law) { return packed<State>(friction::update_mode(law, own<S>(law, x), at)); });
+    return FrictionLaws<S>::visit(*this,
+                                  [&](const auto& law) { return packed<State>(friction::update_mode(law, own<S>(law, x), at)); });
 }
 template <class S>
 auto Friction<S>::advance(const State& x, const Contact& at, const S& dt) const -> State {
-    return FrictionLaws<S>::visit(
-        *this, [&](const auto& law) { return packed<State>(friction::advance(law, own<S>(law, x), at, dt)); });
+    return FrictionLaws<S>::visit(*this,
+                                  [&](const auto& law) { return packed<State>(friction::advance(law, own<S>(law, x), at, dt)); });
 }
 template <class S>
 auto Friction<S>::steady_state(const Contact& at) const -> State {

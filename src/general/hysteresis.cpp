@@ -50,8 +50,7 @@ auto Hysteresis<S>::initial_state() const -> State {
 }
 template <class S>
 auto Hysteresis<S>::advance(const State& x, const S& increment) const -> State {
-    return HysteresisLaws<S>::visit(*this,
-                                    [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), increment)); });
+    return HysteresisLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(law.advance(own<S>(law, x), increment)); });
 }
 template <class S>
 S Hysteresis<S>::torque(const State& x, const S& increment) const {

@@ -35,8 +35,8 @@ S Motor<S>::current(const State& x, const S& actuation, const Rotor& rotor) cons
 }
 template <class S>
 auto Motor<S>::output(const State& x, const S& actuation, const Rotor& rotor) const -> Output {
-    return MotorLaws<S>::visit(
-        *this, [&](const auto& law) { return packed<Output>(law.output(own<S>(law, x), actuation, rotor)); });
+    return MotorLaws<S>::visit(*this,
+                               [&](const auto& law) { return packed<Output>(law.output(own<S>(law, x), actuation, rotor)); });
 }
 template <class S>
 motor::Power<S> Motor<S>::power(const State& x, const S& actuation, const Rotor& rotor) const {
@@ -44,8 +44,7 @@ motor::Power<S> Motor<S>::power(const State& x, const S& actuation, const Rotor&
 }
 template <class S>
 auto Motor<S>::rate(const State& x, const S& actuation, const Rotor& rotor) const -> State {
-    return MotorLaws<S>::visit(*this,
-                               [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), actuation, rotor)); });
+    return MotorLaws<S>::visit(*this, [&](const auto& law) { return packed<State>(law.rate(own<S>(law, x), actuation, rotor)); });
 }
 template <class S>
 auto Motor<S>::relaxation_rate() const -> State {

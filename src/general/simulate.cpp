@@ -17,6 +17,11 @@ using Entries = kernel::Entries<Drives>;
 decltype(kernel::Table::differentiate) differentiate_entry();
 decltype(kernel::Table::inverse_dynamics) inverse_dynamics_entry();
 
-const kernel::Table table{1, &Entries::simulate, &Entries::simulate_adaptively, &Entries::run_members<double>, differentiate_entry(), inverse_dynamics_entry()};
+const kernel::Table table{1,
+                          &Entries::simulate,
+                          &Entries::simulate_adaptively,
+                          &Entries::run_members<double>,
+                          differentiate_entry(),
+                          inverse_dynamics_entry()};
 
 }  // namespace strainwave::general

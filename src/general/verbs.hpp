@@ -66,8 +66,8 @@ std::size_t twist(const Set& gear, const double* torque, std::size_t n, double* 
 
 // Derivatives.
 
-/// The rates of the n continuous numbers of a state, its memory held, and then the m outputs: value i in out[i], its derivative with
-/// respect to continuous number p, and then to the inputs, in slopes[p * (n + m) + i].
+/// The rates of the n continuous numbers of a state, its memory held, and then the m outputs: value i in out[i], its derivative
+/// with respect to continuous number p, and then to the inputs, in slopes[p * (n + m) + i].
 void differentiate_rates(const Set& drive, const State& x, const Input& u, std::size_t n, std::size_t m, double* out,
                          double* slopes);
 

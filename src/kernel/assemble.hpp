@@ -7,8 +7,8 @@
 /// A drive put together from its parameters.
 namespace strainwave::kernel {
 
-/// A set of parameters taken apart: the laws chosen, the other whole numbers (counts, teeth, options), and the numbers. Sets with equal
-/// laws have drives of one static type.
+/// A set of parameters taken apart: the laws chosen, the other whole numbers (counts, teeth, options), and the numbers. Sets with
+/// equal laws have drives of one static type.
 struct Set {
     const int* laws;
     const int* shape;

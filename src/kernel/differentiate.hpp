@@ -22,8 +22,8 @@ initial::Known<S> in_scalars(const initial::Known<double>& known) {
 
 /// A run that gives the derivatives by the parameters number `first` and following of `count`.
 template <int n, class Drive>
-Outcome differentiate_by(const Drive& drive, const Beginning& beginning, const Schedule& schedule, std::size_t first, std::size_t count,
-                         const Rows& rows, double* slopes, const Progress& progress) {
+Outcome differentiate_by(const Drive& drive, const Beginning& beginning, const Schedule& schedule, std::size_t first,
+                         std::size_t count, const Rows& rows, double* slopes, const Progress& progress) {
     using S = Dual<n>;
     const std::size_t last = std::min(count, first + n);
     const auto write_row = [&](std::size_t r, const S* held, std::size_t gathered, std::size_t from) {

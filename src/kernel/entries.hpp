@@ -21,14 +21,13 @@ template <class Drives>
 struct Entries {
     static Outcome simulate(const Set& set, double* state, const Schedule& schedule, Method method, const Rows& rows,
                             const Progress& progress) {
-        return Drives::with(set, set.numbers, [&](const auto& drive) {
-            return kernel::simulate(drive, state, schedule, method, rows, progress);
-        });
+        return Drives::with(set, set.numbers,
+                            [&](const auto& drive) { return kernel::simulate(drive, state, schedule, method, rows, progress); });
     }
     static Outcome simulate_adaptively(const Set& set, double* state, const AdaptiveCourse& course, const Rows& rows,
                                        const Progress& progress) {
-        return Drives::with(
-            set, set.numbers, [&](const auto& drive) { return kernel::simulate_adaptively(drive, state, course, rows, progress); });
+        return Drives::with(set, set.numbers,
+                            [&](const auto& drive) { return kernel::simulate_adaptively(drive, state, course, rows, progress); });
     }
     template <class S>
     static Outcome run_members(const Set& set, const Variation& variation, std::size_t first, std::size_t count,

@@ -4,9 +4,9 @@
 /// The torque that a motion needs.
 namespace strainwave::kernel {
 
-/// What the motor of a drive must give at an instant [N.m] so that the input shaft moves as it does, the output shaft with it: the gear is
-/// as stiff as a rigid one, its kinematic error included but for its curvature, and friction slides steadily. Friction that grows with
-/// the torque transmitted is found in rounds.
+/// What the motor of a drive must give at an instant [N.m] so that the input shaft moves as it does, the output shaft with it: the
+/// gear is as stiff as a rigid one, its kinematic error included but for its curvature, and friction slides steadily. Friction that
+/// grows with the torque transmitted is found in rounds.
 template <class S, class Drive>
 S needed_torque(const Drive& drive, const double* motion, const Input<S>& u) {
     constexpr int rounds = 4;  // each leaves the share of the last that friction takes of what is transmitted

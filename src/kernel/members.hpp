@@ -18,8 +18,8 @@ void set_lane(Pack<n>& x, std::size_t i, double value) {
 template <class S>
 inline constexpr std::size_t lanes = sizeof(S) / sizeof(double);
 
-/// Runs a drive from a state and calls record(outputs) there, too. If the gear vibrates faster than `max_rate` [rad/s] at rest, in all
-/// lanes, nothing is run; where it does in some, their twist is 0.
+/// Runs a drive from a state and calls record(outputs) there, too. If the gear vibrates faster than `max_rate` [rad/s] at rest, in
+/// all lanes, nothing is run; where it does in some, their twist is 0.
 template <class S, class Drive, class Record>
 Outcome run_from(const Drive& drive, typename Drive::State state, const Schedule& schedule, double max_rate, Record& record,
                  const Progress& progress, Tally* tallies, std::size_t count) {

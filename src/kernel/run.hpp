@@ -73,7 +73,8 @@ bool within_bounds(const Drive& drive, const typename Drive::Evaluation& at, dou
         if (outcome.ending == Ending::out_of_bounds || all(domain.holds())) return;
         each_lane(domain.value, domain.low, domain.high, [&](double value, double low, double high) {
             const Domain<double> of_lane{domain.name, value, low, high, domain.unit, domain.remedy};
-            if (outcome.ending == Ending::out_of_bounds || value != value || of_lane.holds()) return;  // not a number: seen at the end
+            if (outcome.ending == Ending::out_of_bounds || value != value || of_lane.holds())
+                return;  // not a number: seen at the end
             outcome.ending = Ending::out_of_bounds;
             outcome.part = part;
             outcome.domain = of_lane;
@@ -97,15 +98,15 @@ template <class S, class Drive>
 #ifdef SW_INLINE_STEPS
 [[gnu::flatten]]
 #endif
-[[gnu::noinline]] typename Drive::Evaluation smooth_step(const Drive& drive, const typename Drive::Evaluation& from,
-                                                         const Interval<Input<S>>& u, const S& dt,
-                                                         integrate::Steps<S, Drive>& steps) {
+[[gnu::noinline]]
+typename Drive::Evaluation smooth_step(const Drive& drive, const typename Drive::Evaluation& from, const Interval<Input<S>>& u,
+                                       const S& dt, integrate::Steps<S, Drive>& steps) {
     return drive.evaluate(steps(drive, from, u, dt), u.end);
 }
 
-/// Runs a drive from `state` through one step or more and calls record(outputs) at the end of each step to be kept. `advance` takes a
-/// step. `state` becomes that at the end. What a step returns is made where it stays: to copy it would take a twentieth of the step.
-/// A drive that has diverged, in all lanes, stays where that is noticed, and so do its outputs.
+/// Runs a drive from `state` through one step or more and calls record(outputs) at the end of each step to be kept. `advance` takes
+/// a step. `state` becomes that at the end. What a step returns is made where it stays: to copy it would take a twentieth of the
+/// step. A drive that has diverged, in all lanes, stays where that is noticed, and so do its outputs.
 template <class S, class Drive, class Record, class Advance>
 Outcome run_steps(const Drive& drive, typename Drive::State& state, const Schedule& schedule, Record& record,
                   const Progress& progress, const Advance& advance) {
@@ -114,7 +115,7 @@ Outcome run_steps(const Drive& drive, typename Drive::State& state, const Schedu
     Interval<Input<S>> u = interval<S>(schedule.inputs);
     using Evaluation = typename Drive::Evaluation;
     Evaluation places[2]{begun(drive, state, u.start, S(time_tolerance(schedule.first_step()))), {}}, *here = places,
-                                                                                                       *there = places + 1;
+                                                                                                      *there = places + 1;
     if (has_bounds && !within_bounds<S>(drive, *here, schedule.instants[0], outcome)) return outcome;
     bool lost = false;
     for (std::size_t i = 0; i < schedule.steps; ++i) {

@@ -27,7 +27,8 @@ struct Schedule {
 
 /// The most members that a kernel takes together: those of the widest register.
 inline constexpr int max_lanes = 8;
-/// Derivatives that are taken together. The same everywhere, for the bits of a derivative may depend on which others it is taken with.
+/// Derivatives that are taken together. The same everywhere, for the bits of a derivative may depend on which others it is taken
+/// with.
 inline constexpr int slopes = 4;
 
 /// What an output may be at most: no angle beyond is resolved to a radian.
@@ -54,8 +55,8 @@ struct Progress {
 
 enum class Ending { done, stopped, out_of_bounds, tolerance_missed, steps_spent };
 
-/// How a run ended, and why before its end: the part that is not valid where the drive stands; the instants [s] between which no step
-/// keeps the tolerance; where all steps are spent [s], and the vibrations that they followed [rad/s].
+/// How a run ended, and why before its end: the part that is not valid where the drive stands; the instants [s] between which no
+/// step keeps the tolerance; where all steps are spent [s], and the vibrations that they followed [rad/s].
 struct Outcome {
     Ending ending = Ending::done;
     const char* part = "";
@@ -70,8 +71,8 @@ struct Signals {
     const void* context;
 };
 
-/// Steps as long as a tolerance allows, at most `most`, that end at all of `ends`, of which the first is the begin. Samples are those
-/// at `wanted` [s].
+/// Steps as long as a tolerance allows, at most `most`, that end at all of `ends`, of which the first is the begin. Samples are
+/// those at `wanted` [s].
 struct AdaptiveCourse {
     Signals signals;
     const double* ends;
@@ -113,8 +114,8 @@ struct Table {
                         const Progress& progress);
     Outcome (*simulate_adaptively)(const Set& set, double* state, const AdaptiveCourse& course, const Rows& rows,
                                    const Progress& progress);
-    /// Members `first` and following from starts[i * state_size ...], into rows of (recorded, members, samples). Where the gear of all
-    /// vibrates faster than `max_rate` [rad/s] at rest nothing is run, and the twists are 0.
+    /// Members `first` and following from starts[i * state_size ...], into rows of (recorded, members, samples). Where the gear of
+    /// all vibrates faster than `max_rate` [rad/s] at rest nothing is run, and the twists are 0.
     Outcome (*run_members)(const Set& set, const Variation& variation, std::size_t first, std::size_t count, const double* starts,
                            std::size_t state_size, const Schedule& schedule, double max_rate, const Rows& rows, Tally* tallies,
                            const Progress& progress);
