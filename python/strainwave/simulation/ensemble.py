@@ -272,10 +272,11 @@ def simulate_many(
 ) -> Ensemble:
     """Runs a drive many times through one command, each time with other numbers, on all cores.
 
-    Large ensembles compile a kernel, which takes several members to a vector register. The same trajectories as `simulate` gives with its method "exponential", to the last bit, whatever the number of
-    threads and the instruction set, by a kernel or not; only where orders of an error or exponents of a density are whole in some members and not
-    in others may the last digit differ. The outputs take 8 bytes times members, outputs recorded and samples; `simulate_to`
-    writes them to files instead, in memory that is flat over members. What acts on all of them takes 153 bytes a step.
+    Large ensembles compile a kernel, which takes several members to a vector register. The trajectories are those of `simulate`
+    with its method "exponential", to the last bit, by a kernel or not, whatever the number of threads and the instruction set;
+    only where orders of an error or exponents of a density are whole in some members and not in others may the last digit
+    differ. The outputs take 8 bytes times members, outputs recorded and samples; `simulate_to` writes them to files instead, in
+    memory that is flat over members. What acts on all of them takes 153 bytes a step.
 
     Args:
         drive: the drive
