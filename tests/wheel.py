@@ -1,6 +1,7 @@
-"""Tries an installed wheel: every kind of run with every instruction set of this machine, to the same bits, and a report.
+"""Tries an installed wheel: every kind of run, kernels of each instruction set of this machine, and a report.
 
-`python3 dev.py wheel` runs it with the Python of an environment that has the wheel and what it needs, and no compiler.
+`python3 dev.py wheel` runs it with the Python of an environment that has the wheel and what it needs, and no compiler. The
+drives of the catalogue run by the kernels that the wheel carries, to the same bits as without.
 """
 
 from __future__ import annotations
@@ -11,18 +12,17 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import warnings
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 SETS = ("baseline", "avx2", "avx512")
 
 
-def digest() -> str:
-    """Of runs by each method, of an ensemble and of derivatives, with the instruction set that the environment names."""
-    import numpy as np
+def of_any_laws() -> str:
+    """Of runs by each method, of an ensemble and of derivatives, of drives whose kernels the wheel does not carry."""
     import strainwave as sw
 
-    warnings.simplefilter("ignore")
     gear = sw.load("hfuc-25-100")
     control = sw.control.PID(proportional=2.0, derivative=0.05)
     drive = sw.Drive(gear=gear, control=control, load=sw.loads.Pendulum(inertia=0.5, gravity_torque=15.0))
@@ -33,29 +33,70 @@ def digest() -> str:
     numbers = hashlib.sha256()
     for friction in (gear.friction_input, bristles, sw.friction.Thermal(law=bristles, dry_fall=0.005, viscous_fall=0.02)):
         varied = drive.replace(gear=gear.replace(friction_input=friction))
-        runs = [sw.simulate(varied, wave, method=method) for method in ("exponential", "moreau_jean", "rosenbrock")]
-        runs.append(sw.simulate_adaptively(varied, wave))
-        runs.append(sw.simulate_many(varied, wave, {"load.inertia": np.linspace(0.4, 0.6, 11)}, sample=1e-2))
-        slopes = sw.derivatives(varied, wave, ["load.inertia", "gear.damping"], sample=1e-2)
-        for values in (slopes.values, *(column for run in runs for column in run.columns.values())):
-            numbers.update(np.ascontiguousarray(values).tobytes())
+        for values in results(varied, wave, 1e-4):
+            numbers.update(values)
     return numbers.hexdigest()[:16]
+
+
+def of_the_catalogue() -> str:
+    """Of runs of each drive of the catalogue, by kernels unless the environment switches them off."""
+    import strainwave as sw
+    from strainwave import _core
+    from strainwave.files.ratings import drive_of
+    from strainwave.native import kernels
+
+    by_kernels = os.environ["STRAINWAVE_KERNELS"] != "off"
+    numbers = hashlib.sha256()
+    for name in sw.catalogue("drives"):
+        drive = drive_of(sw.load(name))
+        dt = min(1e-4, 0.25 / _core.max_rate(drive, 0.0))
+        duration = 1.2 * kernels.LOOK_UP_STEPS * dt
+        numbers.update(sw.simulate(drive, sw.scenario.sine(0.02, 2.0 / duration, duration), dt)["twist"].tobytes())
+        assert _core.loaded_jobs(drive) == (["simulate"] if by_kernels else []), name  # by itself, for so many steps
+        for job in kernels.JOBS:
+            assert kernels.load(drive, job, compile_it=False) == by_kernels, (name, job)
+        for values in results(drive, sw.scenario.sine(0.02, 2.0 / (1000.0 * dt), 1000.0 * dt), dt):
+            numbers.update(values)
+    return numbers.hexdigest()[:16]
+
+
+def results(drive: Any, wave: Any, dt: float) -> Iterator[bytes]:
+    """The numbers of runs by each method, of an ensemble and of derivatives."""
+    import numpy as np
+    import strainwave as sw
+    from strainwave import _core
+
+    parameters = [(path, number) for path, number, *_ in _core.parameters(drive) if number > 0.0][:6]
+    members = {path: number * np.linspace(1.0, 1.01, 11) for path, number in parameters[-1:]}
+    runs = [sw.simulate(drive, wave, dt, method=method) for method in ("exponential", "moreau_jean", "rosenbrock")]
+    runs.append(sw.simulate_adaptively(drive, wave))
+    runs.append(sw.simulate_many(drive, wave, members, dt, sample=10.0 * dt))
+    yield sw.derivatives(drive, wave, [path for path, _ in parameters], dt, sample=10.0 * dt).values.tobytes()
+    for run in runs:
+        yield from (column.tobytes() for column in run.columns.values())
+
+
+def told(work: str, **variables: str) -> str:
+    """What another process with these environment variables finds."""
+    command = [sys.executable, "-I", "-W", "ignore", __file__, work]
+    found = subprocess.run(command, env=os.environ | variables, capture_output=True, text=True)
+    return found.stdout.strip() if found.returncode == 0 else found.stderr
 
 
 def main() -> None:
     assert not any(map(shutil.which, ("cc", "c++", "g++", "clang++", "cmake", "ninja"))), "a compiler is found"
-    found = {}
-    for name in SETS:
-        variables = dict(os.environ, STRAINWAVE_INSTRUCTION_SET=name)
-        told = subprocess.run([sys.executable, "-I", __file__, name], env=variables, capture_output=True, text=True)
-        if "is not one that this build and this machine have" in told.stderr:
-            print(f"{name}: this machine has none", flush=True)
-            continue
-        assert told.returncode == 0, told.stderr
-        found[name] = told.stdout.strip()
-        print(f"{name}: {found[name]}", flush=True)
-    assert len(set(found.values())) == 1, "instruction sets differ"
+    print(f"any laws: {told('of_any_laws')}", flush=True)
+    general = told("of_the_catalogue", STRAINWAVE_KERNELS="off")
+    print(f"drives of the catalogue, without kernels: {general}", flush=True)
     with tempfile.TemporaryDirectory() as folder:
+        for name in SETS:
+            found = told("of_the_catalogue", STRAINWAVE_KERNELS=f"{folder}/kernels", STRAINWAVE_INSTRUCTION_SET=name)
+            if "is not one that this machine has" in found:
+                print(f"{name}: this machine has none", flush=True)
+                continue
+            assert found == general, found
+            print(f"by the kernels that the wheel carries, {name}: {found}", flush=True)
+        assert not list(Path(folder).iterdir()), "a kernel was compiled"
         command = shutil.which("strainwave")
         assert command, "the wheel brings no command"
         subprocess.run([command, "--version"], check=True)
@@ -67,6 +108,6 @@ def main() -> None:
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:
-        print(digest())
+        print({"of_any_laws": of_any_laws, "of_the_catalogue": of_the_catalogue}[sys.argv[1]]())
     else:
         main()

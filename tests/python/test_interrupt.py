@@ -44,7 +44,8 @@ def pressed(work):
             until_the_end.enter_context(ctrl_c())
         return work(*arguments)
     return within
-for job in kernels.JOBS:
+jobs = ["simulate", "simulate_adaptively", "simulate_many", "differentiate"]
+for job in jobs:
     kernels.load(DRIVE, job, compile_it=True)
     setattr(_core, job, pressed(getattr(_core, job)))
 for name, verb in verbs.items():
@@ -55,7 +56,7 @@ for name, verb in verbs.items():
         print(name, "ended by itself")
     except KeyboardInterrupt:
         print(name, "was interrupted")
-print(*(job for job in kernels.JOBS if job in _core.loaded_jobs(DRIVE)))
+print(*(job for job in jobs if job in _core.loaded_jobs(DRIVE)))
 '''
 
 

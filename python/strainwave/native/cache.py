@@ -75,18 +75,18 @@ def make_kernel(kernel: Kernel) -> Path:
     with store.alone(folder, key, MAX_COMPILE_SECONDS):
         found = _or_warning(lambda: _cached(folder, kernel, [compiler]))
         if found is None:
-            found = _compile(kernel, compiler, folder, key)
+            found = _compile(kernel, compiler, folder, key, _core.instruction_set())
             store.tidy(folder, keep=key)
     return found
 
 
-def ship(kernel: Kernel, folder: Path) -> Path:
-    """Compile a kernel into a folder that a wheel carries, for the instruction set in use, and return its path.
+def ship(kernel: Kernel, folder: Path, instruction_set: str) -> Path:
+    """Compile a kernel into a folder that a wheel carries, for an instruction set, and return its path.
 
     Raises:
         OSError: as of `make_kernel`
     """
-    return _compile(kernel, find_compiler(), folder, kernel.shipped_key())
+    return _compile(kernel, find_compiler(), folder, kernel.shipped_key(instruction_set), instruction_set)
 
 
 def listing() -> list[Record]:
@@ -130,13 +130,13 @@ def _cached(folder: Path, kernel: Kernel, compilers: Iterable[Compiler]) -> Path
     return None
 
 
-def _compile(kernel: Kernel, compiler: Compiler, folder: Path, key: str) -> Path:
-    """Compile a kernel into a folder under a key, and return its path."""
+def _compile(kernel: Kernel, compiler: Compiler, folder: Path, key: str, instruction_set: str) -> Path:
+    """Compile a kernel into a folder under a key, for an instruction set, and return its path."""
     began = time.perf_counter()
     with store.draft(folder) as draft:
         source = draft / "kernel.cpp"
         source.write_text(kernel.source, "utf-8")
-        shared = compiler.build(source, (*flags_for(_core.instruction_set()), f"-I{INCLUDE}"))
+        shared = compiler.build(source, (*flags_for(instruction_set), f"-I{INCLUDE}"))
         content = shared.read_bytes()
     seconds = time.perf_counter() - began
     record = Record(kernel.drive, kernel.job, compiler.name, seconds, time.time(), len(content), sha256(content).hexdigest())

@@ -31,9 +31,13 @@ class Kernel:
         """Return the name under which the cache has what this compiler makes of it."""
         return _digest(self.shipped_key(), compiler.identity, *compiler.command, *compiler.link)
 
-    def shipped_key(self) -> str:
-        """Return the name under which the package has it, whatever compiler it was built by: all give the same numbers."""
-        return _digest(self.source, _headers(), *flags_for(_core.instruction_set()))
+    def shipped_key(self, instruction_set: str = "") -> str:
+        """Return the name under which the package has it, whatever compiler it was built by: all give the same numbers.
+
+        Args:
+            instruction_set: for which it is compiled; the one in use, if none is named
+        """
+        return _digest(self.source, _headers(), *flags_for(instruction_set or _core.instruction_set()))
 
 
 @cache

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from strainwave import _core
 from strainwave.native import cache, compilers, folder
 from strainwave.native.cache import KernelWarning, clear, find_kernel, kernel_file, listing, make_kernel, ship
 from strainwave.native.compilers import CompileError
@@ -317,7 +318,7 @@ def test_a_shipped_kernel_needs_no_compiler(
     kernels: Path, monkeypatch: pytest.MonkeyPatch, given_away: Callable[[Path], None]
 ) -> None:
     folder.SHIPPED.mkdir()
-    shipped = ship(KERNEL, folder.SHIPPED)
+    shipped = ship(KERNEL, folder.SHIPPED, _core.instruction_set())
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr(compilers, "find_spec", lambda name: None)
     assert kernel_file(KERNEL) == shipped
