@@ -1,7 +1,6 @@
 #include <nanobind/stl/vector.h>
 
 #include "drive_arrays.hpp"
-#include "ensemble.hpp"
 #include "general/friction.hpp"
 #include "general/stiffness.hpp"
 #include "verbs.hpp"
@@ -140,7 +139,7 @@ nb::tuple actuation_of(const ParameterDrive& drive) {
 
 /// Refuses a point of a path where the spring of a gear is not valid.
 void check_spring(const ParameterGear& gear, const double* twist, std::size_t n) {
-    const Alone<general::Stiffness<double>> spring(gear.stiffness);
+    const SingleLaw<general::Stiffness<double>> spring(gear.stiffness);
     for (std::size_t i = 0; i < n; ++i) check_domain("gear.stiffness", domain<double>(spring.part, twist[i]));
 }
 
@@ -161,7 +160,7 @@ nb::tuple steady_derivatives(const ParameterGear& gear, const Numbers& speed, co
         throw nb::value_error("speed, angle, load and temperature must have equally many elements");
     const Parts parts = parts_of(gear);
     check_numbers(parts, parameters);
-    const Alone<general::Friction<double>> friction(gear.friction_input);
+    const SingleLaw<general::Friction<double>> friction(gear.friction_input);
     for (std::size_t i = 0; i < n; ++i)
         check_domain("gear.friction_input",
                      domain<double>(friction.part, friction::Contact<double>{.angle = turned(angle.data()[i])}));
@@ -345,8 +344,7 @@ void bind_drives(nb::module_& core) {
     core.def(
         "started",
         [](const ParameterDrive& drive, const std::vector<int>& given, const Numbers& values, const Numbers& u) {
-            if (values.size() != given.size()) throw nb::value_error("each quantity has a value");
-            return array_of(general::started(parts_of(drive).set(), Start{false, given, values.data(), 1}.of(0), input_of(u)));
+            return array_of(general::started(parts_of(drive).set(), start_of(given, values, 1).of(0), input_of(u)));
         },
         nb::arg("drive"), nb::arg("quantities"), nb::arg("values"), nb::arg("inputs"),
         nb::sig("def started(drive: Drive, quantities: collections.abc.Sequence[int], values: " SW_ARRAY ", inputs: " SW_ARRAY

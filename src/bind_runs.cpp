@@ -1,3 +1,4 @@
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
@@ -103,18 +104,18 @@ Values run_one(const ParameterDrive& drive, const Numbers& start, const Numbers&
 }
 
 /// Signals as a kernel asks for them: the piece that holds is looked up once a stretch without a jump.
-struct Asked {
+struct SignalSource {
     const Signals signals;
     std::optional<Unbroken> here;
     double begin = 0.0;
 
     static void at(const void* self, double begin, double fraction, double dt, double* inputs) {
-        Asked& asked = *const_cast<Asked*>(static_cast<const Asked*>(self));
-        if (!asked.here || asked.begin != begin) {
-            asked.here.emplace(asked.signals, begin);
-            asked.begin = begin;
+        SignalSource& source = *const_cast<SignalSource*>(static_cast<const SignalSource*>(self));
+        if (!source.here || source.begin != begin) {
+            source.here.emplace(source.signals, begin);
+            source.begin = begin;
         }
-        asked.here->at(fraction, dt, inputs);
+        source.here->at(fraction, dt, inputs);
     }
 };
 
@@ -126,9 +127,9 @@ nb::tuple run_adaptively(const ParameterDrive& drive, const Numbers& start, cons
     const kernel::Rows rows = rows_in(drive, out, recorded, first, samples.size());
     const Parts parts = parts_of(drive);
     const auto simulate = kernel_with(&kernel::Table::simulate_adaptively, parts.laws).simulate_adaptively;
-    Asked asked{{{&command, &load, &temperature}}, {}};
-    const kernel::AdaptiveCourse course{{&Asked::at, &asked}, ends.data(),   ends.size(), {relative, absolute}, max_steps,
-                                        samples.data(),       samples.size()};
+    SignalSource source{{{&command, &load, &temperature}}, {}};
+    const kernel::AdaptiveCourse course{
+        {&SignalSource::at, &source}, ends.data(), ends.size(), {relative, absolute}, max_steps, samples.data(), samples.size()};
     general::State state = state_from(drive, start);
     Pausing pausing(progress);
     const kernel::Outcome outcome = [&] {
@@ -165,16 +166,11 @@ std::string no_beginning(bool known) {
            "output_angle begin at a smaller angle and speed";
 }
 
-/// Quantities known at the start, one row each with a value for each member; at rest, if None.
-Start start_from(const nb::object& known, std::size_t members) {
-    Start start;
-    if (known.is_none()) return start;
-    const auto given = nb::cast<std::pair<std::vector<int>, Numbers>>(known);
-    if (given.second.size() != given.first.size() * members)
-        throw nb::value_error("values of n quantities and m members have shape (n, m)");
-    for (const int q : given.first)
-        if (q < 0 || q >= initial::quantities) throw nb::value_error("there is no such quantity");
-    return {false, given.first, given.second.data(), members};
+/// Quantities known at the start, and their values, if any are; the arguments of a call, which outlive its run.
+using Known = std::optional<std::pair<std::vector<int>, Numbers>>;
+
+Start start_from(const Known& known, std::size_t members) {
+    return known ? start_of(known->first, known->second, members) : Start{};
 }
 
 /// Where the transmission error stands among the numbers of a state.
@@ -183,7 +179,7 @@ std::size_t place_of_error(const Layout& layout) {
     return std::size_t(std::find_if(layout.state.begin(), layout.state.end(), named) - layout.state.begin());
 }
 
-nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers, const Numbers& values, const nb::object& known,
+nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers, const Numbers& values, const Known& known,
                    const Numbers& instants, const Numbers& inputs, const Flags& keep, const std::vector<int>& recorded,
                    double max_rate, int threads, const Series& out, const nb::object& progress) {
     const Request request(instants, inputs, keep);
@@ -206,7 +202,7 @@ nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers,
                             out.data(),
                             request.kept + 1,
                             place_of_error(layout_of(drive, parts.laws))};
-    const kernel::Table& kernel = kernel_with(&kernel::Table::run_members, parts.laws);
+    const kernel::Table kernel = kernel_with(&kernel::Table::run_members, parts.laws);
     const Pausing pausing(progress);
     const std::vector<MemberResult> results = [&] {
         nb::gil_scoped_release free;
@@ -228,7 +224,7 @@ nb::tuple run_many(const ParameterDrive& drive, const std::vector<int>& numbers,
     return nb::make_tuple(sound, twists, rates, on_bristles, refusals);
 }
 
-nb::tuple run_derivatives(const ParameterDrive& drive, const nb::object& known, const Numbers& instants, const Numbers& inputs,
+nb::tuple run_derivatives(const ParameterDrive& drive, const Known& known, const Numbers& instants, const Numbers& inputs,
                           const Flags& keep, const std::vector<int>& parameters, const nb::object& progress) {
     const Request request(instants, inputs, keep);
     const Parts parts = parts_of(drive);
@@ -273,7 +269,7 @@ void add_kernel_at(const ParameterDrive& drive, std::size_t address) {
 
 /// What a loaded kernel does for a drive, by name.
 nb::list loaded_jobs(const ParameterDrive& drive) {
-    const kernel::Table& table = loaded_kernel(parts_of(drive).laws);
+    const kernel::Table table = loaded_kernel(parts_of(drive).laws);
     nb::list jobs;
     const auto add = [&](bool can, const char* name) {
         if (can) jobs.append(name);

@@ -12,7 +12,7 @@ namespace strainwave {
 
 /// Stands for the state, or the output, of whichever law was chosen.
 template <class S>
-struct OfChosen {
+struct OfChosenLaw {
     S none{0.0};
 
     template <class Self, class Visit>
@@ -21,16 +21,16 @@ struct OfChosen {
     }
 };
 template <class T>
-inline constexpr bool is_of_chosen = false;
+inline constexpr bool stands_for_chosen = false;
 template <class S>
-inline constexpr bool is_of_chosen<OfChosen<S>> = true;
+inline constexpr bool stands_for_chosen<OfChosenLaw<S>> = true;
 
 template <class S, class... Law>
 struct Choice {
     std::variant<Law...> model{};
 
-    using State = OfChosen<S>;
-    using Output = OfChosen<S>;
+    using State = OfChosenLaw<S>;
+    using Output = OfChosenLaw<S>;
 
     /// f of the law chosen.
     template <int i = 0, class F>

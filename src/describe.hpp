@@ -1,7 +1,6 @@
 #pragma once
 #include <charconv>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include <strainwave/condition.hpp>
@@ -59,10 +58,10 @@ std::string problem_of(const Description& description, const void* model);
 /// Puts other numbers, as many, in place of those of a model.
 void set_numbers(const Description& description, void* model, const double* numbers);
 
-/// What a model says of a contradiction between its numbers; empty if there is none.
-inline std::string told(const char* problem) { return problem ? problem : ""; }
-inline std::string told(const Contradiction<double>& problem) {
-    std::string text = told(problem.text);
+/// The text of a contradiction between the numbers of a model; empty if there is none.
+inline std::string text_of_problem(const char* problem) { return problem ? problem : ""; }
+inline std::string text_of_problem(const Contradiction<double>& problem) {
+    std::string text = text_of_problem(problem.text);
     std::size_t from = 0;
     for (const double number : {problem.first, problem.second}) {
         const std::size_t place = text.find("{}", from);
@@ -77,7 +76,8 @@ inline std::string told(const Contradiction<double>& problem) {
 template <class M>
 std::string own_problem_of(const M& model) {
     if constexpr (requires { model.problem(); })
-        if (const std::string problem = told(model.problem()); !problem.empty()) return std::string(M::name) + ": " + problem;
+        if (const std::string problem = text_of_problem(model.problem()); !problem.empty())
+            return std::string(M::name) + ": " + problem;
     return {};
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "arrays.hpp"
+#include "ensemble.hpp"
 #include "general/verbs.hpp"
 #include "members.hpp"
 #include "names.hpp"
@@ -26,6 +27,16 @@ inline general::State state_from(const Layout& layout, const Numbers& numbers) {
 inline general::State state_from(const ParameterDrive& drive, const Numbers& numbers) {
     return state_from(layout_of(drive), numbers);
 }
+
+/// Where members begin: with known quantities, one row of values each.
+inline Start start_of(const std::vector<int>& quantities, const Numbers& values, std::size_t members) {
+    if (values.size() != quantities.size() * members)
+        throw nb::value_error("values of n quantities and m members have shape (n, m)");
+    for (const int quantity : quantities)
+        if (quantity < 0 || quantity >= initial::quantities) throw nb::value_error("there is no such quantity");
+    return {false, quantities, values.data(), members};
+}
+
 inline Values array_of(const std::vector<double>& numbers) {
     Values out = array({numbers.size()});
     std::copy(numbers.begin(), numbers.end(), out.data());

@@ -49,7 +49,7 @@ public:
         ParameterDrive drive = ensemble.drive;  // of this thread
         for (std::size_t pack; !stopping && (pack = next++) < packs();) {
             const std::size_t first = pack * lanes, count = std::min(lanes, members - first);
-            if (!run_together(drive, first, count))
+            if (count == 1 || !run_together(drive, first, count))
                 for (std::size_t member = first; member < first + count; ++member) run_alone(drive, member);
             done += count * ensemble.schedule.steps;
         }

@@ -4,13 +4,22 @@
 
 namespace strainwave::host {
 
-kernel::Table& loaded_kernel(const std::vector<int>& laws) {
-    static std::map<std::vector<int>, kernel::Table> all;
-    return all.try_emplace(laws, kernel::Table{}).first->second;
+namespace {
+
+std::map<std::vector<int>, kernel::Table>& tables() {
+    static std::map<std::vector<int>, kernel::Table> by_laws;
+    return by_laws;
+}
+
+}  // namespace
+
+kernel::Table loaded_kernel(const std::vector<int>& laws) {
+    const auto found = tables().find(laws);
+    return found == tables().end() ? kernel::Table{} : found->second;
 }
 
 void add_kernel(const std::vector<int>& laws, const kernel::Table& table) {
-    kernel::Table& known = loaded_kernel(laws);
+    kernel::Table& known = tables()[laws];
     if (table.simulate) known.simulate = table.simulate;
     if (table.simulate_adaptively) known.simulate_adaptively = table.simulate_adaptively;
     if (table.run_members) {
@@ -21,6 +30,6 @@ void add_kernel(const std::vector<int>& laws, const kernel::Table& table) {
     if (table.inverse_dynamics) known.inverse_dynamics = table.inverse_dynamics;
 }
 
-void forget_kernels(const std::vector<int>& laws) { loaded_kernel(laws) = {}; }
+void forget_kernels(const std::vector<int>& laws) { tables().erase(laws); }
 
 }  // namespace strainwave::host

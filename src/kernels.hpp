@@ -7,13 +7,14 @@
 /// The kernels that are loaded, by the laws of their drives. Needs Python's lock.
 namespace strainwave::host {
 
-/// What is loaded for drives of these laws: nothing but null entries at first.
-kernel::Table& loaded_kernel(const std::vector<int>& laws);
+/// What is loaded for drives of these laws; null entries where nothing is.
+kernel::Table loaded_kernel(const std::vector<int>& laws);
 
-/// A kernel for drives of these laws that has an entry; the general drive if none has.
+/// A kernel for drives of these laws that has an entry; the general drive if none has. A copy, because a run does not keep Python's
+/// lock, and kernels may be added or forgotten meanwhile.
 template <class Entry>
-const kernel::Table& kernel_with(Entry kernel::Table::* entry, const std::vector<int>& laws) {
-    const kernel::Table& loaded = loaded_kernel(laws);
+kernel::Table kernel_with(Entry kernel::Table::* entry, const std::vector<int>& laws) {
+    const kernel::Table loaded = loaded_kernel(laws);
     return loaded.*entry ? loaded : general::table;
 }
 

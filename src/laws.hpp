@@ -109,7 +109,7 @@ void claims(const Bound<M>& c) {
 /// The struct of the state of a law, as its member class; null if it has none. A law that varies another has the state of any.
 template <class M, class StateOfAny>
 const Description* state_of(nb::handle type) {
-    using State = std::conditional_t<is_of_chosen<typename M::State>, StateOfAny, typename M::State>;
+    using State = std::conditional_t<stands_for_chosen<typename M::State>, StateOfAny, typename M::State>;
     if constexpr (std::is_empty_v<State>) {
         return nullptr;
     } else {

@@ -9,14 +9,10 @@ namespace strainwave::host {
 
 namespace {
 
-/// The described struct in which a law keeps such numbers.
 template <class Law>
-constexpr auto state_of_law() {
-    if constexpr (requires { typename Law::State; })
-        return typename Law::State{};
-    else
-        return Stateless<double>{};
-}
+using StateOf = general::StateOf<double, Law>;
+
+/// The described struct of what a law shows.
 template <class Law>
 constexpr auto output_of_law() {
     if constexpr (requires { typename Law::Output; })
@@ -30,12 +26,12 @@ using Number = std::function<void(const std::string& name, int element, const Fi
 /// Calls number(name, element, field) for each number of a struct of a law, whose name begins with `before`.
 template <class X, class Law>
 void each_name(const Law& law, const std::string& before, const Number& number) {
-    if constexpr (is_of_chosen<X>) {  // a law that varies another has its state
-        law.law.visit([&]<class Inner>(const Inner& inner) { each_name<decltype(state_of_law<Inner>())>(inner, before, number); });
+    if constexpr (stands_for_chosen<X>) {  // a law that varies another has its state
+        law.law.visit([&]<class Inner>(const Inner& inner) { each_name<StateOf<Inner>>(inner, before, number); });
     } else {
         X names{};
         X::fields(names, [&]<class T>(const T& member, const Field& field) {
-            if constexpr (is_of_chosen<T>)
+            if constexpr (stands_for_chosen<T>)
                 each_name<T>(law, before + field.name + ".", number);
             else if constexpr (Described<T>)
                 each_name<T>(law, before + field.name + "_", number);
@@ -81,7 +77,7 @@ private:
         else if (discrete)
             each_name<control::DiscreteOf<double, Law>>(law, "", named);
         else
-            each_name<decltype(state_of_law<Law>())>(law, "", named);
+            each_name<StateOf<Law>>(law, "", named);
     }
 };
 

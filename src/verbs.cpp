@@ -2,6 +2,8 @@
 
 #include <strainwave/kinematic_error/fourier.hpp>
 
+#include <algorithm>
+
 #include "general/friction.hpp"
 #include "general/hysteresis.hpp"
 #include "general/kinematic_error.hpp"
@@ -61,7 +63,7 @@ namespace {
 
 /// The part of the general drive that a law is, by itself: called with what Python holds.
 template <class Part>
-Alone<Part> alone(const BoundLaw& of, const void* model) {
+SingleLaw<Part> single_law(const BoundLaw& of, const void* model) {
     return {of.description, model, of.law};
 }
 
@@ -69,11 +71,11 @@ Alone<Part> alone(const BoundLaw& of, const void* model) {
 template <class Part, class F>
 void function(const BoundLaw& of, const char* name, const char* argument, const char* doc, F f) {
     define_function(of.type, of.description, name, {{argument, "float"}}, doc,
-                    [of, f](const void* model, const double* x) { return f(alone<Part>(of, model).part, *x); });
+                    [of, f](const void* model, const double* x) { return f(single_law<Part>(of, model).part, *x); });
     define_verb(of.type, of.description, name, {{argument, SW_NUMBERS}}, SW_ARRAY, doc,
                 [of, f, argument](const void* model, const Call& call) -> nb::object {
                     const auto x = numbers(call[argument], argument);
-                    const auto law = alone<Part>(of, model);
+                    const auto law = single_law<Part>(of, model);
                     if (x.ndim() == 0) return nb::float_(f(law.part, *x.data()));
                     auto [out, y] = like(x);
                     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -136,7 +138,7 @@ void error_verbs(const BoundLaw& of) {
                 python_type<kinematic_error::Fourier<double>>(false),
                 "Its harmonics of order 1 to `highest`, at most 16, over one turn of the input: a Fourier law, without the mean.",
                 [of](const void* model, const Call& call) {
-                    return nb::cast(harmonics_of(alone<Part>(of, model).part, call.whole("highest")));
+                    return nb::cast(harmonics_of(single_law<Part>(of, model).part, call.whole("highest")));
                 });
 }
 
@@ -152,14 +154,15 @@ namespace {
 template <class F>
 void noise_verb(const BoundLaw& of, const char* name, const char* doc, F what) {
     using Part = general::KinematicNoise<double>;
-    define_function(
-        of.type, of.description, name, {{"angle", "float"}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, doc,
-        [of, what](const void* model, const double* x) { return what(alone<Part>(of, model).part.at(turned(x[0]), x[1], x[2])); });
+    define_function(of.type, of.description, name, {{"angle", "float"}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}}, doc,
+                    [of, what](const void* model, const double* x) {
+                        return what(single_law<Part>(of, model).part.at(turned(x[0]), x[1], x[2]));
+                    });
     define_verb(of.type, of.description, name, {{"angle", SW_NUMBERS}, {"torque", "float", "0.0"}, {"speed", "float", "0.0"}},
                 SW_ARRAY, doc, [of, what](const void* model, const Call& call) -> nb::object {
                     const auto x = numbers(call["angle"], "angle");
                     const double torque = call.number("torque"), speed = call.number("speed");
-                    const auto law = alone<Part>(of, model);
+                    const auto law = single_law<Part>(of, model);
                     if (x.ndim() == 0) return nb::float_(what(law.part.at(turned(*x.data()), torque, speed)));
                     auto [out, y] = like(x);
                     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -209,7 +212,7 @@ using Hysteresis = general::Hysteresis<double>;
 /// What value(law, state, increment, i) gives at each point of a path of twist, the state brought up to date after each.
 template <class F>
 Values along_path(const BoundLaw& of, const void* model, const Call& call, F&& value) {
-    const auto law = alone<Hysteresis>(of, model);
+    const auto law = single_law<Hysteresis>(of, model);
     const auto path = steps_of(call["twist"], "twist", "rad");
     auto [out, y] = like(path);
     auto x = state_in<Hysteresis::State>(of, call);
@@ -251,7 +254,7 @@ void hysteresis_verbs(const BoundLaw& of) {
            });
     define("advance", "State", "The state at the end of a path of `twist` [rad].",
            [](const BoundLaw& of_law, const void* model, const Call& call) {
-               const auto law = alone<Hysteresis>(of_law, model);
+               const auto law = single_law<Hysteresis>(of_law, model);
                const auto twist = steps_of(call["twist"], "twist", "rad");
                State x = state_in<State>(of_law, call);
                for (std::size_t i = 1; i < twist.size(); ++i) {
@@ -306,7 +309,7 @@ void over_contacts(const BoundLaw& of, const char* name, const char* argument, c
     const std::vector<Accepted> one = contacted({argument, "float", otherwise}),
                                 any = contacted({argument, SW_NUMBER_OR, otherwise});
     define_function(of.type, of.description, name, one, doc, [of, at](const void* model, const double* x) {
-        return at(alone<Friction>(of, model).part, x[0], x[1], x[2], x[3]);
+        return at(single_law<Friction>(of, model).part, x[0], x[1], x[2], x[3]);
     });
     // a number where all are numbers, else an array
     define_verb(of.type, of.description, name, any, "typing.Any", doc,
@@ -316,7 +319,7 @@ void over_contacts(const BoundLaw& of, const char* name, const char* argument, c
                     std::vector<Argument> each;
                     for (nb::handle broadcast : nb::list(nb::module_::import_("numpy").attr("broadcast_arrays")(*given)))
                         each.push_back(numbers(broadcast, argument));
-                    const auto law = alone<Friction>(of, model);
+                    const auto law = single_law<Friction>(of, model);
                     auto [out, y] = like(each[0]);
                     for (std::size_t i = 0; i < each[0].size(); ++i) {
                         let_interrupt(i);
@@ -331,8 +334,8 @@ Values friction_trace(const BoundLaw& of, const void* model, const Call& call) {
     const auto t = steps_of(call["time"], "time", "s"), v = path_of(call["speed"], "speed");
     if (t.size() != v.size()) throw nb::value_error("time and speed must have the same length");
     const Series loads(call["load"], "load", t.size()), temperatures(call["temperature"], "temperature", t.size());
-    const auto alone_law = alone<Friction>(of, model);
-    const Friction& law = alone_law.part;
+    const auto held_law = single_law<Friction>(of, model);
+    const Friction& law = held_law.part;
     Friction::State state = state_in<Friction::State>(of, call);
     double angle = call.number("angle");
     const auto contact = [&](std::size_t i, double at_speed) {
@@ -369,8 +372,8 @@ Values friction_quasistatic(const BoundLaw& of, const void* model, const Call& c
     const auto path = steps_of(call["displacement"], "displacement", "rad");
     const Series loads(call["load"], "load", path.size()), temperatures(call["temperature"], "temperature", path.size());
     const double angle = call.number("angle");
-    const auto alone_law = alone<Friction>(of, model);
-    const Friction& law = alone_law.part;
+    const auto held_law = single_law<Friction>(of, model);
+    const Friction& law = held_law.part;
     Friction::State state{};
     double sense = 0.0;
     auto [out, torque] = like(path);
@@ -398,7 +401,7 @@ void friction_verbs(const BoundLaw& of) {
                   "\n\nZero for a law that does not stick.",
                   [](const Friction& law, const Contact& at, double s) { return friction::hold(law, at.pushed(sign(s))); });
     define_property(of.type, of.description, "set_valued", "bool", "Whether it can hold at rest.",
-                    [of](const void* model) { return nb::cast(alone<Friction>(of, model).part.set_valued()); });
+                    [of](const void* model) { return nb::cast(single_law<Friction>(of, model).part.set_valued()); });
     const Accepted angle{"angle", "float", "0.0"}, load{"load", SW_NUMBER_OR, "0.0"},
         temperature{"temperature", SW_NUMBER_OR, "293.15"};
     std::vector<Accepted> traced{{"time", SW_NUMBERS}, {"speed", SW_NUMBERS}, angle, load, temperature};

@@ -1,6 +1,4 @@
 #pragma once
-#include <algorithm>
-
 #include "call.hpp"
 #include "general/part.hpp"
 
@@ -30,12 +28,12 @@ void check_domain(const std::string& law, const Domain<double>& domain);
 
 /// A part of the general drive by itself.
 template <class Part>
-struct Alone {
-    std::vector<std::shared_ptr<const void>> laws;
+struct SingleLaw {
+    general::OwnedLaws laws;
     Part part;
 
     /// Law number `law` of its family.
-    Alone(const Description& description, const void* model, int law) {
+    SingleLaw(const Description& description, const void* model, int law) {
         const Parts parts = parts_of(description, model);
         std::vector<int> chosen{law};
         chosen.insert(chosen.end(), parts.laws.begin(), parts.laws.end());
@@ -43,9 +41,10 @@ struct Alone {
         part.read(from);
     }
     template <class S, class... Law>
-    explicit Alone(const Choice<S, Law...>& choice)
-        : Alone(choice.visit(
-              [&]<class Chosen>(const Chosen& law) { return Alone(description_of<Chosen>(), &law, int(choice.model.index())); })) {}
+    explicit SingleLaw(const Choice<S, Law...>& choice)
+        : SingleLaw(choice.visit([&]<class Chosen>(const Chosen& law) {
+              return SingleLaw(description_of<Chosen>(), &law, int(choice.model.index()));
+          })) {}
 };
 
 /// A law as Python binds it, while its verbs are added: which of its family it is, and the struct of its state, null if it has

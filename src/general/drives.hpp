@@ -1,7 +1,4 @@
 #pragma once
-#include <memory>
-#include <vector>
-
 #include "../kernel/assemble.hpp"
 #include "drive.hpp"
 
@@ -10,7 +7,7 @@ namespace strainwave::general {
 /// Calls f with the drive, or gear, that has the laws that a set chooses.
 template <template <class> class Model, class S, class F>
 auto with_model(const kernel::Set& set, const S* numbers, const F& f) {
-    std::vector<std::shared_ptr<const void>> laws;
+    OwnedLaws laws;
     kernel::Reader<S> from{set.laws, set.shape, numbers, &laws};
     const auto model = kernel::assembled<Model<S>>(from);
     return f(model);

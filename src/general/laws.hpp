@@ -4,18 +4,13 @@
 #include <strainwave/list.hpp>
 
 #include <cstring>
-#include <memory>
 #include <tuple>
-#include <vector>
 
 #include "../kernel/assemble.hpp"
 #include "part.hpp"
 
 /// What the families of parts share in their sources: the laws of a list as the general drive holds them.
 namespace strainwave::general {
-
-/// The laws that a drive has chosen, for as long as it lives.
-using Kept = std::vector<std::shared_ptr<const void>>;
 
 namespace detail {
 
@@ -29,22 +24,6 @@ struct Around<Outer<S, Law>, Inner> {
     using type = Outer<S, Inner>;
 };
 
-/// The described struct in which a law keeps its state.
-template <class S, class Law>
-constexpr auto state_of() {
-    if constexpr (requires { typename Law::State; })
-        return typename Law::State{};
-    else
-        return Stateless<S>{};
-}
-template <class S, class Law>
-constexpr auto output_of() {
-    if constexpr (requires { typename Law::Output; })
-        return typename Law::Output{};
-    else
-        return Stateless<S>{};
-}
-
 }  // namespace detail
 
 /// The laws of a list; those that hold another hold an `Inner`.
@@ -53,8 +32,8 @@ struct Laws;
 template <class S, template <class...> class... Law, class Inner>
 struct Laws<S, List<Law...>, Inner> {
     template <class Chosen>
-    using Whole = typename detail::Around<Chosen, Inner>::type;
-    using All = std::tuple<Whole<Law<S>>...>;
+    using WithInner = typename detail::Around<Chosen, Inner>::type;
+    using All = std::tuple<WithInner<Law<S>>...>;
     static constexpr int count = sizeof...(Law);
 
     template <int i>
@@ -73,8 +52,7 @@ struct Laws<S, List<Law...>, Inner> {
 
     /// Reads which law it is and its parameters, and keeps it.
     static void read(Part& part, kernel::Reader<S>& from) {
-        part.chosen = *from.laws++;
-        read_chosen<0>(part, from, [](const auto&) {});
+        read(part, from, [](const auto&) {});
     }
     /// The same, and calls note(law) with the law as it was written.
     template <class Note>
@@ -92,7 +70,7 @@ private:
             note(law);
             auto made = std::make_shared<const Compiled<i>>(compiled(law));
             part.law = made.get();
-            static_cast<Kept*>(from.kept)->push_back(std::move(made));
+            static_cast<OwnedLaws*>(from.owned_laws)->push_back(std::move(made));
         }
     }
 };
@@ -115,7 +93,7 @@ X unpacked(const Storage<S, n, few>& slots) {
 }
 template <class S, class Law, class Slots>
 auto own(const Law&, const Slots& slots) {
-    return unpacked<decltype(detail::state_of<S, Law>()), S>(slots);
+    return unpacked<StateOf<S, Law>, S>(slots);
 }
 template <class S, class Law, class Slots>
 auto own_discrete(const Law&, const Slots& slots) {
@@ -168,7 +146,7 @@ void add_places(const Law& law, Places& found, int first = 0) {
 }
 template <class S, class Law>
 void add_state_places(const Law& law, Places& found) {
-    using X = decltype(detail::state_of<S, Law>());
+    using X = StateOf<S, Law>;
     if constexpr (is_storage<X>)
         law.law.places(found);
     else

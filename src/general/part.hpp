@@ -2,6 +2,9 @@
 #include <strainwave/field.hpp>
 #include <strainwave/scalar/dual.hpp>
 
+#include <memory>
+#include <vector>
+
 #include "../kernel/assemble.hpp"
 #include "../kernel/places.hpp"
 #include "../kernel/table.hpp"
@@ -11,6 +14,9 @@
 namespace strainwave::general {
 
 using kernel::Places;
+
+/// The laws that a drive has chosen, for as long as it lives.
+using OwnedLaws = std::vector<std::shared_ptr<const void>>;
 
 using kernel::slopes;
 using Slope = Dual<slopes>;
@@ -24,6 +30,7 @@ struct Part {
 /// Numbers of whichever law was chosen, at most n. Up to `few` are all carried along; of more, those that the law has.
 template <class S, int n, int few = 4>
 struct Storage {
+    static_assert(n <= Places::capacity);
     static constexpr int capacity = n;
     typename detail::Either<(n <= few), Array<S, (n > 0 ? n : 1)>, Counted<S, n>>::type slot{};
 
@@ -32,6 +39,22 @@ struct Storage {
         visit(SW_FIELD(m, slot, "1", "State of the law chosen, in the order it lists it"));
     }
 };
+
+namespace detail {
+
+template <class S, class Law>
+constexpr auto state_of() {
+    if constexpr (requires { typename Law::State; })
+        return typename Law::State{};
+    else
+        return Stateless<S>{};
+}
+
+}  // namespace detail
+
+/// The described struct in which a law keeps its state.
+template <class S, class Law>
+using StateOf = decltype(detail::state_of<S, Law>());
 
 template <class T>
 inline constexpr bool is_storage = false;

@@ -22,7 +22,7 @@ struct Reader {
     const int* laws;
     const int* shape;
     const S* numbers;
-    void* kept = nullptr;  ///< where the general drive keeps the laws it chooses
+    void* owned_laws = nullptr;  ///< to which the general drive adds those that it chooses
 };
 
 /// Fills in a model, member by member. A part that chooses its law at run time reads itself.

@@ -25,7 +25,6 @@ public:
         for (std::size_t r = 0; r < rows.count; ++r) held[r * stretch + gathered] = outputs[place.slot[rows.recorded[r]]];
         if (++gathered == stretch) flush();
     }
-    bool empty() const { return written == 0; }
     void flush() {
         for (std::size_t r = 0; r < rows.count; ++r) write(r, &held[r * stretch], gathered, written);
         written += gathered;

@@ -86,6 +86,8 @@ S* write(const Drive& drive, const typename Drive::State& state, S* numbers) {
 template <class Drive>
 Places outputs_of(const Drive& drive) {
     using Output = typename Drive::Output;
+    using S = std::remove_cvref_t<decltype(drive.gear.damping)>;
+    static_assert(size_of<S, Output> <= Places::capacity, "a drive shows more numbers than Places has room for");
     Places found;
     int place = 0;
     Output output{};
@@ -99,7 +101,7 @@ Places outputs_of(const Drive& drive) {
             for (int i = 0; i < within.count; ++i) found.add(place + within.slot[i]);
             place += T::capacity;
         } else if constexpr (Described<T>) {
-            for (int i = 0; i < size_of<std::remove_cvref_t<decltype(drive.gear.damping)>, T>; ++i) found.add(place++);
+            for (int i = 0; i < size_of<S, T>; ++i) found.add(place++);
         } else {
             found.add(place++);
         }

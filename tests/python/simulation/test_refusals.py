@@ -269,3 +269,9 @@ def test_a_run_that_has_diverged_goes_no_further() -> None:
     assert not sound[lost:].any()
     assert len(set(outputs[COLUMNS.index("command"), lost + 65 :])) == 1
     assert len(sound) > lost + 1000
+
+
+@pytest.mark.parametrize("quantity", [-1, len(_core.quantities), 10**6])
+def test_the_core_refuses_a_quantity_that_does_not_exist(quantity: int) -> None:
+    with pytest.raises(ValueError, match="there is no such quantity"):
+        _core.started(DRIVE, [quantity], np.ones(1), np.zeros(6))
