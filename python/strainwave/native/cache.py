@@ -26,24 +26,23 @@ class KernelWarning(UserWarning):
     """Kernels are not used, for the reason given; the general code gives the same numbers, more slowly."""
 
 
-def kernel_file(kernel: Kernel) -> Path | None:
+def kernel_file(kernel: Kernel, announce: Callable[[], None] = lambda: None) -> Path | None:
     """Return the shared object of a kernel, which is compiled if it is missing; None, with a warning, if that is impossible.
 
     None without a warning if the environment variable STRAINWAVE_KERNELS is `off`.
+
+    Args:
+        kernel: what to compile
+        announce: called before a compilation
     """
-    if not can_compile(kernel):
+    if cache_folder() is None or kernel in _failed:
         return None
     found = find_kernel(kernel)
     if found is None:
-        found = _or_warning(lambda: make_kernel(kernel))
+        found = _or_warning(lambda: make_kernel(kernel, announce))
     if found is None:
         _failed.add(kernel)
     return found
-
-
-def can_compile(kernel: Kernel) -> bool:
-    """True unless kernels are switched off, or this one could not be compiled before in this process."""
-    return cache_folder() is not None and kernel not in _failed
 
 
 def find_kernel(kernel: Kernel) -> Path | None:
@@ -57,10 +56,14 @@ def find_kernel(kernel: Kernel) -> Path | None:
     return _or_warning(lambda: _shipped(kernel)) or _or_warning(lambda: _cached(folder, kernel, candidates()))
 
 
-def make_kernel(kernel: Kernel) -> Path:
+def make_kernel(kernel: Kernel, announce: Callable[[], None] = lambda: None) -> Path:
     """Return the shared object of a kernel, compiled by the first compiler of this machine, and put into the cache.
 
     Another process that makes the same kernel is waited for.
+
+    Args:
+        kernel: what to compile
+        announce: called before the compilation
 
     Raises:
         NoCompilerError: there is no compiler
@@ -75,6 +78,7 @@ def make_kernel(kernel: Kernel) -> Path:
     with store.alone(folder, key, MAX_COMPILE_SECONDS):
         found = _or_warning(lambda: _cached(folder, kernel, [compiler]))
         if found is None:
+            announce()
             found = _compile(kernel, compiler, folder, key, _core.instruction_set())
             store.tidy(folder, keep=key)
     return found

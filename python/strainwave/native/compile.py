@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -20,12 +21,12 @@ from strainwave.native.static_type import in_words
 
 Array = NDArray[np.float64]
 ROOM_TEMPERATURE = 293.15  # K
-TWIST = 5  # channel of the output that every trial records
 TRIAL_STEPS = 1000  # of the run that both are timed by
 TRIAL_MEMBERS = 16  # of the ensemble
 MAX_TRIAL_STEP = 2e-4  # s
-RESOLUTION = 0.5  # rad of the fastest vibration for each step of the trial
-REPEATS = 3  # of each trial, of which the fastest counts
+MAX_ADAPTIVE_STEPS = 10_000  # of a trial, after which it ends
+MAX_PHASE_PER_STEP = 0.5  # rad of the fastest vibration for each step of the trial
+TRIAL_REPEATS = 3  # of which the fastest counts
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Compilation:
 
     Args:
         drive: the laws of the drive, without those that every drive has by default
-        jobs: the jobs, in the order asked for
+        jobs: the jobs, in the order of `JOBS`
     """
 
     drive: str
@@ -76,18 +77,19 @@ def compile(drive: Drive | GearSet, jobs: Sequence[str] = JOBS) -> Compilation:
 
     Raises:
         TypeError, ValueError: an argument is not of its kind
-        OSError: there is no compiler, it reports an error, or the cache cannot be written; says what to do
+        OSError: there is no compiler, it reports an error, or the cache cannot be written
 
     >>> import strainwave as sw
     >>> print(sw.compile(sw.load("tilt-actuator"), jobs=[]).drive)
     control Sampled(PositionSpeed), motor PMSM, friction_input LuGre, load Pendulum
     """
     drive = drive_of(drive)
-    for job in jobs:
-        arguments.one_of("jobs", job, JOBS)
-    wanted = [job for job in JOBS if job in jobs]
-    _core.forget_kernels(drive)
-    general = {job: _trial_seconds(drive, job) for job in wanted}
+    names = arguments.names("jobs", jobs)
+    for name in names:
+        arguments.one_of("jobs", name, JOBS)
+    wanted = [job for job in JOBS if job in names]
+    with _general_drive(drive):
+        general = {job: _trial_seconds(drive, job) for job in wanted}
     found = []
     for job in wanted:
         began = time.perf_counter()
@@ -97,34 +99,51 @@ def compile(drive: Drive | GearSet, jobs: Sequence[str] = JOBS) -> Compilation:
     return Compilation(in_words(drive), tuple(found))
 
 
+@contextmanager
+def _general_drive(drive: Drive) -> Iterator[None]:
+    """Use no kernel for drives with the laws of one; then those that were in use before."""
+    jobs = [job for job in JOBS if job in _core.loaded_jobs(drive)]
+    _core.forget_kernels(drive)
+    try:
+        yield
+    finally:
+        for job in jobs:
+            kernels.load(drive, job, compile_it=False)
+
+
 def _trial_seconds(drive: Drive, job: Job) -> float:
     """Return the least time [s] of some short runs of a job."""
     trial = _trial(drive, job)
     times = []
-    for _ in range(REPEATS):
+    for _ in range(TRIAL_REPEATS):
         began = time.perf_counter()
-        trial()
+        # A run that leaves where the laws are valid, or that takes too many steps, ends at the same step by a kernel.
+        with suppress(ValueError, FloatingPointError):
+            trial()
         times.append(time.perf_counter() - began)
     return min(times)
 
 
 def _trial(drive: Drive, job: Job) -> Callable[[], Any]:
     """Return a short run of a job, under no command and no load."""
-    dt = min(MAX_TRIAL_STEP, RESOLUTION / max(_core.max_rate(drive, 0.0), 1.0))
+    dt = min(MAX_TRIAL_STEP, MAX_PHASE_PER_STEP / max(_core.max_rate(drive, 0.0), 1.0))
     instants: Array = dt * np.arange(TRIAL_STEPS + 1, dtype=np.float64)
     inputs: Array = np.zeros((TRIAL_STEPS, 3, 6))
     inputs[..., 4] = ROOM_TEMPERATURE
     keep = np.zeros(TRIAL_STEPS, dtype=np.uint8)
     keep[-1] = 1
     state, ends, out, numbers = drive.rest().numbers, instants[[0, -1]], np.empty((1, 2)), _core.parts(drive)[2]
+    twist = [channel for name, *_, channel in _core.outputs(drive) if name == "twist"]
     if job == "simulate":
-        return partial(_core.simulate, drive, state, instants, inputs, keep, _core.Method.exponential, [TWIST], out, 1)
+        return partial(_core.simulate, drive, state, instants, inputs, keep, _core.Method.exponential, twist, out, 1)
     if job == "simulate_adaptively":
         acting = (_constant(0.0), _constant(0.0), _constant(ROOM_TEMPERATURE))
-        return partial(_core.simulate_adaptively, drive, state, *acting, ends, 1e-6, 1e-12, 10**6, ends[1:], [TWIST], out, 1)
+        return partial(
+            _core.simulate_adaptively, drive, state, *acting, ends, 1e-6, 1e-12, MAX_ADAPTIVE_STEPS, ends[1:], twist, out, 1
+        )
     if job == "simulate_many":
         values, many = np.full((1, TRIAL_MEMBERS), numbers[0]), np.empty((1, TRIAL_MEMBERS, 2))
-        return partial(_core.simulate_many, drive, [0], values, None, instants, inputs, keep, [TWIST], np.inf, 1, many)
+        return partial(_core.simulate_many, drive, [0], values, None, instants, inputs, keep, twist, np.inf, 1, many)
     free = list(range(min(_core.slopes, len(numbers))))
     if job == "inverse_dynamics":
         return partial(_core.inverse_dynamics, drive, np.ones((TRIAL_STEPS, 3)), np.ascontiguousarray(inputs[:, 0]), free)

@@ -33,7 +33,7 @@ class Record:
 
     Args:
         drive: its models in words
-        job: such as run, ensemble, derivatives
+        job: what it does, as in `strainwave.native.kernels.JOBS`
         compiler: its name
         seconds: that the compilation took [s]
         made: when, as seconds since 1970 [s]
@@ -56,22 +56,22 @@ def cache_folder() -> Path | None:
     Raises:
         ValueError: the environment variable is neither `off` nor an absolute path
     """
-    said = os.environ.get(VARIABLE, "")
-    if said == OFF:
+    chosen = os.environ.get(VARIABLE, "")
+    if chosen == OFF:
         return None
-    if said and not os.path.isabs(said):
-        raise ValueError(f'{VARIABLE} = "{said}" must be {OFF} or an absolute path')
-    return Path(said) if said else _user_cache() / "strainwave" / "kernels"
+    if chosen and not os.path.isabs(chosen):
+        raise ValueError(f'{VARIABLE} = "{chosen}" must be {OFF} or an absolute path')
+    return Path(chosen) if chosen else _user_cache() / "strainwave" / "kernels"
 
 
 def read(folder: Path, key: str, owners: set[int]) -> Path | None:
-    """Return the file of a kernel whose bytes are those of its record; None if there is none.
+    """Return the file of a kernel whose bytes are those of its record; None if one of the two is missing.
 
     Raises:
         OSError: the file or its record is damaged, or somebody else than the owners could have written it
     """
     path = _path(folder, key)
-    if not os.path.lexists(path):
+    if not (os.path.lexists(path) and os.path.lexists(_record_path(folder, key))):  # the record is written last
         return None
     record, content = _record(folder, key, owners), content_of(path, owners)
     if sha256(content).hexdigest() != record.sha256:

@@ -31,6 +31,16 @@ ENTRIES: dict[Job, str] = {
     "inverse_dynamics": "&Entries::inverse_dynamics<strainwave::kernel::slopes>",
 }
 
+
+def _core_on_disk() -> tuple[int, int, int]:
+    """Return what an update of the package changes of the file of its extension."""
+    found = os.stat(_core.__file__)
+    return found.st_ino, found.st_size, found.st_mtime_ns
+
+
+_CORE_IN_USE = _core_on_disk()
+UPDATED = "strainwave was updated after this process had begun; restart the process"
+
 _steps_taken: dict[tuple[tuple[int, ...], Job], float] = defaultdict(float)  # by the general drive in this process, by laws
 
 
@@ -82,7 +92,7 @@ def prepare(drive: Drive, job: Job, steps: float) -> None:
 
 
 def note(drive: Drive, job: Job, steps: float) -> None:
-    """Count steps that the general drive has taken for a job, beyond those that `prepare` was told."""
+    """Count steps that the general drive has taken for a job, beyond those that `prepare` has counted."""
     _steps_taken[tuple(_core.parts(drive)[0]), job] += steps
 
 
@@ -93,18 +103,19 @@ def forget_steps() -> None:
 
 def load(drive: Drive, job: Job, *, compile_it: bool) -> bool:
     """True if a kernel does this job from now on: one compiled before, or else compiled now."""
-    from strainwave.native.cache import can_compile, find_kernel, kernel_file, warn_once
+    from strainwave.native.cache import find_kernel, kernel_file, warn_once
 
+    if _is_updated():
+        warn_once(UPDATED)
+        return False
     kernel = kernel_of(drive, job)
-    path = find_kernel(kernel)
-    if path is None and compile_it and can_compile(kernel):
-        print(f"strainwave: compiling a kernel of this drive for {job}, once; it takes some seconds", file=sys.stderr)
-        path = kernel_file(kernel)
+    announcement = f"strainwave: compiling a kernel of this drive for {job}, once; it takes some seconds"
+    path = kernel_file(kernel, lambda: print(announcement, file=sys.stderr)) if compile_it else find_kernel(kernel)
     if path is None:
         return False
     try:
         use(drive, path)
-    except OSError as error:  # a file system that runs no code, or a symbol that is missing
+    except (OSError, ValueError) as error:  # a file system that runs no code, or a symbol that is missing
         warn_once(f"{path} cannot be loaded: {error}")
         return False
     return True
@@ -118,8 +129,15 @@ def load_or_raise(drive: Drive, job: Job) -> None:
     """
     from strainwave.native.cache import find_kernel, make_kernel
 
+    if _is_updated():
+        raise OSError(UPDATED)
     kernel = kernel_of(drive, job)
     use(drive, find_kernel(kernel) or make_kernel(kernel))
+
+
+def _is_updated() -> bool:
+    """True if the package was replaced: kernels of its new headers would not fit the extension in use."""
+    return _core_on_disk() != _CORE_IN_USE
 
 
 def use(drive: Drive, path: Path) -> None:

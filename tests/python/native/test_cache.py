@@ -133,8 +133,7 @@ def test_a_kernel_without_a_record_is_not_used(kernels: Path) -> None:
     made = kernel_file(KERNEL)
     assert made is not None
     made.with_suffix(".json").unlink()
-    with pytest.warns(KernelWarning, match="No such file"):
-        assert find_kernel(KERNEL) is None
+    assert find_kernel(KERNEL) is None  # without a warning, which would be an error: another process may be about to write it
     assert kernel_file(KERNEL) == made
 
 

@@ -159,7 +159,49 @@ def test_a_file_that_cannot_be_loaded_is_done_without(monkeypatch: pytest.Monkey
     assert _core.loaded_jobs(DRIVE) == []
 
 
-def test_without_a_compiler_the_general_drive_goes_on_and_says_so_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_library_without_a_kernel_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("strainwave.native.cache.find_kernel", lambda kernel: Path(_core.__file__))
+    with pytest.warns(KernelWarning, match="cannot be loaded"):
+        assert not kernels.load(DRIVE, "simulate", compile_it=False)
+    assert _core.loaded_jobs(DRIVE) == []
+
+
+def test_a_process_that_began_before_an_update_of_the_package_uses_no_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels of the headers that are there now would not fit the extension in use."""
+    kernels.load_or_raise(DRIVE, "simulate")
+    _core.forget_kernels(DRIVE)
+    monkeypatch.setattr(kernels, "_CORE_IN_USE", (0, 0, 0))
+    with pytest.warns(KernelWarning, match="restart the process"):
+        assert not kernels.load(DRIVE, "simulate", compile_it=True)
+    with pytest.raises(OSError, match="restart the process"):
+        kernels.load_or_raise(DRIVE, "simulate")
+    assert _core.loaded_jobs(DRIVE) == []
+
+
+def test_an_ensemble_goes_on_by_its_kernel_if_that_is_forgotten_meanwhile() -> None:
+    kernels.load_or_raise(DRIVE, "simulate_many")
+    steps, members = 8000, 1000  # so many that progress is reported
+    reports: list[int] = []
+
+    def forget(done: int) -> None:
+        reports.append(done)
+        _core.forget_kernels(DRIVE)
+
+    inputs = np.zeros((steps, 3, 6))
+    inputs[..., 4] = 300.0
+    inertia = np.full((1, members), _core.parts(DRIVE)[2][0])
+    out = np.empty((1, members, 1))
+    _core.simulate_many(
+        DRIVE, [0], inertia, None, STEP * np.arange(steps + 1.0), inputs, np.zeros(steps, np.uint8), [5], np.inf, 2, out, forget
+    )
+    assert reports
+    assert _core.loaded_jobs(DRIVE) == []
+    assert np.isfinite(out).all()
+
+
+def test_without_a_compiler_the_general_drive_goes_on_and_says_so_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setenv("STRAINWAVE_KERNELS", str(tmp_path / "kernels"))
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CXX", raising=False)
@@ -171,3 +213,4 @@ def test_without_a_compiler_the_general_drive_goes_on_and_says_so_once(monkeypat
         first = sw.simulate_many(DRIVE, command(0.05), inertias, STEP)
     second = sw.simulate_many(DRIVE, command(0.05), inertias, STEP)  # a second warning would be an error
     assert np.array_equal(first["torque"], second["torque"])
+    assert capsys.readouterr().err == ""  # nothing is announced
