@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import math
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -36,14 +37,16 @@ DERIVATIVES = 12
 LIMIT = 120.0  # s, for all runs of a drive
 EVERY = 8  # drives of which one is compiled in both ways
 KERNEL_LIMIT = 600.0  # s, with its kernels compiled
+MAX_PHASE_PER_STEP = 0.4  # rad of the fastest vibration, so that fewer runs are refused, of which kernels take no step
+MIN_STEP = 1e-8  # s, which resolves no drive that is faster
 
 
-def digest(number: int) -> dict[str, str]:
-    """Of each run of a drive."""
+def digest(number: int, max_phase: float = math.inf) -> dict[str, str]:
+    """Of each run of a drive, in steps of at most a phase [rad] of its fastest vibration."""
     warnings.simplefilter("ignore")
     random = np.random.default_rng(number)
     drive = model(sw.Drive, random)
-    dt = step(drive, random)
+    dt = min(step(drive, random), max(max_phase / max(_core.max_rate(drive, 0.0), 1.0), MIN_STEP))
     volts = sw.scenario.sine(random.uniform(0.0, 48.0), random.uniform(0.5, 5.0) / (STEPS * dt), STEPS * dt)
     acting: dict[str, Any] = {"inputs": acting_on(drive, random)}
     varied, sample = neighbours(drive, random), 5.0 * dt
@@ -63,13 +66,13 @@ def digest_by_kernel(number: int) -> dict[str, str]:
     """Of each run of a drive that differs by its kernels; empty if none does."""
     drive = model(sw.Drive, np.random.default_rng(number))
     _core.forget_kernels(drive)
-    expected = digest(number)
+    expected = digest(number, MAX_PHASE_PER_STEP)
     runs = [job for job in kernels.JOBS if job.startswith("simulate")]
     # Alone, runs are compiled in another way than beside derivatives, which takes several times as long.
     for jobs in [kernels.JOBS, runs] if number % EVERY == 0 else [kernels.JOBS]:
         kernel = Kernel(kernels.source(drive, jobs), " ".join(jobs), str(number))
         kernels.use(drive, find_kernel(kernel) or make_kernel(kernel))
-    found = digest(number)
+    found = digest(number, MAX_PHASE_PER_STEP)
     return {kind: f"{expected[kind]}, by its kernel {found[kind]}" for kind in found if found[kind] != expected[kind]}
 
 
