@@ -26,6 +26,7 @@ TOP = {
     "__main__",
     "cache_command",
     "cli",
+    "compile_command",
     "file_options",
     "rig_command",
     "study_command",

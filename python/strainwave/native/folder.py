@@ -29,7 +29,7 @@ SHIPPED = Path(_core.__file__).parent / "kernels"
 
 @dataclass(frozen=True)
 class Record:
-    """What is known of a compiled kernel.
+    """The record of a compiled kernel.
 
     Args:
         drive: its models in words

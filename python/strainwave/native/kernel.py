@@ -19,7 +19,7 @@ class Kernel:
 
     Args:
         source: C++, which includes headers of the package and exports `extern "C"` functions
-        job: such as run, ensemble, derivatives
+        job: what it does, as in `strainwave.native.kernels.JOBS`
         drive: its models in words
     """
 
