@@ -188,6 +188,7 @@ def strainwave_crowd(members: int, threads: int, step: float) -> Callable[[], Ar
     import strainwave as sw
 
     one, wanted = task()
+    strainwave_drive.with_kernel(one, "simulate_many")
     inertias, outputs = {"load.inertia": actuator_drive.load_inertias(members)}, ["output_angle", "torque"]
 
     def solve() -> Array:
@@ -234,7 +235,7 @@ def as_it_comes(name: str, step: float) -> Callable[[], Array]:
     """A set with its sticking friction and its noise."""
     import strainwave as sw
 
-    one, wanted = sw.load(name), actuator_drive.command()
+    one, wanted = strainwave_drive.with_kernel(sw.load(name), "simulate"), actuator_drive.command()
     return strainwave_drive.repeated(lambda: sw.simulate(one, wanted, step, sample=SAMPLE))
 
 

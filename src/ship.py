@@ -14,7 +14,7 @@ from strainwave.files.ratings import drive_of
 from strainwave.native.cache import ship
 from strainwave.native.compilers import FLAGS_OF_INSTRUCTION_SET
 from strainwave.native.kernel import Kernel
-from strainwave.native.kernels import JOBS, kernel_of
+from strainwave.native.kernels import PUBLIC_JOBS, kernel_of
 
 
 def instruction_sets() -> list[str]:
@@ -25,7 +25,7 @@ def instruction_sets() -> list[str]:
 def kernels() -> list[Kernel]:
     """Return the kernels of all drives of the catalogue, one for drives with the same laws."""
     drives = [drive_of(sw.load(name)) for name in sw.catalogue("drives")]
-    found = [kernel_of(drive, job) for drive in drives for job in JOBS]
+    found = [kernel_of(drive, job) for drive in drives for job in PUBLIC_JOBS]
     return [*{kernel.source: kernel for kernel in found}.values()]
 
 

@@ -22,6 +22,6 @@ def compile(
     """
     from strainwave.files.gear_set import GearSet
     from strainwave.native.compile import compile as compiled
-    from strainwave.native.kernels import JOBS
+    from strainwave.native.kernels import PUBLIC_JOBS
 
-    print(compiled(GearSet.read(drive), jobs or JOBS))
+    print(compiled(GearSet.read(drive), jobs or PUBLIC_JOBS))

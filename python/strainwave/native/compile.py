@@ -16,7 +16,7 @@ from strainwave import Drive, _core, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.native import kernels
-from strainwave.native.kernels import JOBS, Job
+from strainwave.native.kernels import JOBS, PUBLIC_JOBS, Job
 from strainwave.native.static_type import in_words
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ class Compilation:
         return "\n".join([self.drive, f"{'job':20} {'compiled':>8}   {'faster':>7}", *lines])
 
 
-def compile(drive: Drive | GearSet, jobs: Sequence[str] = JOBS) -> Compilation:
+def compile(drive: Drive | GearSet, jobs: Sequence[str] = PUBLIC_JOBS) -> Compilation:
     """Compile the kernels of a drive, wait for them, and compare each with the general drive.
 
     A kernel is the same physics compiled for the laws of one drive. All later runs of drives with these laws use it, in this

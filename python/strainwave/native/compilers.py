@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -85,7 +86,7 @@ def candidates() -> Iterator[Compiler]:
     First that of the environment variable CXX, then c++, g++ and clang++ of PATH, then Clang of the package ziglang.
     """
     seen = set()
-    for words in (os.environ.get("CXX", "").split(), ["c++"], ["g++"], ["clang++"]):
+    for words in (shlex.split(os.environ.get("CXX", "")), ["c++"], ["g++"], ["clang++"]):
         if words and (path := shutil.which(words[0])):
             identity = " ".join([_identity(path), *words[1:]])
             if identity not in seen:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Job = Literal["simulate", "simulate_adaptively", "simulate_many", "differentiate", "inverse_dynamics"]
 JOBS: tuple[Job, ...] = get_args(Job)
+PUBLIC_JOBS = JOBS[:-1]  # no function of the package needs inverse dynamics of many instants yet
 LOOK_UP_STEPS = 20_000  # of the general drive: from then on a kernel that was compiled before is worth its look-up of some ms
 COMPILE_STEPS = 4_000_000  # of the general drive, some 6 to 10 s: several times what a compilation takes
 ADAPTIVE_STEPS = 3  # of the general drive that take as long as one whose error is estimated
