@@ -28,6 +28,10 @@ class Example(NamedTuple):
     line: int
 
 
+# Of a kernel that is compiled now, or was in an earlier run of the tests.
+ANNOUNCEMENT = re.compile(r"^strainwave: compiling a kernel .*\n", re.MULTILINE)
+
+
 def examples(page: Path) -> list[Example]:
     """The fenced blocks of Python, and of the command strainwave, on a page, and the line before each."""
     text = page.read_text()
@@ -62,7 +66,7 @@ def run_commands(example: Example, page: Path) -> None:
     """Runs the commands of a console, and compares what they print."""
     for each in re.split(r"^\$ ", example.code, flags=re.MULTILINE)[1:]:
         command, shown = re.split(r"(?<!\\)\n", each, maxsplit=1)
-        said = printed(command)
+        said = ANNOUNCEMENT.sub("", printed(command))
         alike = doctest.OutputChecker().check_output(shown, said, doctest.NORMALIZE_WHITESPACE)
         assert alike, f"{page.name}, line {example.line + 1}: {command}\n{said}"
 

@@ -80,8 +80,8 @@ def compile(drive: Drive | GearSet, jobs: Sequence[str] = PUBLIC_JOBS) -> Compil
         OSError: there is no compiler, it reports an error, or the cache cannot be written
 
     >>> import strainwave as sw
-    >>> print(sw.compile(sw.load("tilt-actuator"), jobs=[]).drive)
-    control Sampled(PositionSpeed), motor PMSM, friction_input LuGre, load Pendulum
+    >>> print(sw.compile(sw.load("two-inertia-gear"), jobs=[]).drive)
+    motor TorqueSource, stiffness Cubic, meter EnergyMeter
     """
     drive = drive_of(drive)
     names = arguments.names("jobs", jobs)
