@@ -140,7 +140,7 @@ nb::tuple run_adaptively(const ParameterDrive& drive, const Numbers& start, cons
     return nb::make_tuple(array_of(state), outcome.accepted, outcome.rejected);
 }
 
-/// What went wrong, in words.
+/// Error message of an outcome.
 std::string text_of(const kernel::Outcome& outcome) {
     using kernel::Ending;
     if (outcome.ending == Ending::out_of_bounds)
@@ -173,7 +173,7 @@ Start start_from(const Known& known, std::size_t members) {
     return known ? start_of(known->first, known->second, members) : Start{};
 }
 
-/// Where the transmission error stands among the numbers of a state.
+/// Index of the transmission error among the numbers of a state.
 std::size_t place_of_error(const Layout& layout) {
     const auto named = [](const Name& each) { return each.name == "transmission_error"; };
     return std::size_t(std::find_if(layout.state.begin(), layout.state.end(), named) - layout.state.begin());
@@ -267,7 +267,7 @@ void add_kernel_at(const ParameterDrive& drive, std::size_t address) {
     add_kernel(parts_of(drive).laws, *reinterpret_cast<const kernel::Table*>(address));
 }
 
-/// What a loaded kernel does for a drive, by name.
+/// Names of the jobs that a kernel is loaded for.
 nb::list loaded_jobs(const ParameterDrive& drive) {
     const kernel::Table table = loaded_kernel(parts_of(drive).laws);
     nb::list jobs;

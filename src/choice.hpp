@@ -43,7 +43,7 @@ struct Choice {
         }
     }
 
-    // What the parts of a drive must know of each other, to see whether they go together.
+    // Facts of a part that the checks between parts need.
 
     constexpr S ratio() const {
         return visit([](const auto& law) { return law.ratio(); });

@@ -8,7 +8,7 @@
 #include "choice.hpp"
 #include "kernel/assemble.hpp"
 
-/// What a described struct is made of, as a table at run time, so that what goes through sets of parameters is compiled once.
+/// Table of the members of a described struct at run time: code that walks sets of parameters is compiled once.
 namespace strainwave::host {
 
 template <class T>
@@ -44,7 +44,7 @@ struct Parts {
     kernel::Set set() const { return {laws.data(), shape.data(), numbers.data(), int(numbers.size())}; }
 };
 
-/// One number of a set: where it is, and what is known of it.
+/// A number of a set: its path, field and value.
 struct Parameter {
     std::string path;
     Field field;
@@ -53,7 +53,7 @@ struct Parameter {
 
 Parts parts_of(const Description& description, const void* model);
 std::vector<Parameter> parameters_of(const Description& description, const void* model);
-/// What is wrong with how the numbers of a model, or of one of its parts, relate to each other; empty if nothing is.
+/// The first contradiction between the numbers of a model or of one of its parts; empty if there is none.
 std::string problem_of(const Description& description, const void* model);
 /// Puts other numbers, as many, in place of those of a model.
 void set_numbers(const Description& description, void* model, const double* numbers);

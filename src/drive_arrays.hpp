@@ -28,7 +28,7 @@ inline general::State state_from(const ParameterDrive& drive, const Numbers& num
     return state_from(layout_of(drive), numbers);
 }
 
-/// Where members begin: with known quantities, one row of values each.
+/// Initial conditions of members: known quantities, one row of values each.
 inline Start start_of(const std::vector<int>& quantities, const Numbers& values, std::size_t members) {
     if (values.size() != quantities.size() * members)
         throw nb::value_error("values of n quantities and m members have shape (n, m)");

@@ -63,12 +63,12 @@ private:
             numbers[std::size_t(ensemble.variation.places[p])] = ensemble.variation.values[p * members + member];
         return numbers;
     }
-    /// What is wrong with these numbers; `drive` takes them.
+    /// The contradiction between these numbers, which `drive` takes; empty if there is none.
     std::string problem(ParameterDrive& drive, const std::vector<double>& numbers) const {
         set_numbers(ensemble.description, &drive, numbers.data());
         return problem_of(ensemble.description, &drive);
     }
-    /// Where a member begins; empty if there is no such state.
+    /// The initial state of a member; empty if there is none.
     general::State beginning(const std::vector<double>& numbers, std::size_t member) const {
         const kernel::Set set{parts.laws.data(), parts.shape.data(), numbers.data(), int(numbers.size())};
         general::State state = ensemble.start.at_rest

@@ -10,7 +10,7 @@
 
 namespace strainwave::host {
 
-/// Where runs begin: at rest, or where some quantities are known: values[q * members + m] is quantity `quantities[q]` of member m.
+/// Initial conditions of members: at rest, or known quantities: values[q * members + m] is quantity `quantities[q]` of member m.
 struct Start {
     bool at_rest = true;
     std::vector<int> quantities{};
@@ -25,7 +25,7 @@ struct Start {
     }
 };
 
-/// How the run of a member went.
+/// Result of the run of a member.
 struct MemberResult {
     kernel::Tally tally{};
     std::optional<kernel::Outcome> refusal{};  ///< what ended it, if anything did

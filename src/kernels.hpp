@@ -7,7 +7,7 @@
 /// The kernels that are loaded, by the laws of their drives. Needs Python's lock.
 namespace strainwave::host {
 
-/// What is loaded for drives of these laws; null entries where nothing is.
+/// The loaded functions for drives of these laws; null entries for the others.
 kernel::Table loaded_kernel(const std::vector<int>& laws);
 
 /// A kernel for drives of these laws that has an entry; the general drive if none has. A copy, because a run does not keep Python's

@@ -64,7 +64,7 @@ void inverse_verbs(const Bound<M>& c) {
     }
 }
 
-/// What some laws can be asked beyond their family.
+/// Functions that some laws have beyond those of their family.
 template <class M>
 void own_verbs(const Bound<M>& c) {
     if constexpr (requires(const M& m) { m.lobes(strainwave::Angle<double>{}); }) {

@@ -8,7 +8,7 @@
 /// show and compare are compiled once, not once for each struct.
 namespace strainwave::host {
 
-/// Whether a value is a T that was made: one from `T.__new__` alone holds nothing.
+/// True if a value is a T that was made: one from `T.__new__` alone holds nothing.
 template <class T>
 bool is_made(nb::handle value) {
     return nb::isinstance<T>(value) && nb::inst_ready(value);
@@ -23,7 +23,7 @@ inline bool to_number(nb::handle value, double& x) {
     return nb::try_cast<double>(value, x);
 }
 
-/// Whether a number counts something.
+/// True for a number that counts something.
 template <class T>
 constexpr bool is_whole(const Field& field) {
     return std::is_same_v<T, int> || field.whole;
@@ -125,7 +125,7 @@ nb::object to_python(const T& member) {
     }
 }
 
-/// How Python's type checkers see a member.
+/// The type of a member in Python's type annotations.
 template <class T>
 std::string python_type(bool argument) {
     if constexpr (is_choice<T>) {
@@ -180,13 +180,13 @@ std::string qualified(nb::handle type);
 template <class M>
 const Description& description_of();
 
-/// What can be done with a member of one C++ type.
+/// The operations on members of one C++ type.
 struct MemberType {
     const char* kind;  ///< "number", "count", "sequence", "part" or "choice"
-    bool numeric;      ///< Whether it has a unit and limits
-    bool listed;       ///< Whether it is one of a few names
-    bool whole;        ///< Whether it counts something, whatever is said of the member
-    bool counted;      ///< Whether it has as many numbers as it says
+    bool numeric;      ///< True if it has a unit and limits
+    bool listed;       ///< True if it is one of a few names
+    bool whole;        ///< True if it counts something, whatever its field states
+    bool counted;      ///< True if it contains its own count
     nb::object (*to_python)(const void* member);
     void (*read)(void* member, nb::handle value, const Reader& reader, const Field& field);
     std::string (*python_type)(bool argument);

@@ -2,7 +2,7 @@
 #include "call.hpp"
 #include "general/part.hpp"
 
-/// What a model can be asked from Python. What the laws of a family have in common is asked of the general drive's part, made of
+/// Functions of the laws in Python. What the laws of a family have in common is asked of the general drive's part, made of
 /// one law: compiled once, not once for each law.
 namespace strainwave::host {
 

@@ -55,10 +55,10 @@ State consistent(const Set& set, const State& x) {
 
 namespace {
 
-/// How far an instant may be missed by rounding where the coming step is not known [s].
+/// Time tolerance if the length of the next step is not known [s].
 double rounding(const control::Schedule<double>& schedule) { return 1e-9 * schedule.period; }
 
-/// How long until a controller acts next [s].
+/// Time until a controller acts next [s].
 double next_instant(const control::Schedule<double>& schedule, double within) {
     if (schedule.period == 0.0) return unbounded;
     const double output = schedule.first - schedule.period + schedule.delay;

@@ -7,7 +7,7 @@
 /// Temperatures and powers of a drive.
 namespace strainwave::general {
 
-/// How warm gear and winding become, by any law.
+/// Temperatures of gear and winding, by any law.
 template <class S>
 struct Thermal : Part {
     using State = Storage<S, 2>;
@@ -26,7 +26,7 @@ struct Thermal : Part {
     Output output(const State& x, const S& ambient) const;
 };
 
-/// What is measured of powers and energies, by any law.
+/// Meter of powers and energies, by any law.
 template <class S>
 struct Meter : Part {
     using State = Storage<S, 10>;

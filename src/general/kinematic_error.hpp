@@ -16,7 +16,7 @@ struct KinematicError : Part {
     kinematic_error::Relief<S> relief(const S& torque) const;
 };
 
-/// How a random error changes at the most, at rest and without load.
+/// Largest derivatives of a random error, at rest and without load.
 template <class S>
 struct MostChange {
     S slope, per_torque, per_speed;

@@ -9,7 +9,7 @@
 #include "../kernel/assemble.hpp"
 #include "part.hpp"
 
-/// What the families of parts share in their sources: the laws of a list as the general drive holds them.
+/// The laws of a list in the form of the general drive, for the sources of all families.
 namespace strainwave::general {
 
 namespace detail {
@@ -124,7 +124,7 @@ void add_inner_places(const Law& law, Places& found) {
     law.law.places(found);
 }
 
-/// Which slots the numbers of a state or an output take, in order. Of a law within a law those that it has.
+/// Slots of the numbers of a state or an output, in order. Of a law within a law those that it has.
 template <class S, class X, class Law>
 void add_places(const Law& law, Places& found, int first = 0) {
     X names{};

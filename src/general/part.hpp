@@ -21,7 +21,7 @@ using OwnedLaws = std::vector<std::shared_ptr<const void>>;
 using kernel::slopes;
 using Slope = Dual<slopes>;
 
-/// Which law of its family a part is, counted from 0, and where its parameters are.
+/// A law chosen at run time: its index in the list of its family, and its parameters.
 struct Part {
     const void* law = nullptr;
     int chosen = 0;

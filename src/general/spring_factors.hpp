@@ -3,10 +3,10 @@
 
 #include "part.hpp"
 
-/// What stiffness and hysteresis are multiplied by.
+/// Factors on stiffness and hysteresis.
 namespace strainwave::general {
 
-/// How a stiffness varies as the wave generator turns, by any law.
+/// Variation of a stiffness over the angle of the wave generator, by any law.
 template <class S>
 struct Variation : Part {
     void read(kernel::Reader<S>& from);
@@ -16,7 +16,7 @@ struct Variation : Part {
     variation::Factor<S> at(const Angle<S>& angle) const;
 };
 
-/// How a gear gives way as it warms up, by any law.
+/// Softening of a gear with temperature, by any law.
 template <class S>
 struct Softening : Part {
     void read(kernel::Reader<S>& from);

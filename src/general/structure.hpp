@@ -5,7 +5,7 @@
 
 namespace strainwave::general {
 
-/// What moves within a gear by itself, by any law.
+/// Bodies within a gear, by any law.
 template <class S>
 struct Structure : Part {
     using State = Storage<S, 8>;

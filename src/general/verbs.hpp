@@ -7,7 +7,7 @@
 
 #include "../kernel/table.hpp"
 
-/// What the general drive is asked: numbers in, numbers out.
+/// Functions of the general drive: numbers in, numbers out.
 namespace strainwave::general {
 
 using kernel::Outcome;
@@ -22,7 +22,7 @@ extern const kernel::Table table;
 
 /// At rest at `output_angle` = 0 up to the kinematic error, untwisted and without history.
 State rest(const Set& drive);
-/// Where it begins if some quantities are known: not finite where there is no such state.
+/// The initial state with some quantities known; not finite if there is none.
 State started(const Set& drive, const initial::Known<double>& known, const Input& u);
 /// With the slip direction of each shaft as its speed and its friction have it.
 State consistent(const Set& drive, const State& x);

@@ -16,7 +16,7 @@ struct Set {
     int count;  ///< of numbers
 };
 
-/// What is left to read of a set, its numbers as scalars S.
+/// The unread rest of a set, its numbers as scalars S.
 template <class S>
 struct Reader {
     const int* laws;

@@ -54,7 +54,7 @@ private:
         });
         return found;
     }
-    /// Whether a part stands at `group`.`name`.
+    /// True for the part at `group`.`name`.
     bool is_at(const char* part, const char* name) const {
         const char* rest = part;
         for (const char* letter = group; *letter != 0; ++letter, ++rest)

@@ -66,7 +66,7 @@ S soundness(const Array<S, n>& outputs) {
     return sound;
 }
 
-/// Whether all parts are valid where the drive stands, in all lanes; if not, `outcome` has the first that is not.
+/// True if all parts are valid at this instant, in all lanes; otherwise `outcome` names the first that is not.
 template <class S, class Drive>
 bool within_bounds(const Drive& drive, const typename Drive::Evaluation& at, double time, Outcome& outcome) {
     drive.bounds(at.derivatives, [&](const char* part, const Domain<S>& domain) {

@@ -9,10 +9,10 @@
 
 #include "assemble.hpp"
 
-/// What a kernel does: numbers in, numbers out, so that one built by any compiler serves. The general drive has the same table.
+/// Interface of a kernel: numbers in, numbers out, so that one built by any compiler serves. The general drive has the same table.
 namespace strainwave::kernel {
 
-/// How many numbers drive a drive from outside.
+/// Number of inputs of a drive.
 inline constexpr int input_count = size_of<double, Input<double>>;
 
 /// The command over `steps` steps: instants[0..steps], and per step the inputs at its start, middle and end.
@@ -31,13 +31,13 @@ inline constexpr int max_lanes = 8;
 /// with.
 inline constexpr int slopes = 4;
 
-/// What an output may be at most: no angle beyond is resolved to a radian.
+/// Upper bound of a sound output: larger angles are not resolved to a radian.
 inline constexpr double largest = 1e15;
 
-/// How steps are taken.
+/// Method of the steps.
 enum class Method { exponential, moreau_jean, rosenbrock };
 
-/// Where a run writes: output recorded[r] of sample k to out[r * samples + k].
+/// Destination of the outputs of a run: output recorded[r] of sample k to out[r * samples + k].
 struct Rows {
     const int* recorded;
     std::size_t count;
@@ -91,7 +91,7 @@ struct Variation {
     std::size_t members;
 };
 
-/// How the run of a member went.
+/// Result of the run of a member.
 struct Tally {
     double twist = 0.0;              ///< largest recorded, rad
     double max_rate = 0.0;           ///< what steps had to follow up to that twist, rad/s
@@ -99,13 +99,13 @@ struct Tally {
     bool sound = false;              ///< whether all outputs at all samples are numbers up to the largest
 };
 
-/// Where derivatives begin: at rest, or where some quantities are known.
+/// Initial condition of a run with derivatives: at rest, or known quantities.
 struct Beginning {
     bool at_rest;
     initial::Known<double> known;
 };
 
-/// What a kernel can do; null where it was not compiled for that.
+/// The functions of a kernel; null for a job that it was not compiled for.
 struct Table {
     int lanes;  ///< members that `run_members` takes at most at a time
 

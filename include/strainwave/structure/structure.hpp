@@ -48,7 +48,7 @@ struct Between {
     S per_twist;         ///< How the error follows the twist of the spring, rad/rad
 };
 
-/// How a gear stands between its two shafts; `Inner` is the state of the bodies within it.
+/// Deformation and torques of a gear between its two shafts; `Inner` is the state of the bodies within it.
 template <class S, class Inner>
 struct Mesh {
     using Apart = typename detail::Either<size_of<S, Inner> == 0, Stateless<S>, Between<S>>::type;

@@ -19,7 +19,7 @@ from strainwave.identification.known import Known, TorqueConstant, rotor_sigma
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.messages import as_option, listed
 
-EXPLAINED = 0.5  # of the variation of the torque: a log of which inertia and friction explain less determines neither
+MIN_EXPLAINED_SHARE = 0.5  # of the variation of the torque: a log of which inertia and friction explain less determines neither
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
 
@@ -78,7 +78,7 @@ def log_of(file: Recognised, known: Known) -> PreparedLog:
         log, told = _with_neighbours(file, log, drive)
         before = regression(log, drive)
         remarks += told
-    if not before.share > EXPLAINED or before.inertia <= 0.0:
+    if not before.share > MIN_EXPLAINED_SHARE or before.inertia <= 0.0:
         raise ValueError(
             f"inertia, friction and gravity explain {100.0 * max(before.share, 0.0):.0f} % of the variation of {log.effort}: "
             "the drive did more than one shaft does (give the torque of other joints as a column rigid_torque), or sides or "

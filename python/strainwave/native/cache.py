@@ -48,7 +48,7 @@ def kernel_file(kernel: Kernel, announce: Callable[[], None] = lambda: None) -> 
 def find_kernel(kernel: Kernel) -> Path | None:
     """Return the shared object of a kernel, shipped or compiled before; None if there is none. Nothing is compiled.
 
-    A kernel that is damaged, or that another user could have written, is not used; a warning says so once.
+    A kernel that is damaged, or that another user could have written, is not used; strainwave warns once.
     """
     folder = cache_folder()
     if folder is None:
