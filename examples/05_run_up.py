@@ -42,8 +42,8 @@ turns = (run["input_angle"] - run["input_angle"][0]) / (2.0 * np.pi)
 ends = np.searchsorted(turns, np.arange(20.0, turns[-1], 5.05))
 stretches = [run.between(run.time[a], run.time[b]) for a, b in pairwise(ends)]
 speed = np.array([stretch["input_speed"].mean() for stretch in stretches])
-ripple = np.array([sw.orders(stretch, "output_speed", orders).amplitude for stretch in stretches])
-torque = np.array([sw.orders(stretch, "torque", orders).amplitude for stretch in stretches])
+ripple = np.array([sw.order_amplitudes(stretch, "output_speed", orders).amplitude for stretch in stretches])
+torque = np.array([sw.order_amplitudes(stretch, "torque", orders).amplitude for stretch in stretches])
 
 (mode,) = sw.modes(drive)["free"]
 predicted = mode / np.array(orders)

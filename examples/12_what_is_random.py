@@ -33,7 +33,7 @@ for axes, speed in zip(figure.subplots(3, 1, sharex=True), (15.0, 60.0, 190.0), 
     command = sw.scenario.constant(speed / ratio, duration=1.0 + 20.0 * turn)
     run = sw.simulate(drive, command, initial={"input_speed": speed}, sample=turn / 400.0)
     seen = run.between(1.0, 1.0 + 20.0 * turn)
-    found[speed] = sw.orders(seen, "transmission_error", orders)
+    found[speed] = sw.order_amplitudes(seen, "transmission_error", orders)
     spectrum = sw.order_spectrum(seen, "transmission_error", highest=45.0)
     axes.vlines(orders, 1e-9, found[speed].amplitude, color="tab:orange", linewidth=4.0, alpha=0.6, label="orders asked for")
     axes.plot(spectrum["order"], spectrum["amplitude"], linewidth=0.8, label="spectrum")

@@ -25,9 +25,9 @@ from pathlib import Path
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
+from strainwave.analysis.branches import turning_points
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.experiments.branches import turning_points
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.recognise import recognise

@@ -40,7 +40,7 @@ TRIED = "identification/candidates/"  # where a fit of each model starts that is
 ELSEWHERE = {
     "Fourier": {
         "files/datasheet.py": SHEET,
-        "identification/orders/two_encoders.py": "orders that two encoders tell are of this form",
+        "orders/two_encoders.py": "orders that two encoders tell are of this form",
         "kinematic_error/scaled.hpp": "what it scales by default",
         "kinematic_error/misalignment.hpp": "what a misalignment is to leading order",
         "laws.hpp": "what a misalignment is to leading order",
@@ -60,7 +60,7 @@ ELSEWHERE = {
         "gear.hpp": DEFAULT,
         "native/kernels.py": "bodies within the gear make a step too long to be inlined",
         "studies/actuator_ramp.py": SERIES,
-        "identification/between_encoders.py": "a log does not tell the springs of stages apart",
+        "identification/kinds/between_encoders.py": "a log does not tell the springs of stages apart",
     },
     "Constant": {"gear.hpp": DEFAULT, "structure/staged.hpp": "what its springs do where nothing else is said"},
     "Scaled": {"parameter_drive.hpp": BOUND_TO_ANY},
@@ -73,24 +73,24 @@ ELSEWHERE = {
         "analysis/steady.py": "accelerates under any torque, so that there is no equilibrium",
         "identification/experiments/driven_log.py": "the input of a log moves as it was measured",
     },
-    "CurrentSource": {"identification/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
+    "CurrentSource": {"identification/kinds/prepared_log.py": "whatever its motor, a log tells the current along a motion"},
     "Coulomb": {
         "demo.py": "runs document P's experiment with each reading of its table",
         "files/datasheet.py": SHEET,
         "analysis/linear.py": "holds the input while the output vibrates",
         "friction/asymmetric.hpp": "what it modulates by default",
         "friction/thermal.hpp": "what it modulates by default",
-        "identification/contact.py": AT_REST,
+        "identification/kinds/at_rest.py": AT_REST,
         "identification/dynamics/log.py": LOG,
     },
     "Stribeck": {
-        "identification/contact.py": AT_REST,
+        "identification/kinds/at_rest.py": AT_REST,
         "friction/cyclic.hpp": "what it modulates by default",
     },
     "Asymmetric": {
         "parameter_drive.hpp": BOUND_TO_ANY,
     },
-    "DC": {"identification/prepared_log.py": "of a log of voltage alone, less what a motor induces"},
+    "DC": {"identification/kinds/prepared_log.py": "of a log of voltage alone, less what a motor induces"},
     "OpenLoop": {
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
         "identification/experiments/driven_log.py": "the motion of a log is the command itself",
@@ -112,7 +112,7 @@ ELSEWHERE = {
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
-        "identification/prepared_log.py": RIGID,
+        "identification/kinds/prepared_log.py": RIGID,
         "identification/experiments/motion_log.py": RIGID,
     },
     "StrainWave": {
@@ -122,18 +122,18 @@ ELSEWHERE = {
     },
     "Stochastic": {"analysis/steady.py": STEADY_RUNNING},
     "LuGre": {
-        "identification/contact.py": "whose breakaway torque ramps tell",
+        "identification/kinds/at_rest.py": "whose breakaway torque ramps tell",
     },
     "Cyclic": {
         "parameter_drive.hpp": BOUND_TO_ANY,
-        "identification/steady_runs.py": "waves found over the angle, around the friction that is known",
+        "identification/kinds/constant_speed_runs.py": "waves found over the angle, around the friction that is known",
     },
     "Thermal": {
         "parameter_drive.hpp": BOUND_TO_ANY,
         "general/heat.hpp": HEAT,
         "general/heat.cpp": HEAT,
         "general/drive.hpp": HEAT,
-        "identification/warmed.py": "how the friction that is known falls while a drive warms up",
+        "identification/kinds/warm_up.py": "how the friction that is known falls while a drive warms up",
     },
     "Preisach": {"parameter_drive.hpp": BOUND_TO_ANY},
     "PowerDensity": {"hysteresis/preisach.hpp": "its density by default"},
@@ -144,13 +144,13 @@ ELSEWHERE = {
     "Linear": {
         "studies/actuator_ramp.py": SERIES,
         "rig/virtual/printed.py": PRINTED,
-        "identification/between_encoders.py": REACHED,
+        "identification/kinds/between_encoders.py": REACHED,
     },
     "PlainRatio": {"identification/identify.py": SAID, "rig/virtual/printed.py": PRINTED},
     "Regimes": {"rig/virtual/printed.py": PRINTED},
     "ThreeSegment": {
         "files/datasheet.py": SHEET,
-        "identification/between_encoders.py": REACHED,
+        "identification/kinds/between_encoders.py": REACHED,
     },
     "Cubic": {
         "stiffness/backlash.hpp": "the spring behind its play by default",

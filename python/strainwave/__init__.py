@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from strainwave.analysis.compare import compare
     from strainwave.analysis.difference import Difference
     from strainwave.analysis.linear import Linearisation, linearise, modes
-    from strainwave.analysis.orders import BearingOrders, Orders, bearing_orders, order_spectrum, orders
     from strainwave.analysis.response import FrequencyResponse, frequency_response
     from strainwave.analysis.sensitivity import Derivatives, derivatives
     from strainwave.analysis.settling import settling_time
@@ -55,11 +54,12 @@ if TYPE_CHECKING:
     from strainwave.identification.fitting.minima import Minima, minima
     from strainwave.identification.fitting.profile import Profile, profile
     from strainwave.identification.identify import Identified, identify
-    from strainwave.identification.orders.ripple import Ripple, ripple
-    from strainwave.identification.orders.two_encoders import TransmissionError, transmission_error
     from strainwave.identification.twin import Twin, twin
     from strainwave.native.cache import KernelWarning
     from strainwave.native.compile import Compilation, compile
+    from strainwave.orders.order_spectrum import BearingOrders, Orders, bearing_orders, order_amplitudes, order_spectrum
+    from strainwave.orders.ripple import Ripple, ripple
+    from strainwave.orders.two_encoders import TransmissionError, transmission_error
     from strainwave.simulation import scenario
     from strainwave.simulation.controller import Seen, simulate_controlled
     from strainwave.simulation.ensemble import Ensemble, EnsembleWarning, simulate_many, simulate_to
@@ -69,7 +69,7 @@ if TYPE_CHECKING:
 # Imported at first use: numpy alone takes longer to import than `strainwave --help` may take to answer.
 _LAZY = {
     "Agreement": "analysis.agreement",
-    "BearingOrders": "analysis.orders",
+    "BearingOrders": "orders.order_spectrum",
     "Bootstrap": "identification.fitting.bootstrap",
     "Compilation": "native.compile",
     "Combination": "identification.fitting.combinations",
@@ -86,19 +86,19 @@ _LAZY = {
     "KernelWarning": "native.cache",
     "Linearisation": "analysis.linear",
     "Minima": "identification.fitting.minima",
-    "Orders": "analysis.orders",
+    "Orders": "orders.order_spectrum",
     "Profile": "identification.fitting.profile",
     "RatingCheck": "files.ratings",
     "RatingWarning": "files.ratings",
     "Quantity": "files.entries",
     "Recording": "files.recording",
-    "Ripple": "identification.orders.ripple",
+    "Ripple": "orders.ripple",
     "Run": "simulation.run",
     "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
-    "TransmissionError": "identification.orders.two_encoders",
+    "TransmissionError": "orders.two_encoders",
     "Twin": "identification.twin",
-    "bearing_orders": "analysis.orders",
+    "bearing_orders": "orders.order_spectrum",
     "bootstrap": "identification.fitting.bootstrap",
     "catalogue": "files.gear_set",
     "check_ratings": "files.ratings",
@@ -114,12 +114,12 @@ _LAZY = {
     "load": "files.gear_set",
     "minima": "identification.fitting.minima",
     "modes": "analysis.linear",
-    "order_spectrum": "analysis.orders",
-    "orders": "analysis.orders",
+    "order_spectrum": "orders.order_spectrum",
+    "order_amplitudes": "orders.order_spectrum",
     "plan_experiments": "identification.excitation.plan",
     "profile": "identification.fitting.profile",
     "rig": "rig",
-    "ripple": "identification.orders.ripple",
+    "ripple": "orders.ripple",
     "save": "files.gear_set",
     "scenario": "simulation.scenario",
     "settling_time": "analysis.settling",
@@ -128,7 +128,7 @@ _LAZY = {
     "simulate_controlled": "simulation.controller",
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
-    "transmission_error": "identification.orders.two_encoders",
+    "transmission_error": "orders.two_encoders",
     "twin": "identification.twin",
 }
 
@@ -192,8 +192,8 @@ __all__ = [
     "minima",
     "modes",
     "motor",
+    "order_amplitudes",
     "order_spectrum",
-    "orders",
     "plan_experiments",
     "profile",
     "rig",

@@ -13,7 +13,7 @@ def main() -> None:
     """Runs the command, as the shell knows it."""
     written: list[Path] = []
     try:
-        from strainwave import cli
+        from strainwave.commands import cli
         from strainwave.files import writing
 
         written = writing.written

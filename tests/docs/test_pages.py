@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import strainwave as sw
 import typer
-from strainwave.cli import app
+from strainwave.commands.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

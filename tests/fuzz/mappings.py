@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator
-from strainwave.file_options import said_of
+from strainwave.commands.file_options import mapping_from_options
 from strainwave.identification.reading.mapping import CONSTANTS
 from strainwave.identification.reading.recognise import Recognised, recognise
 
@@ -51,7 +51,7 @@ def mappings_case(random: Generator, folder: Path) -> Case:
     constants = [f"{picked(random, tuple(CONSTANTS))}={picked(random, VALUES)}"] if random.random() < 0.5 else []
 
     def attempt() -> Recognised:
-        given = said_of(path, [], [], constants, None, None, None, [log])
+        given = mapping_from_options(path, [], [], constants, None, None, None, [log])
         return recognise(log, given(log))
 
     def check(found: Recognised) -> None:

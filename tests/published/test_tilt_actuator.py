@@ -94,13 +94,13 @@ def test_misalignment_shows_in_the_current_and_passes_to_the_position(name: str)
     turn = 2.0 * math.pi / (RATIO * RATE)
     late = skew.between(5.0 - 5.0 * turn, 5.0)
     error, current, angle = (
-        sw.orders(late, each, [2.0]).amplitude[0] for each in ("kinematic_error", "current", "output_angle")
+        sw.order_amplitudes(late, each, [2.0]).amplitude[0] for each in ("kinematic_error", "current", "output_angle")
     )
     asked = 2.0 * (ACROSS + SLIDING) * error / TORQUE_CONSTANT
     assert 0.5 * asked < current < 2.0 * asked
     assert angle == pytest.approx(error, rel=0.05)
     assert angle < 1e-4 * math.radians(90.0)
-    assert sw.orders(straight.between(5.0 - 5.0 * turn, 5.0), "current", [2.0]).amplitude[0] < 1e-2 * current
+    assert sw.order_amplitudes(straight.between(5.0 - 5.0 * turn, 5.0), "current", [2.0]).amplitude[0] < 1e-2 * current
     assert 1.0 < math.degrees(np.ptp(late["kinematic_error"])) * 60.0 < 1.2  # arcmin
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from strainwave.cli import main
+from strainwave.commands.cli import main
 
 GOOD_GEAR = """name = "mine"
 [kinematics]

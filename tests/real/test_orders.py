@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.identification.orders.measured import OrdersFound, orders_found
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
+from strainwave.orders.measured import OrdersFound, orders_found
 
 SHARED = Path(__file__).parents[3] / "shared"
 JOINT = Path(os.environ.get("STRAINWAVE_RIG", SHARED / "independent-rig")) / "measure.py"

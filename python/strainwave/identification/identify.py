@@ -12,17 +12,17 @@ from strainwave.files.entries import Entry
 from strainwave.files.folder import LINK_NOT_FOLLOWED, FolderFiles, files_below
 from strainwave.files.gear_set import GearSet
 from strainwave.files.tables import FORMATS
-from strainwave.identification import steady_runs
-from strainwave.identification.duplicates import same_as
-from strainwave.identification.each_file import fitted
-from strainwave.identification.findings import Finding, Number, numbers_of
-from strainwave.identification.known import Known, plain
-from strainwave.identification.parts import joined
+from strainwave.identification.kinds import constant_speed_runs
+from strainwave.identification.kinds.constant_speed_runs import Run, run_of
+from strainwave.identification.kinds.fit_file import fitted
+from strainwave.identification.kinds.plausibility import other_format
+from strainwave.identification.reading.duplicates import same_as
+from strainwave.identification.reading.joined_recordings import joined
 from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
-from strainwave.identification.steady_runs import Run, run_of
-from strainwave.identification.suspicion import other_format
+from strainwave.identification.results.file_result import CombinedParameter, FileResult, numbers_of
+from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.messages import listed, shortened
 
 # What is needed to understand a file comes before it: friction before a loop that has it inside, both before logs, and what
@@ -48,8 +48,8 @@ class Identified:
     """
 
     start: GearSet
-    findings: tuple[Finding, ...]
-    numbers: tuple[Number, ...]
+    findings: tuple[FileResult, ...]
+    numbers: tuple[CombinedParameter, ...]
     gear_set: GearSet
 
 
@@ -93,24 +93,24 @@ def identify(
     folders = [measurements_of(Path(path)) for path in files]
     each_read = {path: _recognised(path, mapping) for folder in folders for path in folder.files}
     for link in (link for folder in folders for link in folder.links):
-        each_read.setdefault(link, Finding(link.name, refused=LINK_NOT_FOLLOWED))
+        each_read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
     recognised = joined([each for each in each_read.values() if isinstance(each, Recognised)])
     whole = {each.path: each for each in recognised}
-    read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, Finding)}
+    read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, FileResult)}
     start = _with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
-    found = _Found(Known(start, accept=accept), same_as(recognised), mapping)
+    found = _Found(GearSoFar(start, accept=accept), same_as(recognised), mapping)
     runs = list(found.runs(recognised))
     steady = {run.file.path for run in runs}
     for turn in range(max(TURNS.values()) + 1):
         if turn == RUNS and runs:
-            progress(steady_runs.JOINED)
+            progress(constant_speed_runs.JOINED)
             found.take_runs(runs)
         for file in sorted(recognised, key=_friction_inside):
             if file.path not in steady and file.path not in found.findings and TURNS[file.kind] == turn:
                 progress(file.path.name)
                 found.take(file)
     found.take_turns(runs)
-    own = [each if isinstance(each, Finding) else found.findings[each.path] for each in read.values()]
+    own = [each if isinstance(each, FileResult) else found.findings[each.path] for each in read.values()]
     findings = (*_named_apart(own, list(read), found.copies), *found.together)
     numbers = numbers_of(findings)
     if not numbers:
@@ -128,7 +128,7 @@ def check_arguments(files: object, mapping: object) -> None:
         raise ValueError("identify needs at least one file of measurements")
 
 
-def _why_nothing(finding: Finding) -> str:
+def _why_nothing(finding: FileResult) -> str:
     """Why a file tells no number."""
     if finding.refused or finding.part_of:
         return f"{finding.name}: {finding.refused or f'a part of the {finding.part_of}'}"
@@ -140,10 +140,10 @@ def _why_nothing(finding: Finding) -> str:
 class _Found:
     """What is found, file by file."""
 
-    def __init__(self, known: Known, copies: Mapping[str, str], said: Callable[[Path], FileMapping] | None) -> None:
+    def __init__(self, known: GearSoFar, copies: Mapping[str, str], said: Callable[[Path], FileMapping] | None) -> None:
         self.known, self.copies, self.said = known, copies, said
-        self.findings = dict[Path, Finding]()
-        self.together = list[Finding]()
+        self.findings = dict[Path, FileResult]()
+        self.together = list[FileResult]()
 
     def take(self, file: Recognised) -> None:
         """Fits a file; one that shows what another one shows tells its numbers, and changes nothing of the gear."""
@@ -152,7 +152,7 @@ class _Found:
         try:
             found, after = fitted(file, before)
         except (ValueError, FloatingPointError) as error:
-            found, after = Finding(file.path.name, file, refused=_without_name(str(error), file.path)), before
+            found, after = FileResult(file.path.name, file, refused=_without_name(str(error), file.path)), before
         self.findings[file.path] = found
         if str(file.path) not in self.copies:
             self.known = _with_kinematics(after, self.known.gear_set)
@@ -164,32 +164,32 @@ class _Found:
                 try:
                     run = run_of(file, _with_ratio(self.known, file))
                 except ValueError as error:
-                    self.findings[file.path] = Finding(file.path.name, file, refused=str(error))
+                    self.findings[file.path] = FileResult(file.path.name, file, refused=str(error))
                     continue
                 if run is not None:
-                    self.findings[file.path] = steady_runs.of_run(run)
+                    self.findings[file.path] = constant_speed_runs.of_run(run)
                     if str(file.path) not in self.copies:
                         yield run
 
     def take_runs(self, runs: Sequence[Run]) -> None:
         """The friction table that records at constant speed are together."""
         try:
-            table, self.known = steady_runs.joined(runs, self.known)
+            table, self.known = constant_speed_runs.joined(runs, self.known)
         except (ValueError, FloatingPointError) as error:
-            table = Finding(steady_runs.JOINED, refused=str(error))
+            table = FileResult(constant_speed_runs.JOINED, refused=str(error))
         self.together.append(table)
 
     def take_turns(self, runs: Sequence[Run]) -> None:
         """Friction over the angle, where records at constant speed tell it."""
         try:
-            if (found := steady_runs.over_the_angle(runs, self.known)) is not None:
+            if (found := constant_speed_runs.over_the_angle(runs, self.known)) is not None:
                 self.together.append(found[0])
                 self.known = found[1]
         except (ValueError, FloatingPointError) as error:
-            self.together.append(Finding("friction over the angle", refused=str(error)))
+            self.together.append(FileResult("friction over the angle", refused=str(error)))
 
 
-def _named_apart(findings: Sequence[Finding], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[Finding, ...]:
+def _named_apart(findings: Sequence[FileResult], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[FileResult, ...]:
     """The findings by the names of their files; with their folders, where names come twice."""
     names = [path.name if sum(path.name == each.name for each in paths) == 1 else str(path) for path in paths]
     by_path = dict(zip(map(str, paths), names, strict=True))
@@ -204,16 +204,16 @@ def _friction_inside(file: Recognised) -> bool:
     return file.kind == "torsion" and "input_angle" in file.recording
 
 
-def _recognised(path: Path, mapping: Callable[[Path], FileMapping] | None) -> Recognised | Finding:
+def _recognised(path: Path, mapping: Callable[[Path], FileMapping] | None) -> Recognised | FileResult:
     if path.is_dir() and not Path(path, BAG).is_file():
         known = listed(f"*{suffix}" for suffix in FORMATS)
-        return Finding(path.name, refused=f"the folder holds no file that may be a measurement, as {known}")
+        return FileResult(path.name, refused=f"the folder holds no file that may be a measurement, as {known}")
     if other := other_format(path):
-        return Finding(path.name, refused=other)
+        return FileResult(path.name, refused=other)
     try:
         return recognise(path, mapping(path) if mapping is not None else None)
     except (ValueError, OSError) as error:
-        return Finding(path.name, refused=_without_name(str(error), path))
+        return FileResult(path.name, refused=_without_name(str(error), path))
 
 
 def _without_name(told: str, path: Path) -> str:
@@ -254,7 +254,7 @@ def _with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
     return replace(start, gear=gear, sources=sources | given)
 
 
-def _with_ratio(known: Known, file: Recognised) -> Known:
+def _with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
     """What is known, with the ratio that a person gave with this file."""
     if "ratio" not in file.constants:
         return known
@@ -262,7 +262,7 @@ def _with_ratio(known: Known, file: Recognised) -> Known:
     return known if gear is known.gear_set.gear else replace(known, gear_set=replace(known.gear_set, gear=gear))
 
 
-def _with_kinematics(known: Known, of: GearSet) -> Known:
+def _with_kinematics(known: GearSoFar, of: GearSet) -> GearSoFar:
     if known.gear_set.gear.kinematics == of.gear.kinematics:
         return known
     gear = known.gear_set.gear.replace(kinematics=of.gear.kinematics)
@@ -290,7 +290,7 @@ def _kinematics(ratio: float, backwards: bool) -> Any:
 # ---- Means -------------------------------------------------------------------------------------------------------------
 
 
-def with_means(known: Known, numbers: Sequence[Number]) -> GearSet:
+def with_means(known: GearSoFar, numbers: Sequence[CombinedParameter]) -> GearSet:
     """The set with the means of files that agree, where it has the law that the number belongs to."""
     gear_set = known.gear_set
     for number in numbers:

@@ -12,14 +12,14 @@ from strainwave.identification.candidates.friction import fit_friction, ranking
 from strainwave.identification.candidates.motion import MotionCandidate, fit_motion
 from strainwave.identification.candidates.presliding import fit_presliding
 from strainwave.identification.candidates.torsion.ranking import rank_loop
-from strainwave.identification.contact import at_input
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.covariance import correlation_length
-from strainwave.identification.known import Known, with_torque
-from strainwave.identification.prepared_log import log_of
+from strainwave.identification.kinds.at_rest import at_input
+from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 
 
 @dataclass(frozen=True)
@@ -92,14 +92,14 @@ def _loops(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
 
 
 def _logs(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
-    found = log_of(file, Known(start))
+    found = log_of(file, GearSoFar(start))
     size = float(np.std(found.log.measured))
     unit = found.log.units[0]
     return tuple(_of_motion(each, size, unit) for each in fit_motion({file.path.name: found.log}, found.drive))
 
 
 def _at_rest(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
-    loop = PreslidingLoop.of(at_input(file, Known(start))[0])
+    loop = PreslidingLoop.of(at_input(file, GearSoFar(start))[0])
     begun = np.arange(len(loop.angle)) >= loop.turns[0]
     return tuple(
         Ranked(

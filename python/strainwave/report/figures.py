@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
+from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import envelope
-from strainwave.identification.experiments.branches import turning_points
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop

@@ -16,10 +16,18 @@ from strainwave import Drive
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.evidence import verdict
-from strainwave.identification.findings import AGREE, APART, Finding, Number, Told, difference, distance
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.kind import KINDS
 from strainwave.identification.reading.mapping import CONSTANTS
+from strainwave.identification.results.file_result import (
+    AGREE,
+    APART,
+    CombinedParameter,
+    FileEstimate,
+    FileResult,
+    difference,
+    distance,
+)
 from strainwave.report import figures
 from strainwave.report import identify_figures as plots
 from strainwave.report.page import render
@@ -63,7 +71,9 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
             "given": [_constant(name, value) for name, value in given.items()],
             "files": [_file(each, anchors[id(each)], given) for each in found.findings if not each.part_of],
             "points": [_file(each, "", given) for each in found.findings if each.part_of],
-            "said_of_points": list(dict.fromkeys(told for each in found.findings if each.part_of for told in each.remarks)),
+            "mapping_from_options_points": list(
+                dict.fromkeys(told for each in found.findings if each.part_of for told in each.remarks)
+            ),
             "numbers": [_number(each, found) for each in found.numbers],
             "comparisons": list(_comparisons(found)),
             "untold": _untold(found),
@@ -97,11 +107,11 @@ def _counts(found: Identified) -> str:
     return f"{files} {'file' if files == 1 else 'files'}: {', '.join(parts)}"
 
 
-def _tells(finding: Finding) -> bool:
+def _tells(finding: FileResult) -> bool:
     return any(not told.why for told in finding.told)
 
 
-def _contradiction(each: Number, other: str) -> dict[str, str]:
+def _contradiction(each: CombinedParameter, other: str) -> dict[str, str]:
     best, told = each.of_file(each.source), each.others[other]
     return {
         "title": name_of(best),
@@ -133,7 +143,7 @@ def _constant(name: str, value: float) -> str:
     return f"{name.replace('_', ' ')} {quantity(value, CONSTANTS[name].unit)}"
 
 
-def _file(finding: Finding, anchor: str, given: Mapping[str, float]) -> dict[str, Any]:
+def _file(finding: FileResult, anchor: str, given: Mapping[str, float]) -> dict[str, Any]:
     read = finding.recognised
     return {
         "name": finding.name,
@@ -150,7 +160,7 @@ def _file(finding: Finding, anchor: str, given: Mapping[str, float]) -> dict[str
     }
 
 
-def _columns(finding: Finding, given: Mapping[str, float]) -> Iterator[str]:
+def _columns(finding: FileResult, given: Mapping[str, float]) -> Iterator[str]:
     """Each channel with its column and unit in the file, "speed: Drehzahl [1/min]", and constants given with it alone."""
     read = finding.recognised
     if read is None:
@@ -188,7 +198,7 @@ def _plates(found: Identified, anchors: dict[int, str]) -> Iterator[dict[str, An
             }
 
 
-def _caption(finding: Finding) -> str:
+def _caption(finding: FileResult) -> str:
     curves = finding.curves
     assert curves is not None
     error, of = float(np.sqrt(np.mean(plots.residual_of(curves) ** 2))), curves.unit(curves.names[1])
@@ -205,12 +215,12 @@ def _caption(finding: Finding) -> str:
 # ---- Numbers ---------------------------------------------------------------------------------------------------------
 
 
-def name_of(told: Told) -> str:
+def name_of(told: FileEstimate) -> str:
     """What a number is, in words, as its law has it.
 
-    >>> name_of(Told("gear.friction_input.coulomb", "N.m", 0.05, 0.001, "")).lower()
+    >>> name_of(FileEstimate("gear.friction_input.coulomb", "N.m", 0.05, 0.001, "")).lower()
     'kinetic friction torque f_c'
-    >>> name_of(Told("gear.kinematic_error.amplitude of order 2", "rad", 6e-5, 1e-6, "fourier"))
+    >>> name_of(FileEstimate("gear.kinematic_error.amplitude of order 2", "rad", 6e-5, 1e-6, "fourier"))
     'Amplitude A_h at the output, of order 2'
     """
     path, _, order = told.path.partition(" of order ")
@@ -233,7 +243,7 @@ def _options(field: dict[str, Any]) -> list[Any]:
     return list(field["options"].values()) if field["options"] else [type(field["default"])]
 
 
-def _number(each: Number, found: Identified) -> dict[str, Any]:
+def _number(each: CombinedParameter, found: Identified) -> dict[str, Any]:
     told, same_as = each.told, {finding.name: finding.same_as for finding in found.findings}
     files = [each.source, *each.others] if len(each.mean_of) > 1 else list(each.others)
     return {
@@ -264,7 +274,7 @@ def _number(each: Number, found: Identified) -> dict[str, Any]:
     }
 
 
-def _start(start: GearSet, told: Told) -> str:
+def _start(start: GearSet, told: FileEstimate) -> str:
     """The number as the set had it that was started from; nothing where it had none, or one of another meaning."""
     if "[" in told.path or told.law == "in A":  # elements of a sequence that was fitted anew, or torque without a constant
         return ""
@@ -320,7 +330,7 @@ def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
     from markupsafe import Markup
 
     copies = {finding.name for finding in found.findings if finding.same_as}
-    parts: dict[str, list[Number]] = {}
+    parts: dict[str, list[CombinedParameter]] = {}
     for each in found.numbers:
         if each.others and (each.told.value != 0.0 or each.told.is_phase):
             parts.setdefault(each.told.path.partition(" of ")[0].rpartition(".")[0], []).append(each)
@@ -329,7 +339,7 @@ def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
         yield part.removeprefix("gear.").replace("_", " ").capitalize(), Markup(plots.comparison(rows, f"comparison-{place}"))
 
 
-def _rows(each: Number, copies: set[str]) -> Iterator[plots.Row]:
+def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.Row]:
     taken, mean = each.told, len(each.mean_of) > 1
     scale = 1.0 if taken.is_phase else abs(taken.value)  # a phase has no size: of it, 1 rad is 100 %
     title = f"mean of {len(each.mean_of)} files" if mean else each.source
@@ -378,11 +388,11 @@ def _results(found: Identified) -> dict[str, Any]:
     }
 
 
-def _told_results(told: Told) -> dict[str, Any]:
+def _told_results(told: FileEstimate) -> dict[str, Any]:
     return {"path": told.path, "law": told.law, "unit": told.unit, "value": told.value, "sigma": told.sigma}
 
 
-def _file_results(finding: Finding) -> dict[str, Any]:
+def _file_results(finding: FileResult) -> dict[str, Any]:
     read = finding.recognised
     return {
         "name": finding.name,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
-from strainwave.identification.findings import Finding
+from strainwave.identification.results.file_result import FileResult
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT, WIDTH
 
@@ -119,7 +119,7 @@ def _short(name: str) -> str:
 # ---- One file --------------------------------------------------------------------------------------------------------
 
 
-def file_figure(finding: Finding, name: str) -> str:
+def file_figure(finding: FileResult, name: str) -> str:
     """Measured against modelled, and below what is left, with two bands of 95 %: of the model, and of the residuals."""
     curves = finding.curves
     assert curves is not None
@@ -140,7 +140,7 @@ def residual_of(curves: Recording) -> Array:
     return left
 
 
-def _words(finding: Finding) -> str:
+def _words(finding: FileResult) -> str:
     """What was measured in a file, in words."""
     curves = finding.curves
     assert curves is not None

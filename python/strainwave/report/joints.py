@@ -10,9 +10,9 @@ from io import StringIO
 from math import isfinite
 from typing import Any
 
-from strainwave.identification.findings import Finding, lines_of
 from strainwave.identification.identify import Identified
 from strainwave.identification.joints import Joints
+from strainwave.identification.results.file_result import FileResult, lines_of
 from strainwave.report import figures
 from strainwave.report.identify import name_of
 from strainwave.report.page import render
@@ -77,7 +77,7 @@ def _of_files(found: Identified) -> Iterator[str]:
         yield f"{each.name} {f'NOT USED: {each.refused}' if each.refused else each.model}{held_out}"
 
 
-def _error(finding: Finding) -> str:
+def _error(finding: FileResult) -> str:
     return f"{number(100.0 * finding.error, 2)} %" if isfinite(finding.error) else ""
 
 

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.recording import Recording
-from strainwave.identification.orders.measured import OrdersFound
-from strainwave.identification.orders.ripple import Ripple, RippleLine
-from strainwave.identification.orders.two_encoders import ErrorOrder, TransmissionError
+from strainwave.orders.measured import OrdersFound
+from strainwave.orders.ripple import Ripple, RippleLine
+from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
 from strainwave.report import figures
 from strainwave.report import orders_figures as plots
 from strainwave.report.page import render

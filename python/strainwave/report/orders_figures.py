@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from strainwave.identification.orders.ripple import Ripple
-from strainwave.identification.orders.two_encoders import TransmissionError
+from strainwave.orders.ripple import Ripple
+from strainwave.orders.two_encoders import TransmissionError
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT, WIDTH
 

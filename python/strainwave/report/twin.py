@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
+from strainwave.analysis.branches import SAMPLES
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.evidence.evidence import Evidence
 from strainwave.identification.evidence.verdict import State, Verdict, estimated, numbers
-from strainwave.identification.experiments.branches import SAMPLES
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop

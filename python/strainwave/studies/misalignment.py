@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.analysis.orders import order_spectrum, orders
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
+from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
 from strainwave.simulation.ensemble import Ensemble
 from strainwave.simulation.signals import outputs
 from strainwave.studies.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp, geometry, in_series, noises
@@ -329,7 +329,7 @@ def effect(ramp: ActuatorRamp, runs: Ensemble, number: int) -> dict[str, float]:
         found[f"{name}_peak"] = float(np.abs(run[name]).max() / np.abs(straight[name]).max())
     turning = Recording(columns, {name: "rad" if name == "input_angle" else _unit(name) for name in columns})
     for name in list(columns)[1:]:
-        there = orders(turning, name, SEEN_ORDERS)
+        there = order_amplitudes(turning, name, SEEN_ORDERS)
         found |= {f"{name}_{order:g}": float(size) for order, size in zip(SEEN_ORDERS, there.amplitude, strict=True)}
     return found
 
@@ -391,7 +391,7 @@ def _passed(ramp: ActuatorRamp, runs: Ensemble, place: int, gain: float) -> Iter
     }
     turning = Recording(columns, dict.fromkeys(columns, "rad"))
     asked = (2.0, 4.0)
-    error, output = (orders(turning, name, asked).amplitude for name in ("error", "output"))
+    error, output = (order_amplitudes(turning, name, asked).amplitude for name in ("error", "output"))
     for order, there, put_in in zip(asked, output, error, strict=True):
         yield {
             "duration": ramp.duration,

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
-from strainwave.analysis.orders import order_spectrum, orders
 from strainwave.files.recording import Recording
+from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
 from strainwave.studies.actuator_ramp import ERROR, ActuatorRamp
 from strainwave.studies.pure_error import COMBINE, MICRON, placed
 
@@ -53,7 +53,7 @@ class Model:
 
     def gain(self, column: str) -> Complex:
         """Answer over error at each order [unit of the column / rad], shape (4,)."""
-        none, probe = (orders(run, column, ORDERS) for run in (self.straight, self.probed))
+        none, probe = (order_amplitudes(run, column, ORDERS) for run in (self.straight, self.probed))
         answers: Complex = _sines(probe.amplitude, probe.phase) - _sines(none.amplitude, none.phase)
         return answers / PROBE
 
@@ -207,7 +207,7 @@ def look(recording: Recording, column: str) -> Seen:
     through a Hann window. It adds half to the power of noise, and the powers of neighbouring lines correlate by 4/9, of next
     ones by 1/36, so that two lines tell about as much as one without a window.
     """
-    there = orders(recording, column, ORDERS)
+    there = order_amplitudes(recording, column, ORDERS)
     spectrum = order_spectrum(recording, column, ORDERS[-1] + 0.5)
     line = np.rint(spectrum["order"] * there.revolutions)
     reach = min(NEIGHBOURS, (there.revolutions - 2) // 2)

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.duplicates import same_as
 from strainwave.identification.identify import Identified, identify
+from strainwave.identification.reading.duplicates import same_as
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 
 from tests.python.command import strainwave
 from tests.python.identification.candidates.test_motion import TRUTH, record
-from tests.python.identification.test_further_kinds import SPEEDS, table, write
+from tests.python.identification.kinds.test_further_kinds import SPEEDS, table, write
 
 CONSTANT = 0.08  # N.m/A
 UNITS = {"speed": "rad/s", "torque": "N.m"}

@@ -10,10 +10,17 @@ import pytest
 import strainwave as sw
 from hypothesis import given
 from hypothesis import strategies as st
-from strainwave.identification.findings import Finding, Number, Told, distance, mean_of, numbers_of
 from strainwave.identification.identify import Identified, identify, with_means
-from strainwave.identification.known import Known
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.results.file_result import (
+    CombinedParameter,
+    FileEstimate,
+    FileResult,
+    distance,
+    mean_of,
+    numbers_of,
+)
+from strainwave.identification.results.gear_so_far import GearSoFar
 
 from tests.python.identification.candidates.test_motion import RATIO, TRUTH, record
 from tests.python.identification.candidates.test_motion import SPEED as SWING
@@ -81,8 +88,8 @@ def test_the_file_that_tells_a_number_best_gives_it_and_the_law(found: Identifie
 @pytest.mark.parametrize(("file", "coulomb"), [("fine.csv", 0.05), ("old_fine.csv", 0.06)])
 def test_a_mean_replaces_only_what_one_of_its_files_has_told(file: str, coulomb: float) -> None:
     law, path = sw.friction.Coulomb(coulomb=0.06), "gear.friction_input.coulomb"
-    known = Known(sw.GearSet.read("hfuc-20-80")).with_parts({"friction_input": law}, {path: 1e-4}, file)
-    mean = Number(Told(path, "N.m", 0.05, 1e-4, ""), "fine.csv", mean_of=("fine.csv", "coarse.csv"))
+    known = GearSoFar(sw.GearSet.read("hfuc-20-80")).with_parts({"friction_input": law}, {path: 1e-4}, file)
+    mean = CombinedParameter(FileEstimate(path, "N.m", 0.05, 1e-4, ""), "fine.csv", mean_of=("fine.csv", "coarse.csv"))
     assert with_means(known, [mean]).gear.friction_input.coulomb == coulomb
 
 
@@ -117,8 +124,8 @@ def test_links_in_a_folder_are_named_and_not_read(tmp_path: Path) -> None:
     assert [(each.name, bool(each.refused)) for each in named.findings] == [("link.csv", False), ("own.csv", False)]
 
 
-def finding(name: str, value: float, sigma: float, common: float = 0.0) -> Finding:
-    return Finding(name, told=(Told("gear.friction_input.coulomb", "N.m", value, sigma, "", common=common),))
+def finding(name: str, value: float, sigma: float, common: float = 0.0) -> FileResult:
+    return FileResult(name, told=(FileEstimate("gear.friction_input.coulomb", "N.m", value, sigma, "", common=common),))
 
 
 def test_two_files_far_apart_contradict_each_other_and_only_those_that_agree_are_averaged() -> None:
@@ -144,7 +151,7 @@ def test_files_that_scatter_more_than_they_say_widen_the_mean() -> None:
     value=st.floats(-10.0, 10.0),
 )
 def test_what_files_share_is_no_smaller_in_their_mean(own: list[float], common: float, value: float) -> None:
-    told = [Told("load.inertia", "kg.m2", value, float(np.hypot(each, common)), "", common=common) for each in own]
+    told = [FileEstimate("load.inertia", "kg.m2", value, float(np.hypot(each, common)), "", common=common) for each in own]
     mean, widened = mean_of(told)
     assert mean.value == pytest.approx(value)
     assert widened == 1.0
@@ -157,17 +164,17 @@ def test_means_hold_the_truth_as_often_as_they_say() -> None:
     for _ in range(2000):
         shared = 0.02 * random.standard_normal()
         told = [
-            Told("x", "N.m", 1.0 + shared + own * random.standard_normal(), float(np.hypot(own, 0.02)), "", common=0.02)
+            FileEstimate("x", "N.m", 1.0 + shared + own * random.standard_normal(), float(np.hypot(own, 0.02)), "", common=0.02)
             for own in (0.01, 0.03)
         ]
-        told.append(Told("x", "N.m", 1.0 + 0.02 * random.standard_normal(), 0.02, ""))
+        told.append(FileEstimate("x", "N.m", 1.0 + 0.02 * random.standard_normal(), 0.02, ""))
         mean, _ = mean_of(told)
         off.append((mean.value - 1.0) / mean.sigma)
     assert 0.85 < float(np.std(off)) < 1.05  # a little wide, as scatter can only widen
 
 
 def test_phases_a_turn_apart_are_equal() -> None:
-    one, other = (Told("load.gravity_phase", "rad", value, 0.1, "") for value in (3.1, 3.1 - 2.0 * np.pi))
+    one, other = (FileEstimate("load.gravity_phase", "rad", value, 0.1, "") for value in (3.1, 3.1 - 2.0 * np.pi))
     assert distance(one, other) == pytest.approx(0.0, abs=1e-9)
 
 

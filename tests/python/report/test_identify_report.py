@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.evidence.verdict import numbers
-from strainwave.identification.findings import Finding, Told, numbers_of
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.recognise import recognise
+from strainwave.identification.results.file_result import FileEstimate, FileResult, numbers_of
 from strainwave.report import identify_figures
 from strainwave.report.identify import identify_files, identify_report, name_of
 from strainwave.report.provenance import Provenance
@@ -30,8 +30,8 @@ COULOMB, STIFF = "gear.friction_input.coulomb", "gear.stiffness.k1"
 SPEED = np.array([-100.0, -10.0, -1.0, 1.0, 10.0, 100.0])
 
 
-def told(path: str, value: float, sigma: float, unit: str = "N.m", law: str = "", why: str = "") -> Told:
-    return Told(path, unit, value, sigma, law, why)
+def told(path: str, value: float, sigma: float, unit: str = "N.m", law: str = "", why: str = "") -> FileEstimate:
+    return FileEstimate(path, unit, value, sigma, law, why)
 
 
 def curves(over: str = "speed", sigma: bool = True) -> Recording:
@@ -48,15 +48,15 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
     path.write_text("Drehzahl [1/min];Reibmoment [mNm]\n600;41,2\n-600;-40,9\n1200;50,1\n")
     read = recognise(path)
     findings = (
-        Finding("warm.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), 0.02, ("a remark of warm",), curves=curves()),
-        Finding("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),), 0.03, curves=curves()),
-        Finding("copy.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), same_as="warm.csv", curves=curves(sigma=False)),
-        Finding(
+        FileResult("warm.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), 0.02, ("a remark of warm",), curves=curves()),
+        FileResult("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),), 0.03, curves=curves()),
+        FileResult("copy.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), same_as="warm.csv", curves=curves(sigma=False)),
+        FileResult(
             "loop.csv", read, "a spring",
             (told(STIFF, 14000.0, 90.0, "N.m/rad", "three_segment"), told("gear.stiffness.k2", 1.0, 9.0, why="low load")),
             curves=curves("twist"),
         ),
-        Finding("<b>notes</b>.txt", refused="no name of a column tells what it measures; give --column"),
+        FileResult("<b>notes</b>.txt", refused="no name of a column tells what it measures; give --column"),
     )  # fmt: skip
     return Identified(START, findings, numbers_of(findings), START)
 
@@ -142,7 +142,7 @@ def test_any_length_can_be_drawn(over: str, count: int) -> None:
     x = np.linspace(1.0, 500.0, count)
     columns = {over: x, "torque": np.sin(x), "modelled": np.sin(x) + 0.1, "sigma": np.full(count, 0.1)}
     units = dict.fromkeys(columns, "N.m") | {over: {"speed": "rad/s", "time": "s"}.get(over, "rad")}
-    drawing = identify_figures.file_figure(Finding("long.csv", curves=Recording(columns, units)), "long")
+    drawing = identify_figures.file_figure(FileResult("long.csv", curves=Recording(columns, units)), "long")
     assert len(drawing) < 300_000
 
 
@@ -169,8 +169,8 @@ values = st.floats(1e-6, 1e6)
 @settings(max_examples=sample(5, 15), deadline=None)
 def test_files_hold_every_number_to_the_last_digit(first: float, second: float, sigma: float, same: bool) -> None:
     findings = (
-        Finding("a.csv", told=(told(COULOMB, first, sigma),)),
-        Finding(
+        FileResult("a.csv", told=(told(COULOMB, first, sigma),)),
+        FileResult(
             "b.csv",
             told=(told(COULOMB, second, 2.0 * sigma), told(STIFF, 1.0, 2.0, why="noise")),
             same_as="a.csv" if same else "",
@@ -195,15 +195,17 @@ def test_files_hold_every_number_to_the_last_digit(first: float, second: float, 
 
 def test_a_phase_is_compared_around_the_turn() -> None:
     path = "gear.kinematic_error.phase[0]"
-    findings = tuple(Finding(name, told=(told(path, phase, 0.05, "rad"),)) for name, phase in (("a.csv", 3.1), ("b.csv", -3.1)))
+    findings = tuple(
+        FileResult(name, told=(told(path, phase, 0.05, "rad"),)) for name, phase in (("a.csv", 3.1), ("b.csv", -3.1))
+    )
     html = identify_report(Identified(START, findings, numbers_of(findings), START))
     assert "1.2 σ)" in text_of(html)  # 2 pi - 6.2 over the root of 2 x 0.05²
 
 
 def test_numbers_of_nothing_and_without_size_do_not_stop_the_page(found: Identified) -> None:
     findings = (
-        Finding("a.csv", told=(told(COULOMB, 0.0, 0.001),)),
-        Finding("b.csv", told=(told(COULOMB, 0.01, 0.001),)),
+        FileResult("a.csv", told=(told(COULOMB, 0.0, 0.001),)),
+        FileResult("b.csv", told=(told(COULOMB, 0.01, 0.001),)),
         replace(found.findings[0], name=f"{'long' * 20}.csv"),
     )
     html = identify_report(Identified(START, findings, numbers_of(findings), START))
@@ -213,7 +215,7 @@ def test_numbers_of_nothing_and_without_size_do_not_stop_the_page(found: Identif
 
 def test_a_file_beyond_two_sigma_is_shown_as_not_counted() -> None:
     findings = tuple(
-        Finding(name, told=(told(COULOMB, value, 1e-3, "N.m"),)) for name, value in (("a.csv", 0.05), ("b.csv", 0.0535))
+        FileResult(name, told=(told(COULOMB, value, 1e-3, "N.m"),)) for name, value in (("a.csv", 0.05), ("b.csv", 0.0535))
     )
     page = identify_report(Identified(START, findings, numbers_of(findings), START))
     assert "b.csv: 0.0535 ± 0.0010 (2.5 σ, not counted)" in text_of(page)
@@ -225,7 +227,7 @@ def test_a_file_beyond_two_sigma_is_shown_as_not_counted() -> None:
 def test_numbers_of_the_gear_come_before_the_loads_of_runs() -> None:
     first, second = "load.inertia", "load.gravity_torque"
     findings = tuple(
-        Finding(name, told=tuple(told(path, 1.0, 0.1, "kg.m2") for path in (first, second, COULOMB)))
+        FileResult(name, told=tuple(told(path, 1.0, 0.1, "kg.m2") for path in (first, second, COULOMB)))
         for name in ("a.csv", "b.csv")
     )
     order = [(each.told.path, each.source) for each in numbers_of(findings)]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import strainwave as sw
-from strainwave import cli
+from strainwave.commands import cli
 from strainwave.files import writing
 from strainwave.report.position_control import position_control_report, summary
 from strainwave.report.provenance import Provenance

@@ -21,7 +21,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import CLEARLY, training_blocks
 from strainwave.identification.experiments.driven_log import DrivenLog
-from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, Needed, inertia_of
+from strainwave.identification.experiments.motion_log import FRICTIONLESS, InverseDynamics, MotionLog, inertia_of
 from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.fit import Fit, Part, problem_of
@@ -143,7 +143,7 @@ def _torque(log: MotionLog, drive: Drive) -> Array:
     ratio = drive.gear.kinematics.ratio
     gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
     still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=1e-12))
-    return np.asarray(ratio * Needed.of(still, log.motion, log.extra).torque)
+    return np.asarray(ratio * InverseDynamics.of(still, log.motion, log.extra).torque)
 
 
 def _compared(recording: Recording, drive: Drive) -> DrivenLog:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
+from strainwave.analysis.branches import noise
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.experiments.branches import noise
 from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit

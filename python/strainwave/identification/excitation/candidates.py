@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, Gear
+from strainwave.analysis.branches import slid
 from strainwave.files.recording import Recording
 from strainwave.identification.excitation.design import without_nuisances
-from strainwave.identification.experiments.branches import slid
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable

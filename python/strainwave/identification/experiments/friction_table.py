@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from strainwave import _core, arguments
 from strainwave._core import Gear
+from strainwave.analysis.branches import thinned
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.branches import thinned
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 
 Array = NDArray[np.float64]

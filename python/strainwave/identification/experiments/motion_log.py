@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, friction, loads
+from strainwave.analysis.branches import noise
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.branches import noise
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
 from strainwave.identification.experiments.motion import Motion, motion_of
@@ -152,7 +152,7 @@ class MotionLog(ComparedByFields):
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         others = self._others(nuisances)
         described = _core.parameters(model)
-        now = Needed.of(model, self.motion, others, [described[number][0] for number in numbers])
+        now = InverseDynamics.of(model, self.motion, others, [described[number][0] for number in numbers])
         scale = per_torque(model, self.effort)
         effort = scale * now.torque + self.induced(model)
         slopes = [self._slope(model, number, described, now, effort) for number in numbers]
@@ -178,7 +178,7 @@ class MotionLog(ComparedByFields):
         constant = float(getattr(model.motor, "back_emf", 0.0)) if self.effort == "voltage" else 0.0
         return constant * self.motion.speed
 
-    def _slope(self, model: Drive, number: int, described: Sequence[Any], now: Needed, effort: Array) -> Array:
+    def _slope(self, model: Drive, number: int, described: Sequence[Any], now: InverseDynamics, effort: Array) -> Array:
         """By a number of the drive: of few by a difference, which is good to eight digits where torque is smooth in them."""
         path, value, *_, high = described[number]
         if path in now.slopes:
@@ -187,13 +187,13 @@ class MotionLog(ComparedByFields):
         end = value + step if value + step <= high else value - step
         values = [each[1] for each in described]
         other = _core.with_numbers(model, [*values[:number], end, *values[number + 1 :]])
-        there = Needed.of(other, self.motion, now.others)
+        there = InverseDynamics.of(other, self.motion, now.others)
         moved = per_torque(other, self.effort) * there.torque + self.induced(other)
         return np.asarray((moved - effort) / (end - value))
 
 
 @dataclass(frozen=True, eq=False)
-class Needed(ComparedByFields):
+class InverseDynamics(ComparedByFields):
     """Torque that a motor must give so that its rigid drive moves so, and of what it consists.
 
     .. math:: \\tau = (J_m + J_g) \\dot\\omega + F_{in}(\\omega, T / i) + [F_{mesh}(\\omega / i, T) + T] / i, \\qquad
@@ -212,7 +212,7 @@ class Needed(ComparedByFields):
     slopes: Mapping[str, Array]
 
     @classmethod
-    def of(cls, drive: Drive, motion: Motion, others: Array, paths: Sequence[str] = ()) -> Needed:
+    def of(cls, drive: Drive, motion: Motion, others: Array, paths: Sequence[str] = ()) -> InverseDynamics:
         """Of a drive whose output other bodies hold back, too, with derivatives by numbers of these paths.
 
         Raises:

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
+from strainwave.analysis.branches import noise, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.branches import noise, thinned, turning_points
 from strainwave.identification.experiments.experiment import sensible
 
 Array = NDArray[np.float64]

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from strainwave import _core, arguments
 from strainwave._core import Gear
+from strainwave.analysis.branches import PRESLIDING, monotone, slid, still_slides, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.experiments.branches import PRESLIDING, monotone, slid, still_slides, thinned, turning_points
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 from strainwave.identification.experiments.stages import series_compliance
 

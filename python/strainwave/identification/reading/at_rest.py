@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.experiments.branches import turning_points
+from strainwave.analysis.branches import turning_points
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from strainwave.identification.experiments.branches import turning_points
+from strainwave.analysis.branches import turning_points
 from strainwave.identification.reading.at_rest import at_rest
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.kind import KINDS, Kind

@@ -10,9 +10,9 @@ from typing import Literal
 import numpy as np
 
 from strainwave import arguments
+from strainwave.analysis.branches import thinned
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.experiments.branches import thinned
 from strainwave.messages import shortened
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, check_catalogue, rated_torque_of
 from strainwave.rig.analysis.lost_motion import Width, area, closure, drift, lost_motion, separation, widest, widest_in_torque

@@ -10,8 +10,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.analysis.branches import turning_points
 from strainwave.equality import ComparedByFields
-from strainwave.identification.experiments.branches import turning_points
 from strainwave.rig.analysis.step_remarks import remarks_on_steps, runs_one_way
 from strainwave.rig.loop import Loop
 

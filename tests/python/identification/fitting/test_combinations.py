@@ -14,7 +14,7 @@ SPEED = np.linspace(1.0, 60.0, 100)
 LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
 
 
-class Told:
+class FileEstimate:
     """An experiment on a gear that tells a formula of its damping a, its input inertia b and its viscous friction c only."""
 
     channels, units, nuisances = ("torque",), ("N.m",), ()
@@ -52,15 +52,15 @@ def gear() -> sw.Gear:
 @pytest.mark.parametrize(
     ("formula", "free", "words", "value"),
     [
-        (lambda a, b, c: a + 0.25 * c, ["damping", Told.places[2]], f"damping + 0.25 {Told.places[2]}", 2.125),
-        (lambda a, b, c: a - c, ["damping", Told.places[2]], f"damping - {Told.places[2]}", 1.5),
+        (lambda a, b, c: a + 0.25 * c, ["damping", FileEstimate.places[2]], f"damping + 0.25 {FileEstimate.places[2]}", 2.125),
+        (lambda a, b, c: a - c, ["damping", FileEstimate.places[2]], f"damping - {FileEstimate.places[2]}", 1.5),
         (lambda a, b, c: a * b, ["damping", "input_inertia"], "damping * input_inertia", 8.0),
         (lambda a, b, c: a / b**2, ["damping", "input_inertia"], "damping / input_inertia^2", 2.0 / 16.0),
-        (lambda a, b, c: a / c, ["damping", Told.places[2]], f"damping / {Told.places[2]}", 4.0),
+        (lambda a, b, c: a / c, ["damping", FileEstimate.places[2]], f"damping / {FileEstimate.places[2]}", 4.0),
     ],
 )
 def test_a_formula_of_two_parameters_is_told_in_words(formula: Any, free: list[str], words: str, value: float) -> None:
-    found = combinations(fit(gear(), Told(formula), free))
+    found = combinations(fit(gear(), FileEstimate(formula), free))
     assert len(found) == 1
     turned = " / ".join(reversed(words.split(" / ")))
     assert found[0].told in (words, turned, " * ".join(reversed(words.split(" * "))), "input_inertia / damping^0.5")
@@ -74,7 +74,7 @@ def test_a_formula_of_two_parameters_is_told_in_words(formula: Any, free: list[s
 
 
 def test_three_parameters_are_told_by_how_they_change_together() -> None:
-    found = combinations(fit(gear(), Told(lambda a, b, c: a * b * c), list(Told.places)))
+    found = combinations(fit(gear(), FileEstimate(lambda a, b, c: a * b * c), list(FileEstimate.places)))
     assert len(found) == 2  # of three relative changes one is told
     for each in found:
         assert abs(sum(each.open)) < 5e-3  # the product stays

@@ -37,7 +37,7 @@ def said(folder: Path, text: str) -> MappingFile:
     return MappingFile.read(path)
 
 
-def test_what_is_said_of_all_files_and_of_some(tmp_path: Path) -> None:
+def test_what_is_mapping_from_options_all_files_and_of_some(tmp_path: Path) -> None:
     file = said(tmp_path, TEXT.replace("0.5 kHz", "500 Hz"))
     general = FileMapping(
         columns={"joint_torque": "Moment", "output_speed": "3"},

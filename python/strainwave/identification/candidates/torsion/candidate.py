@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave._core import Gear
+from strainwave.analysis.branches import PRESLIDING
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.torsion.beside import SLIPS, Beside, half_span, maxwell, pairs
 from strainwave.identification.candidates.torsion.library import Answer, solve
 from strainwave.identification.candidates.torsion.springs import Kind
-from strainwave.identification.experiments.branches import PRESLIDING
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 

@@ -1,0 +1,50 @@
+"""The command `strainwave rank`: all models of a measurement, by what they predict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from strainwave.commands.file_options import Columns, Constants, Gear, Joint, Kind, Mapping, Side, Units, mapping_from_options
+
+
+def rank(
+    gear: Gear,
+    paths: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILE…", help="Tables of friction, torsion and presliding loops, logs, each by itself."),
+    ],
+    mapping: Mapping = None,
+    column: Columns = None,
+    unit: Units = None,
+    constant: Constants = None,
+    side: Side = None,
+    joint: Joint = None,
+    kind: Kind = None,
+) -> None:
+    """Fit every model that a measurement can tell, and rank them by what they predict of data held out.
+
+    The model to take stands first: the simplest that chance alone may make no better. Residuals that hang together show that
+    a model leaves something unexplained; 1 is white noise.
+    """
+    from rich.console import Console
+
+    from strainwave.files.gear_set import GearSet
+    from strainwave.identification.rank import rank as ranked
+    from strainwave.identification.rank import table_of
+    from strainwave.identification.reading.kind import KINDS
+    from strainwave.identification.reading.recognise import recognise
+
+    said, start, told = (
+        mapping_from_options(mapping, column, unit, constant, side, joint, kind, paths),
+        GearSet.read(gear),
+        list[str](),
+    )
+    with Console(stderr=True).status("reading") as status:
+        for path in paths:
+            status.update(path.name)
+            file = recognise(path, said(path))
+            told += [f"{path.name}: {KINDS[file.kind]}", *(f"  {line}" for line in table_of(ranked(start, file))), ""]
+    print("\n".join(told).rstrip())

@@ -1,0 +1,443 @@
+"""The command `strainwave rig`: plans, guides, follows, analyses and simulates torsion tests."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from math import inf, radians
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from strainwave.commands.file_options import number_option, whole_option
+from strainwave.number_texts import number_in
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from strainwave.report.provenance import Provenance
+    from strainwave.rig.bench.setup import Rig
+    from strainwave.rig.bench.steps import Step
+    from strainwave.rig.running.guide import Settling
+    from strainwave.rig.running.plan import Pans, Plan
+    from strainwave.rig.running.sources import Source
+
+rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, analyse, simulate.")
+
+DOCUMENT_T = "document-t"  # the gears of document T's Table 2, as `gear_named` knows them
+POSITIONS = "0,60,120"
+MAX_SECONDS = 1e6  # of any time that is waited
+MAX_PICTURES = 1000  # that must agree
+
+RigOption = Annotated[str, typer.Option("--rig", help="The rig: a name that comes with the package, or a .toml file.")]
+PeakOption = Annotated[
+    float, typer.Option("--torque", parser=number_option, help="Peak torque in N.m; the nearest that the masses make is taken.")
+]
+StepOption = Annotated[
+    float | None,
+    typer.Option(
+        "--step", parser=number_option, help="Step of the torque in N.m; the smallest that the masses make, if not given."
+    ),
+]
+PositionsOption = Annotated[str, typer.Option(help="Positions of the flexspline in its mount in degrees, as 0,60,120.")]
+UnitsOption = Annotated[str, typer.Option(help="Names of the specimens, as A,B; one without a name, if not given.")]
+CyclesOption = Annotated[int, typer.Option(parser=whole_option, help="Cycles at each position, one after the other.")]
+UnequalOption = Annotated[
+    bool, typer.Option("--unequal", help="Let both pans of a pair differ by one mass: half the step, but no pure couple.")
+]
+
+
+@rig.command("plan")
+def plan_command(
+    name: RigOption = "couple-rig",
+    torque: PeakOption = 0.36,
+    step: StepOption = None,
+    positions: PositionsOption = POSITIONS,
+    units: UnitsOption = "",
+    cycles: CyclesOption = 1,
+    unequal: UnequalOption = False,
+    out: Annotated[Path | None, typer.Option(help="File for the steps, .csv, as steps.csv of a test has them.")] = None,
+) -> None:
+    """Print what to lay on the pans and take off, step by step.
+
+    The cycle is document T's: the positive peak, down to zero, to the negative peak, back to zero, and up to the positive peak.
+    """
+    from strainwave.rig.bench.steps_file import write_steps
+
+    if out is not None and out.suffix != ".csv":
+        raise ValueError(f"--out {out} must end in .csv")
+    made = _plan(_rig(name), torque, step, positions, units, cycles, unequal)
+    if out is not None:
+        write_steps(made.steps, out)
+    print(made)
+    if out is not None:
+        print(f"wrote {out}")
+
+
+@rig.command()
+def simulate(
+    gear: Annotated[
+        str, typer.Argument(help="A set by name, a gear file, or document-t: the gears of document T's Table 2.")
+    ] = DOCUMENT_T,
+    name: RigOption = "couple-rig",
+    out: Annotated[Path, typer.Option(help="Folder for the test; it must not hold one yet.")] = Path("out/rig-test"),
+    torque: PeakOption = 0.36,
+    step: StepOption = None,
+    positions: PositionsOption = POSITIONS,
+    units: UnitsOption = "",
+    cycles: CyclesOption = 1,
+    unequal: UnequalOption = False,
+    seed: Annotated[int, typer.Option(parser=whole_option, help="Of the noise of the photographs.")] = 0,
+) -> None:
+    """Make a virtual test: photographs, masses and rig as a real test leaves them, and the truth beside them."""
+    import sys
+
+    from strainwave.rig.bench.steps_file import write_steps
+    from strainwave.rig.reading.measurement import PLAN
+    from strainwave.rig.virtual.rehearsal import gear_named, narrower
+    from strainwave.rig.virtual.test import simulate_test
+
+    bench = _rig(name)
+    made = _plan(bench, torque, step, positions, units, cycles, unequal)
+    steps = made.steps
+    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed, progress=sys.stderr.isatty())
+    write_steps(steps, out / PLAN)
+    print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
+    if abs(made.peak - torque) > 1e-9 * torque:
+        print(f"the peak is {made.peak:.4f} N.m: {torque:g} N.m is no step of the masses")
+    if gear == DOCUMENT_T and (short := narrower(sorted({each.position for each in steps}), made.peak)):
+        print(*short, sep="\n")
+        print("more torque, or --unequal, which halves the steps, may reach it")
+    print(f"to analyse it: strainwave rig analyse {out}")
+
+
+@rig.command()
+def measure(
+    camera: Annotated[
+        str, typer.Option(help="Number of a camera, a folder that another program fills with photographs, or virtual.")
+    ],
+    out: Annotated[Path, typer.Option(help="Folder of the test; one that was broken off goes on.")] = Path("out/rig-test"),
+    name: Annotated[
+        str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; couple-rig if not given.")
+    ] = None,
+    torque: PeakOption = 0.36,
+    step: StepOption = None,
+    positions: PositionsOption = POSITIONS,
+    units: UnitsOption = "",
+    cycles: CyclesOption = 1,
+    unequal: UnequalOption = False,
+    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = DOCUMENT_T,
+    pictures: Annotated[
+        int, typer.Option(parser=whole_option, help="Photographs in a row that must agree before a step counts as at rest.")
+    ] = 5,
+    interval: Annotated[float, typer.Option(parser=number_option, help="Time between two photographs in s.")] = 0.5,
+    patience: Annotated[
+        float, typer.Option(parser=number_option, help="Time in s after which a shaft that still moves is reported.")
+    ] = 60.0,
+) -> None:
+    """Guide a test step by step, and write each step down as soon as it is done.
+
+    Says which masses to move, waits until the shaft rests, and keeps the photograph. `steps.csv` in the folder of the test
+    holds what was done; Ctrl-C, or q, breaks off, and the same command goes on.
+    """
+    from rich.console import Console
+
+    from strainwave.files.writing import claiming, making, written
+    from strainwave.rig.running.guide import Settling
+
+    settling = Settling(_count("--pictures", pictures), _positive("--interval", interval), _positive("--patience", patience))
+    bench = _rig_of_test(out, name)
+    made = _plan(bench, torque, step, positions, units, cycles, unequal)
+    source = _source(camera, bench, made.steps, gear)
+    with making(out), claiming(out):
+        _keep_plan(made, out)
+        written.append(out)
+        done = _conduct(Console(stderr=True), out, bench, made, source, settling)
+    if done < len(made.steps):
+        print(f"stopped after step {done} of {len(made.steps)}; the same command goes on")
+    else:
+        print(f"all {done} steps are made")
+        print(f"to analyse them: strainwave rig analyse {out}")
+
+
+@rig.command()
+def analyse(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="FOLDER|FILE…", help="Folders of tests, or loops as .csv or .parquet; also several.")
+    ],
+    name: Annotated[
+        str | None, typer.Option("--rig", help="The rig, instead of rig.toml of the folder: a name, or a .toml file.")
+    ] = None,
+    gear: Annotated[str | None, typer.Option(help="The gear on the rig: a set by name, or a gear file.")] = None,
+    rated_torque: Annotated[
+        float | None,
+        typer.Option(parser=number_option, help="Rated torque at the loaded shaft in N.m, instead of that of the gear."),
+    ] = None,
+    reference: Annotated[
+        str | None, typer.Option(help="Photograph whose angle is 0; the first at the positive peak, if not given.")
+    ] = None,
+    friction: Annotated[
+        Path | None, typer.Option(help="Table of speed and torque of the input, whose friction is taken out; needs --gear.")
+    ] = None,
+    positions: Annotated[str | None, typer.Option(help="Position of each FILE in degrees, as 0,60,120.")] = None,
+    column: Annotated[
+        list[str] | None, typer.Option(help="A column's name in FILE, as twist='Angle out'; repeat as needed.")
+    ] = None,
+    unit: Annotated[
+        list[str] | None, typer.Option(help="Unit of a column of FILE whose header has none, as torque=N.m; repeat as needed.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results; FOLDER/analysis, or out/rig for several, if not given.")
+    ] = None,
+) -> None:
+    """Turn photographs and masses, or measured loops, into stiffness, lost motion, and a report.
+
+    Writes report.html, results.json, and of each loop and of the angles a .csv and a .parquet file. The photographs stay where
+    they are; the report holds their hashes.
+    """
+    from rich.console import Console
+
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.writing import write_folder
+    from strainwave.identification.reading.measurement import COLUMNS
+    from strainwave.messages import pairs
+    from strainwave.report.rig import rig_report, summary
+    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
+    from strainwave.rig.reading.reading import Given, evaluate_paths
+
+    target = _target(paths, out)
+    with Console(stderr=True).status("reading") as status:
+        given = Given(
+            rig=None if name is None else _rig(name),
+            gear_set=None if gear is None else GearSet.read(gear),
+            rated_torque=rated_torque,
+            reference=reference,
+            friction=friction,
+            positions=None if positions is None else _numbers("--positions", positions),
+            columns=pairs("--column", column, set(COLUMNS["torsion"])),
+            units=pairs("--unit", unit, set(COLUMNS["torsion"])),
+        )
+        found, read = evaluate_paths(paths, given, status.update)
+        status.update("report")
+        provenance = _provenance(read)
+        files: dict[str, str | bytes] = {**loop_files(found.loops), **angle_files(found.angles)}
+        files["results.json"] = results_json(results(found, provenance.date))
+        files["report.html"] = rig_report(found, provenance, list(files))
+        write_folder(target, files)
+    print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
+    if left := [each for each in there if each not in files]:
+        print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")
+    for each in loop_names(found.loops):
+        print(f"for a twin: strainwave twin --gear {gear or 'GEAR'} --torsion {target / each}.csv")
+
+
+@rig.command()
+def watch(
+    folder: Annotated[Path, typer.Argument(help="Folder of a test that is being run.")],
+    name: Annotated[
+        str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; rig.toml of the folder, if not given.")
+    ] = None,
+    plan: Annotated[
+        Path | None,
+        typer.Option(help="Steps that are to be made, .csv, where steps.csv lacks them; plan.csv of the folder, if not given."),
+    ] = None,
+    idle: Annotated[
+        float | None, typer.Option(parser=number_option, help="End when no photograph came for so many s; never, if not given.")
+    ] = None,
+    interval: Annotated[float, typer.Option(parser=number_option, help="Time between two looks in s.")] = 0.5,
+) -> None:
+    """Follow a folder while a test is being run, and draw its loop as it grows; Ctrl-C ends."""
+    from rich.console import Console
+
+    from strainwave.files.folder import inside
+    from strainwave.report.rig_live import Point, live
+    from strainwave.rig.bench.steps_file import read_steps
+    from strainwave.rig.reading.measurement import PLAN
+    from strainwave.rig.running.watching import Watch
+
+    if not folder.is_dir():
+        raise FileNotFoundError(f"{folder}: there is no such folder")
+    bench = _rig_of_test(folder, name)
+    kept = inside(folder, PLAN)
+    planned = kept if plan is None and kept.exists() else plan
+    watched = Watch(folder, bench, read_steps(planned) if planned is not None else ())
+
+    def look() -> list[Point]:
+        return [Point(each.name, each.torque, each.look, each.warnings) for each in watched.new()]
+
+    longest = inf if idle is None else _positive("--idle", idle)
+    points = live(Console(stderr=True), look, longest, _positive("--interval", interval))
+    told = sum(not point.look.fault for point in points)
+    print(f"{len(points)} photographs, {told} of them told an angle")
+
+
+@rig.command()
+def influence(
+    gear: Annotated[str, typer.Argument(help="A set by name, or a gear file.")] = "csg-25-100",
+    torque: Annotated[
+        float | None,
+        typer.Option(
+            parser=number_option, help="Largest torque at the output in N.m; the rated torque of the set, if not given."
+        ),
+    ] = None,
+    measured: Annotated[
+        Path | None,
+        typer.Option(help="A series of loops, .csv: what was varied, as torque_max or temperature, and area, width or file."),
+    ] = None,
+    loop: Annotated[
+        list[str] | None,
+        typer.Option(help="A measured loop, and what was varied, as cold.csv,temperature=5 degC; once for each loop."),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for report.html and the tables.")] = Path("out/rig-influence"),
+) -> None:
+    """Put document T's table of influences to a gear, to the catalogue and to measured series.
+
+    Varies torque level, ratio, modulus, friction of the bearing and temperature, says which of the table's entries hold, with a
+    number for each, and tests measured series for trends.
+    """
+    from rich.console import Console
+
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.writing import making, written
+    from strainwave.report.influence import influence_report, summary, tables
+    from strainwave.report.page import write
+    from strainwave.report.provenance import Provenance
+    from strainwave.rig.influence.influence import influence as run
+    from strainwave.rig.influence.series import read_series, series_of
+
+    if measured is not None and loop:
+        raise ValueError("--measured and --loop are two ways to give one series; give one of them")
+    series = read_series(measured) if measured is not None else series_of(loop) if loop else None
+    with Console(stderr=True).status("reading") as status:
+        found = run(GearSet.read(gear), torque, series, progress=status.update)
+        status.update("report")
+        html = influence_report(found, Provenance.of_this_command([] if series is None else series.files))
+    with making(out):
+        for name, table in tables(found).items():
+            table.to_csv(out / f"{name}.csv")
+            written.append(out / f"{name}.csv")
+        write(html, out / "report.html")
+        written.append(out / "report.html")
+    print(summary(found))
+    print(f"wrote {out / 'report.html'} and {len(tables(found))} tables beside it")
+
+
+# ---- A test that was made ---------------------------------------------------------------------------------------------
+
+
+def _target(paths: Sequence[Path], out: Path | None) -> Path:
+    """Where the results go."""
+    if out is not None:
+        return out
+    return paths[0] / "analysis" if len(paths) == 1 and paths[0].is_dir() else Path("out/rig")
+
+
+def _provenance(read: Sequence[Path]) -> Provenance:
+    """How the report came to be; files of the same name are shown with their folders."""
+    from dataclasses import replace
+
+    from strainwave.report.provenance import Provenance
+
+    names = [path.name for path in read]
+    digests: dict[str, str] = {}
+    for path in read:
+        (digest,) = Provenance.of([path], command="", date="").files.values()
+        digests[path.name if names.count(path.name) == 1 else str(path)] = digest
+    return replace(Provenance.of_this_command([]), files=digests)
+
+
+# ---- What options say ------------------------------------------------------------------------------------------------
+
+
+def _rig(name: str) -> Rig:
+    from strainwave.rig.bench.rig_file import load
+
+    return load(name)
+
+
+def _rig_of_test(folder: Path, name: str | None) -> Rig:
+    """The rig that was named, or that of the folder, or the one of document T."""
+    from strainwave.files.folder import inside
+
+    there = inside(folder, "rig.toml")
+    if name is None and there.exists():
+        return _rig(str(there))
+    return _rig("couple-rig" if name is None else name)
+
+
+def _plan(bench: Rig, torque: float, step: float | None, positions: str, units: str, cycles: int, unequal: bool) -> Plan:
+    from strainwave.rig.running.plan import plan
+
+    places = [radians(each) for each in _numbers("--positions", positions)]
+    specimens = [each.strip() for each in units.split(",")]
+    if len(set(places)) < len(places) or len(set(specimens)) < len(specimens):
+        raise ValueError("--positions and --units must each name a thing once; --cycles repeats a position")
+    pans: Pans = "unequal" if unequal else "equal"
+    return plan(bench, torque, step=step, pans=pans, positions=places, units=specimens, cycles=cycles)
+
+
+def _numbers(option: str, text: str) -> list[float]:
+    try:
+        return [number_in(each.strip()) for each in text.split(",")]
+    except ValueError:
+        raise ValueError(f"{option} {text}: write numbers with commas between, as 0,60,120") from None
+
+
+def _positive(option: str, value: float) -> float:
+    if not 0.0 < value <= MAX_SECONDS:
+        raise ValueError(f"{option} {value:g} s must be above 0 and at most {MAX_SECONDS:g}")
+    return value
+
+
+def _count(option: str, value: int) -> int:
+    if not 1 <= value <= MAX_PICTURES:
+        raise ValueError(f"{option} {value} must be 1 to {MAX_PICTURES}")
+    return value
+
+
+def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Source:
+    from strainwave.rig.running.sources import Device, Filled
+    from strainwave.rig.virtual.rehearsal import gear_named, rehearsal
+
+    if camera == "virtual":
+        return rehearsal(bench, steps, gear_named(gear))
+    try:
+        return Device(int(camera)) if re.fullmatch("[0-9]{1,4}", camera) else Filled(Path(camera))
+    except ImportError as error:
+        raise ValueError(f"--camera {camera}: {error}") from None
+
+
+def _keep_plan(made: Plan, out: Path) -> None:
+    """Writes the plan beside the test, or refuses another one than a test that was broken off has."""
+    from strainwave.files.folder import inside
+    from strainwave.rig.bench.steps_file import read_steps, write_steps
+    from strainwave.rig.reading.measurement import PLAN
+
+    kept = inside(out, PLAN)
+    if not kept.exists():
+        write_steps(made.steps, kept)
+    elif tuple(read_steps(kept)) != made.steps:
+        raise ValueError(f"{kept} holds another plan; repeat the options that it was begun with, or give another --out")
+
+
+def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: Source, settling: Settling) -> int:
+    """Guides through the steps that are left; returns how many are done."""
+    from strainwave.report.rig_live import Terminal
+    from strainwave.rig.bench.rig_file import write_rig
+    from strainwave.rig.bench.steps_file import photograph_of
+    from strainwave.rig.running.guide import conduct, done_before
+    from strainwave.rig.running.sources import Virtual
+    from strainwave.rig.running.watching import Reader, torque_of_masses
+
+    done, reader = done_before(made.steps, out), Reader(bench.camera)
+    if not (out / "rig.toml").exists():
+        write_rig(bench, out / "rig.toml")
+    tasks = {stage.step.number: stage.task for stage in made.stages}
+    terminal = Terminal(
+        console, len(made.steps), lambda step, _: tasks[step.number], lambda step: torque_of_masses(bench, step)
+    )
+    terminal.before |= {step.number: reader(photograph_of(step, out), step) for step in done if step.image}
+    load = source.load if isinstance(source, Virtual) else lambda number: None
+    return len(conduct(made.steps, out, source, reader, terminal, settling, load))

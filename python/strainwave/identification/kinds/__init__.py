@@ -1,0 +1,1 @@
+"""Kinds of measurement: how each is fitted, and what it determines."""

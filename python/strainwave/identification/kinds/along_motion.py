@@ -1,0 +1,135 @@
+"""A log of a drive along its motion: friction, inertia, gravity; with both encoders also what lies between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from strainwave.identification.candidates.motion import MotionCandidate, fit_motion, regression
+from strainwave.identification.experiments.drive_log import ENCODERS
+from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.kinds.between_encoders import Between, between_encoders
+from strainwave.identification.kinds.plausibility import too_fast, unlike_set
+from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
+from strainwave.identification.kinds.two_encoders import orders_of, with_error
+from strainwave.identification.kinds.warm_up import warmed
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.curves import curves_of
+from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.messages import listed
+from strainwave.orders.two_encoders import transmission_error
+
+UNLIKE = 0.1  # relative: two inertias that differ by more are not one
+EXACTLY = 1e-6  # relative: a number that a person gives is fitted as nearly as that
+
+
+def log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+    """Return the estimates of a log along its motion, and over temperature if it warms up; and the gear with them."""
+    warm, name = warmed(file), file.path.name
+    try:
+        finding, after = _along_motion(file, known)
+    except ValueError as error:
+        if warm is None:
+            raise
+        unused = f"not used along its motion: {error}"
+        finding, after = FileResult(name, file, "friction over the temperature", (), np.nan, (*file.remarks, unused)), known
+        finding = replace(finding, curves=warm.curves)
+    if warm is None:
+        return finding, after
+    after, said = warm.known(after, name)
+    return replace(finding, told=(*finding.told, *warm.told), remarks=(*warm.remarks, *said, *finding.remarks)), after
+
+
+def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+    taken, before = log_of(file, known), known.gear_set.gear
+    drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
+    log = taken.log
+    priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
+    best, *_ = fit_motion({file.path.name: log}, drive, priors=priors)
+    told = list(_of_motion(best, taken))
+    if not in_current:
+        known = _with_friction(known, best, told, file.path.name)
+    between = Between()
+    if set(ENCODERS) <= set(recording.names):
+        errors = transmission_error(recording)
+        between = between_encoders(taken, best, errors, known)
+        surer = {each.path for each in between.told}
+        told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.told)
+        remarks += [*errors.remarks, *between.remarks]
+        known = with_error(between.known(known, file.path.name), errors, file.path.name)
+    remarks += _shares(best.fit, file.regressors)
+    every, curves = (*file.remarks, *remarks), curves_of(best.fit)
+    law = best.fit.parts[0].model.gear.friction_input
+    unlike = None if in_current else unlike_set(law, before.friction_input, log.motion.speed, log.effort)
+    doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed), _unlike_said(taken))))
+    return (
+        FileResult(
+            file.path.name, file, best.name, tuple(told), best.error, every, doubts, curves=curves, between=between.curves
+        ),
+        known,
+    )
+
+
+def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
+    """Return the share of each given regressor."""
+    shares = {each.path.removeprefix("share of "): each for each in found.estimates}
+    said = [f"{name.partition(' ')[2]} {shares[name].value:.4g} ± {shares[name].sigma:.2g}" for name in regressors]
+    return [f"shares of the regressors in the torque at the output: {listed(said)}"] if said else []
+
+
+def _with_friction(known: GearSoFar, best: MotionCandidate, told: Sequence[FileEstimate], name: str) -> GearSoFar:
+    """Return the set with the friction of a log, at places for which no earlier file has an estimate."""
+    gear = best.fit.parts[0].model.gear
+    sigmas = {each.path: each.sigma for each in told}
+    for part in ("friction_input", "friction_mesh"):
+        law = getattr(gear, part)
+        if part not in known.told and law != getattr(known.gear_set.gear, part):
+            known = known.with_parts({part: law}, sigmas, name)
+    return known
+
+
+def _unlike_said(taken: PreparedLog) -> str | None:
+    """Return the doubt that the given inertia contradicts the log; None if it agrees, or none was given."""
+    if "load.inertia" not in taken.said:
+        return None
+    drive, shown = taken.drive, regression(taken.log, taken.drive).inertia
+    given = drive.motor.inertia + drive.gear.input_inertia + taken.said["load.inertia"] / drive.gear.kinematics.ratio**2
+    if abs(shown - given) <= UNLIKE * given:
+        return None
+    return (
+        f"the log shows a total inertia of {shown:.3g} kg·m² at the input, but that of the load as it was given makes "
+        f"{given:.3g} with motor and gear: see whether load_inertia, motor_inertia, ratio and torque constant are right"
+    )
+
+
+def _of_motion(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstimate]:
+    """The numbers of a log; each as uncertain as the torque constant, besides, and inertia as that of the rotor."""
+    drive, in_current = taken.drive, taken.in_current
+    rotating: Any = drive.motor
+    beside = {"load.inertia": (drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2}
+    if taken.log.effort == "voltage":
+        beside["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
+    encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
+    nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
+    for estimate in best.fit.estimates:
+        if estimate.path in nuisances or estimate.path in best.tied or estimate.path in taken.said:
+            continue
+        law = encoder if estimate.path == "load.gravity_phase" else ""
+        told = FileEstimate(estimate.path, estimate.unit, estimate.value, estimate.sigma, law)
+        told = told.resting_on(taken.relative, beside.get(estimate.path, 0.0))
+        told = told.sharing(taken.rotor) if estimate.path == "load.inertia" else told
+        told = replace(told, why=_untold(estimate, told.sigma, best))
+        yield told.in_current() if in_current else told
+
+
+def _untold(estimate: Estimate, sigma: float, best: MotionCandidate) -> str:
+    """Return the reason why a log does not determine a number; empty if it does."""
+    if estimate.path != "load.gravity_phase":
+        return "its standard deviation exceeds half the value" if sigma > 0.5 * abs(estimate.value) else ""
+    gravity = next(each for each in best.fit.estimates if each.path == "load.gravity_torque")
+    return "there is no gravity that the log tells" if gravity.sigma > 0.5 * abs(gravity.value) or sigma > 0.5 else ""

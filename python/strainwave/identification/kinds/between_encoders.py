@@ -1,0 +1,267 @@
+"""What a log of both encoders tells of the gear between them, once its motion has told what the gear carries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, stiffness, structure
+from strainwave.files.entries import Entry
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
+from strainwave.identification.candidates.motion import MotionCandidate
+from strainwave.identification.evidence.verdict import numbers
+from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.noise import correlation_length
+from strainwave.identification.kinds.prepared_log import PreparedLog
+from strainwave.identification.results.curves import curves_of_shafts
+from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.gear_so_far import GearSoFar, is_of
+from strainwave.orders.two_encoders import TransmissionError
+
+Array = NDArray[np.float64]
+
+APART = 3.0  # standard deviations, beyond which two values are not one
+LATE = 2.5  # standard deviations, beyond which a delay is there
+SURER = 3.0  # times as sure as gravity an inertia must be known to be what torques count from
+UNTOLD = 0.5  # of its value: a number whose standard deviation exceeds that is not told
+HANGS_TOGETHER = 3.0  # samples: what is left of less is noise (assumed)
+GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
+
+
+@dataclass(frozen=True)
+class Between:
+    """What is told of the gear between two encoders.
+
+    Attributes:
+        told: its numbers; they take the place of those that the log has told of the same paths
+        remarks: what to know of them
+        curves: the angle between the shafts as measured and as modelled; None where nothing was fitted
+        found: the model; None likewise
+        parts: those of the gear that it tells in units of a gear; none but the kinematic error where torques are in A
+    """
+
+    told: tuple[FileEstimate, ...] = ()
+    remarks: tuple[str, ...] = ()
+    curves: Recording | None = None
+    found: ElasticCandidate | None = None
+    parts: tuple[str, ...] = ("stiffness", "hysteresis", "damping", "kinematic_error")
+
+    def known(self, known: GearSoFar, name: str) -> GearSoFar:
+        """What is known after it: parts of the gear that no earlier file has told."""
+        if self.found is None:
+            return known
+        gear, before = self.found.drive.gear, known.gear_set.gear
+        new = {part: getattr(gear, part) for part in self.parts if part not in known.told}
+        if "stiffness" in new:
+            new["stiffness"] = _spring(gear.stiffness, before.stiffness, self.found.reach)
+        sigmas = {each.path: each.sigma for each in self.told if not each.why}
+        sigmas |= {
+            each.path: float(sigma)
+            for each, sigma in zip(self.found.fit.estimates, self.found.sigmas, strict=True)
+            if is_of(each.path, {"kinematic_error"})
+        }
+        return _with_sources_kept(known.with_parts(new, sigmas, name), known, new, sigmas, name)
+
+
+def between_encoders(taken: PreparedLog, best: MotionCandidate, errors: TransmissionError, known: GearSoFar) -> Between:
+    """Spring, hysteresis, damping and kinematic error of the gear in a log of both encoders, or why they are not told.
+
+    Args:
+        taken: the log
+        best: the fit along its motion
+        errors: orders of the kinematic error, from which the fit starts
+        known: before the log
+    """
+    drive, estimates = best.fit.parts[0].model, {each.path: each for each in best.fit.estimates}
+    try:
+        _check(taken.log, drive, errors)
+        scale = _scale(estimates, taken, drive)
+        drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
+        found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, _law(errors, drive))
+    except (ValueError, FloatingPointError) as error:
+        return Between(remarks=(f"stiffness and hysteresis are not told: {error}",))
+    told = tuple(_told(found, scale, known, taken.in_current))
+    remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), taken))
+    between = Between(told, remarks, curves_of_shafts(found.fit, found.name), found)
+    return replace(between, parts=("kinematic_error",)) if taken.in_current else between
+
+
+def _check(log: MotionLog, drive: Drive, errors: TransmissionError) -> None:
+    """
+    Raises:
+        ValueError: the drive of the log is none that can be simulated along its motion as it was
+    """
+    if log.regressors:
+        raise ValueError("other joints move, and the torque that they add is known by a regression only")
+    if not isinstance(drive.gear.structure, structure.Lumped):
+        raise ValueError("the gear of the initial set has stages, whose springs a log does not tell apart")
+    used, ratio = abs(errors.ratio.used), abs(drive.gear.kinematics.ratio)
+    if abs(used - ratio) > 1e-6 * ratio:
+        raise ValueError(f"the angles have the ratio {used:.6g}, the initial set {ratio:.6g}; give --constant ratio={used:.6g}")
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """The torque that is known, from which those of the output stage count.
+
+    Attributes:
+        path: `load.gravity_torque` or `load.inertia`
+        own: its standard deviation over its value, by the log [1]
+        common: the part that other files share, of the torque constant and the rotor [1]
+    """
+
+    path: str
+    own: float
+    common: float
+
+    @property
+    def relative(self) -> float:
+        """Its whole standard deviation over its value [1]."""
+        return float(np.hypot(self.own, self.common))
+
+
+def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) -> _Scale:
+    """What torques count from: gravity, which slow motion tells whatever the motor's inertia is, or the load's inertia.
+
+    That of the load is what is left beside the rotor's, so that a small one may be known badly.
+
+    Raises:
+        ValueError: the log tells neither
+    """
+    gravity, inertia = (each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY, INERTIA))
+    by_gravity = [] if gravity is None else [_Scale(GRAVITY, gravity.sigma / gravity.value, taken.relative)]
+    by_inertia = []
+    if inertia is not None and taken.motor_known:
+        rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
+        common = float(np.hypot(taken.relative * (inertia.value + rotor), taken.rotor)) / inertia.value
+        by_inertia = [_Scale(INERTIA, inertia.sigma / inertia.value, common)]
+    told = [each for each in (*by_gravity, *by_inertia) if each.relative < UNTOLD]
+    if not told:
+        missing = "is not known: give --constant motor_inertia=…"
+        if taken.motor_known:
+            missing = f"is not known well enough beside that of the load: ± {taken.rotor:.2g} kg·m² at the output"
+        raise ValueError(
+            f"no torque at the output is known to count from: the log tells no gravity, and the inertia of the motor {missing}"
+        )
+    return told[0] if len(told) == 1 or told[0].relative < SURER * told[1].relative else told[1]
+
+
+def _sense(recording: Recording, errors: TransmissionError, drive: Drive) -> Recording:
+    """The recording with the output counted as the ratio of the drive has it."""
+    if errors.ratio.used * drive.gear.kinematics.ratio > 0.0:
+        return recording
+    return recording.with_column("output_angle", -recording["output_angle"], recording.unit("output_angle"))
+
+
+def _law(errors: TransmissionError, drive: Drive) -> Any:
+    """The kinematic error as two encoders show it; with the output counted the other way round it has the other sign."""
+    law = errors.law
+    turned = 0.0 if errors.ratio.used * drive.gear.kinematics.ratio > 0.0 else np.pi
+    return law.replace(phase=[phase + turned for phase in law.phase])
+
+
+# ---- What is told ----------------------------------------------------------------------------------------------------
+
+
+def _told(found: ElasticCandidate, scale: _Scale, known: GearSoFar, in_current: bool) -> Iterator[FileEstimate]:
+    """The numbers of the gear, each as uncertain as the torque that all count from."""
+    gear: Any = found.drive.gear
+    law, orders = known.gear_set.gear.stiffness, gear.kinematic_error.order
+    nuisances = {each.name for each in found.fit.experiment.nuisances}
+    for estimate, sigma in zip(found.fit.estimates, found.sigmas, strict=True):
+        if estimate.path in nuisances or estimate.path.startswith(("gear.kinematic_error.phase", "load.gravity")):
+            continue
+        path = _path(estimate.path, orders, found, law)
+        told = FileEstimate(path, estimate.unit, estimate.value, float(sigma), _law_of(path, found))
+        if told.is_of_torque:
+            told = replace(told, sigma=float(np.hypot(sigma, scale.own * told.value))).resting_on(scale.common)
+        why = "its standard deviation exceeds half the value" if told.sigma > UNTOLD * abs(told.value) else ""
+        told = replace(told, why=why)
+        yield told.in_current() if in_current else told
+
+
+def _path(path: str, orders: Any, found: ElasticCandidate, law: Any) -> str:
+    """Where a number is compared with those of other files."""
+    if path.startswith("gear.kinematic_error.amplitude["):
+        return f"gear.kinematic_error.amplitude of order {orders[int(path.partition('[')[2][:-1])]:g}"
+    if path == "gear.stiffness.k" and _first_segment(found, law):
+        return "gear.stiffness.k1"
+    return path
+
+
+def _first_segment(found: ElasticCandidate, law: Any) -> bool:
+    """Whether a linear spring is the first of three segments, of which the log has reached no other."""
+    linear = isinstance(found.drive.gear.stiffness, stiffness.Linear)
+    return linear and isinstance(law, stiffness.ThreeSegment) and found.reach < law.t1
+
+
+def _law_of(path: str, found: ElasticCandidate) -> str:
+    part, gear = path.removeprefix("gear.").partition(".")[0], found.drive.gear
+    if part == "hysteresis":
+        count = sum(each.path.startswith("gear.hysteresis.breakaway") for each in found.fit.estimates)
+        return f"of {count} element{'s' if count > 1 else ''}"  # elements of different sets have nothing in common
+    if path == "gear.stiffness.k1":
+        return "three_segment"
+    return str(getattr(gear, part).name) if part in ("stiffness", "kinematic_error") else ""
+
+
+def _remarks(found: ElasticCandidate, scale: _Scale, rigid: Estimate | None, taken: PreparedLog) -> Iterator[str]:
+    estimates = {each.path: (each, float(sigma)) for each, sigma in zip(found.fit.estimates, found.sigmas, strict=True)}
+    torque, mass = ("A", "A·s²/rad") if taken.in_current else ("N·m", "kg·m²")
+    of = "gravity" if scale.path == GRAVITY else "inertia of the load"
+    yield (
+        f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
+        f"The gear transmits up to {found.reach:.3g} {torque}: what it does beyond is not told. Torques count from the {of}"
+    )
+    together = correlation_length(found.fit.residuals[0])
+    if together > HANGS_TOGETHER:
+        yield (
+            f"what is left between the encoders hangs together over {together:.0f} samples: the gear or its load has something "
+            "that the model lacks, and its numbers may be off by more than they say"
+        )
+    if scale.path == GRAVITY and rigid is not None and taken.motor_known:
+        own, sigma = estimates[INERTIA]
+        if abs(own.value - rigid.value) > APART * float(np.linalg.norm([sigma, rigid.sigma, taken.rotor])):
+            yield (
+                f"inertia of the load: {own.value:.4g} {mass} by how it winds the gear up and vibrates, {rigid.value:.4g} by "
+                "the torque of the motor. The first is told: it needs neither inertia of the motor nor a current that is a mean"
+            )
+    delay, sigma = estimates["output_angle_delay"]
+    if abs(delay.value) > LATE * sigma:
+        yield (
+            f"output_angle comes {1e3 * delay.value:.3g} ± {1e3 * sigma:.1g} ms behind input_angle; viscous friction at the "
+            "output would look alike"
+        )
+
+
+# ---- What is known after it ------------------------------------------------------------------------------------------
+
+
+def _spring(found: Any, before: Any, reach: float) -> Any:
+    """The spring that was found, with what lies beyond the torque of the log as it was before."""
+    if not isinstance(before, stiffness.ThreeSegment):
+        return found
+    if isinstance(found, stiffness.Linear) and reach < before.t1:
+        return before.replace(k1=found.k)
+    if isinstance(found, stiffness.ThreeSegment) and found.t2 > reach:
+        return found.replace(k3=before.k3, t2=max(before.t2, reach))
+    return found
+
+
+def _with_sources_kept(
+    after: GearSoFar, known: GearSoFar, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str
+) -> GearSoFar:
+    """The same, where numbers of the spring that the log does not reach have the source that they had, or are assumed."""
+    before = {path: value for path, (value, _) in numbers(known.gear_set.gear).items()}
+    sources = dict(after.gear_set.sources)
+    for path, (value, _) in numbers(after.gear_set.gear).items():
+        if path not in sigmas and is_of(path, {"stiffness"} & parts.keys()):
+            kept = before.get(path) == value and path in known.gear_set.sources
+            sources[path] = known.gear_set.sources[path] if kept else Entry(source=f"assumed beside what {name} tells")
+    return replace(after, gear_set=replace(after.gear_set, sources=sources))

@@ -1,0 +1,173 @@
+"""A log of a drive prepared for the fit: its motor, and its torque in the sense of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from strainwave import Drive, loads, motor
+from strainwave.equality import ComparedByFields
+from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.motion import regression
+from strainwave.identification.dynamics.coupling import coupled
+from strainwave.identification.experiments.motion_log import MotionLog, spoilt
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, rotor_sigma
+from strainwave.messages import as_option, listed
+
+MIN_EXPLAINED_SHARE = 0.5  # of the variation of the torque: a log of which inertia and friction explain less determines neither
+NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
+UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedLog(ComparedByFields):
+    """A log prepared for the fit.
+
+    Attributes:
+        log: the experiment
+        drive: as far as it is known
+        recording: with the torque in the sense of the motion
+        remarks: what was assumed, put right or left out
+        in_current: whether torques are in A, as the torque constant is not known
+        said: numbers of the drive that a person gave with the file, by path
+        relative: standard deviation of the torque constant over its value, where the torque rests on it; else 0 [1]
+        rotor: standard deviation of the inertia of motor and gear, as the output has it [kg.m2]; 0 where torques are in A
+    """
+
+    log: MotionLog
+    drive: Drive
+    recording: Recording
+    remarks: tuple[str, ...]
+    in_current: bool
+    said: Mapping[str, float]
+    relative: float
+    rotor: float
+
+    @property
+    def motor_known(self) -> bool:
+        """True if the inertia of the motor is known; else that of the load includes it."""
+        return self.drive.motor.inertia > NO_ROTOR
+
+
+def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
+    """A log along its motion, with the torque in the sense of the motion.
+
+    Raises:
+        ValueError: inertia, friction and gravity do not explain it
+    """
+    drive, remarks, in_current = _drive(file, known.gear_set)
+    recording = _loaded(file)
+    if not in_current and "current" in recording and "torque_constant" not in file.constants and known.gear_set.motor is None:
+        remarks.append("the current is not used, as the torque constant is not known and a torque was measured")
+        recording = recording.select([name for name in recording.names if name != "current"])
+    log = MotionLog.of(recording, drive, regressors=file.regressors)
+    if np.ptp(recording[log.effort]) == 0.0:
+        raise ValueError(f"{log.effort} never changes: a set value, a limit, or a channel that was not recorded")
+    before = regression(log, drive)
+    if before.reversed:
+        remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
+        recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
+        log = MotionLog.of(recording, drive, regressors=file.regressors)
+        before = regression(log, drive)
+    if file.neighbours and not file.regressors:
+        log, told = _with_neighbours(file, log, drive)
+        before = regression(log, drive)
+        remarks += told
+    if not before.share > MIN_EXPLAINED_SHARE or before.inertia <= 0.0:
+        raise ValueError(
+            f"inertia, friction and gravity explain {100.0 * max(before.share, 0.0):.0f} % of the variation of {log.effort}: "
+            "the drive did more than one shaft does (give the torque of other joints as a column rigid_torque), or sides or "
+            "units are not what they are taken for"
+        )
+    spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
+    if spoilt_rows:
+        share = 100.0 * spoilt_rows / len(recording)
+        remarks.append(f"outliers or clipped samples of {log.effort} are left out: {spoilt_rows}, {share:.2g} % of all")
+    said = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
+    rests = log.effort in ("current", "voltage") and not in_current  # a torque that was measured rests on no constant
+    constant = TorqueConstant.of(file, known.gear_set) if rests else None
+    rotor = 0.0 if in_current else rotor_sigma(file, known.gear_set) * drive.gear.kinematics.ratio**2
+    relative = 0.0 if constant is None else constant.relative
+    return PreparedLog(log, drive, recording, tuple(remarks), in_current, said, relative, rotor)
+
+
+def _with_neighbours(file: Recognised, log: MotionLog, drive: Drive) -> tuple[MotionLog, list[str]]:
+    """The log with the torque by other joints that move, and what to know of it."""
+    found = coupled(
+        log, drive, file.recording.time, {name: file.recording[at] for name, at in file.neighbours.items()}, file.joint
+    )
+    errors = f"error {100.0 * found.before:.2g} % of what varies without and {100.0 * found.after:.2g} % with them"
+    which = f"joints {listed(found.joints)} move too: "
+    if not found.terms:
+        return log, [f"{which}no torque of them was found that other parts of the record show; if they load it, record longer"]
+    own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
+    terms = f"{len(found.terms)} terms of them are fitted beside, {listed(found.terms)}"
+    if found.combined:
+        count = len(found.log.regressors) - len(log.regressors)
+        terms = f"{count} combinations of all terms that they may add are fitted beside, the largest {listed(found.terms)}"
+    return found.log, [f"{which}{terms}; {errors}; numbers are as sure as these terms: {own}"]
+
+
+def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:
+    """The drive of a log, of the motor that the set or the person tells; remarks; and whether torques are in A."""
+    constants, remarks, gear = file.constants, list[str](), gear_set.gear
+    if unused := sorted(constants.keys() & UNUSED):
+        remarks.append(f"given, but not used of a log: {listed(unused)}")
+    given = gear_set.motor
+    constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
+    inertia = constants.get("motor_inertia", getattr(given, "inertia", None))
+    if not {"current", "input_torque", "joint_torque"} & set(file.recording.names):
+        by_voltage = _motor_by_voltage(file, given, inertia)
+        share = 0.01 * by_voltage.torque_constant * by_voltage.back_emf / by_voltage.resistance
+        remarks.append(
+            "the voltage tells the torque, less what the motor induces: if its torque constant is 1 % larger, the viscous "
+            f"friction is {share:.2g} N·m·s/rad smaller"
+        )
+        return Drive(gear=gear, motor=by_voltage, load=loads.Inertia(inertia=1.0)), remarks, False
+    in_current = constant is None and not {"input_torque", "joint_torque"} & set(file.recording.names)
+    if in_current:
+        remarks.append("the torque constant is not known: torques are told in A; give --constant torque_constant=… for N.m")
+        gear = gear.replace(input_inertia=0.0)
+    elif inertia is None:
+        remarks.append("the inertia of the motor is not known: that of the load has it inside, times the ratio squared")
+    elif "motor_inertia" in constants:
+        remarks.append(
+            f"beside the motor's {inertia:.3g} kg·m² the set's {gear.input_inertia:.3g} kg·m² of the gear turn at the input; "
+            "where the first has the gear inside, give it without"
+        )
+    motor_there = motor.CurrentSource(
+        torque_constant=1.0 if constant is None else constant,
+        inertia=NO_ROTOR if inertia is None or in_current else inertia,
+        resistance=constants.get("resistance", getattr(given, "resistance", 0.0)),
+    )
+    return Drive(gear=gear, motor=motor_there, load=loads.Inertia(inertia=1.0)), remarks, in_current
+
+
+def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> motor.DC:
+    """The motor of a log that has its voltage alone; what the motor induces as it turns belongs to the voltage.
+
+    Raises:
+        ValueError: resistance or torque constant is neither said nor known of the set
+    """
+    known = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
+    if missing := [name for name, value in known.items() if value == 0.0]:
+        options = " and ".join(f"--constant {name}=…" for name in missing)
+        raise ValueError(
+            f"a voltage tells the torque of a motor that is known: give {options}; what a controller asks of an amplifier of "
+            f"currents is a current, whatever its unit: {as_option('column', 'current', file.columns['voltage'])}"
+        )
+    induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
+    return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or NO_ROTOR)
+
+
+def _loaded(file: Recognised) -> Recording:
+    """The recording, with a constant torque at the output that a person gave, beside what a model of the arm says."""
+    if "load_torque" not in file.constants:
+        return file.recording
+    own = file.recording["rigid_torque"] if "rigid_torque" in file.recording else np.zeros(len(file.recording))
+    return file.recording.with_column("rigid_torque", own + file.constants["load_torque"], "N.m")

@@ -1,0 +1,121 @@
+"""Friction of a drive that warms up while it moves, as a long log with a temperature tells it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import friction
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.warming import SLOWEST, WARMER, Warming, friction_over_temperature
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.gear_so_far import GearSoFar
+
+Array = NDArray[np.float64]
+
+EFFORTS = ("joint_torque", "input_torque", "current")
+SURE = 2.0  # standard deviations, beyond which friction changes with the temperature
+CLASSES = 24  # of the temperature that are drawn
+FEWEST = 10  # samples of a class
+
+
+@dataclass(frozen=True)
+class Warmed:
+    """What a log tells of friction over the temperature.
+
+    Attributes:
+        found: friction, and how it changes
+        effort: the channel that tells it
+        told: its numbers
+        remarks: the same in words
+        curves: means of the friction over the temperature beside the line
+    """
+
+    found: Warming
+    effort: str
+    told: tuple[FileEstimate, ...]
+    remarks: tuple[str, ...]
+    curves: Recording
+
+    def known(self, known: GearSoFar, name: str) -> tuple[GearSoFar, tuple[str, ...]]:
+        """What is known after it, and what was assumed for it."""
+        law: Any = known.gear_set.gear.friction_input
+        fall = self.found.fall
+        if self.told[0].why or fall.value <= 0.0 or law.name == "thermal":
+            return known, ()
+        warmer = friction.Thermal(
+            law=law, dry_fall=fall.value, viscous_fall=fall.value, reference_temperature=self.found.reference_temperature
+        )
+        at = _celsius(self.found.reference_temperature)
+        said = f"the friction of the gear is taken to hold at {at}, its dry and viscous part to fall alike"
+        return known.with_law(warmer, {self.told[0].path: self.told[0].sigma}, name), (said,)
+
+
+def warmed(file: Recognised) -> Warmed | None:
+    """Friction over the temperature; None where a log has no temperature that changes, or cannot tell it."""
+    recording = file.recording
+    effort = next((name for name in EFFORTS if name in recording), None)
+    if effort is None or "temperature" not in recording or np.ptp(recording["temperature"]) < WARMER:
+        return None
+    speed = _speed(recording)
+    if speed is None:
+        return None
+    series = Recording(
+        {"speed": speed, "temperature": recording.values("temperature", "K"), effort: recording[effort]},
+        {"speed": "rad/s", "temperature": "K", effort: recording.unit(effort)},
+    )
+    try:
+        found = friction_over_temperature(series, effort)
+    except ValueError:
+        return None
+    fall, slope, level = found.fall, found.slope, found.friction
+    sure = abs(fall.value) > SURE * fall.sigma
+    why = "" if sure else "the friction does not change with the temperature beyond chance"
+    low, high = slope.interval(0.95)
+    remarks = (
+        f"friction over the temperature, of {effort.replace('_', ' ')}: {level.value:.4g} ± {level.sigma:.2g} {level.unit} at "
+        f"{_celsius(found.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
+        f"with 95 % between {low:.3g} and {high:.3g}",
+        "temperature is not told from what else changed in the same time, as wear-in or another task",
+    )
+    told = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
+    return Warmed(found, effort, told, remarks, _curves(series, effort, found))
+
+
+def _celsius(temperature: float) -> str:
+    return f"{temperature - 273.15:.3g} °C"
+
+
+def _speed(recording: Recording) -> Array | None:
+    for side in ("input", "output"):
+        if f"{side}_speed" in recording:
+            return recording.values(f"{side}_speed", "rad/s")
+        if f"{side}_angle" in recording:
+            return np.gradient(recording.values(f"{side}_angle", "rad"), recording.time)
+    return None
+
+
+def _curves(series: Recording, effort: str, found: Warming) -> Recording:
+    """Means of the effort against the motion, of classes of the temperature."""
+    speed, temperature = series["speed"], series["temperature"]
+    moving = np.abs(speed) > SLOWEST * np.abs(speed).max()
+    temperature, way, force = temperature[moving], np.sign(speed[moving]), series[effort][moving]
+    edges = np.quantile(temperature, np.linspace(0.0, 1.0, CLASSES + 1))
+    place = np.clip(np.searchsorted(edges, temperature, "right") - 1, 0, CLASSES - 1)
+    rows = []
+    for each in range(CLASSES):
+        there = place == each
+        both = [force[there & (way == sign)] for sign in (1.0, -1.0)]
+        if min(map(len, both)) >= FEWEST:
+            rows.append((float(temperature[there].mean()), 0.5 * float(both[0].mean() - both[1].mean())))
+    where, level = np.array(rows).reshape(-1, 2).T
+    line = found.friction.value + found.slope.value * (where - found.reference_temperature)
+    unit = series.unit(effort)
+    return Recording(
+        {"temperature": where, f"friction_of_{effort}": level, "modelled": line},
+        {"temperature": "K", f"friction_of_{effort}": unit, "modelled": unit},
+    )

@@ -1,0 +1,111 @@
+"""What was measured in a file beside what its model says, with the uncertainty of both, to be drawn."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import _core
+from strainwave.files.recording import Recording
+from strainwave.identification.experiments.experiment import Experiment
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.fitting.fit import Fit, Part
+from strainwave.identification.fitting.unknowns import AT
+from strainwave.orders.two_encoders import TransmissionError
+
+Array = NDArray[np.float64]
+
+
+def curves_of(fit: Fit, part: Part | None = None) -> Recording:
+    """What a model says of one measurement.
+
+    Args:
+        fit: the model fitted
+        part: the measurement, one of `fit.parts`; the first if not given
+
+    Returns:
+        what it is drawn over (speed, twist or time); the first channel, under its name; `modelled`, what the model predicts;
+        `held_out`, 1 where a sample took no part in the fit; and `sigma`, the standard deviation of `modelled` by that of the
+        numbers fitted, where the data determine all of them
+
+    The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of what
+    is predicted and C the covariance of the estimates (JCGM 100:2008, eq. 13).
+    """
+    part = fit.parts[0] if part is None else part
+    experiment, channel = part.experiment, part.experiment.channels[0]
+    over, unit, x = _abscissa(experiment)
+    columns = {over: x, channel: experiment.measured[0], "modelled": part.predicted[0]}
+    units = {over: unit, channel: experiment.units[0], "modelled": experiment.units[0], "held_out": "1"}
+    columns["held_out"] = (~part.training).astype(float)
+    sigma = _sigma(fit, part)
+    if np.isfinite(sigma).all():
+        columns["sigma"], units["sigma"] = sigma, experiment.units[0]
+    return Recording(columns, units)
+
+
+def curves_of_orders(found: TransmissionError) -> Recording:
+    """What the orders of the input say of the transmission error.
+
+    Returns:
+        time, or the input angle where there is no time; `transmission_error`; `modelled`, its significant orders; `residual`,
+        what neither orders nor loads explain; and `sigma`, the standard deviation of `modelled` by amplitudes and phases of the
+        input's orders, taken as independent
+    """
+    curves = found.curves
+    over = "time" if "time" in curves else "input_angle"
+    error, angle = curves["transmission_error"], curves["input_angle"]
+    variance = np.zeros_like(angle)
+    for each in found.orders:
+        if each.significant and each.shaft == "input":
+            phase = each.order * angle + each.phase
+            variance += (each.amplitude_sigma * np.sin(phase)) ** 2
+            variance += (each.amplitude * each.phase_sigma * np.cos(phase)) ** 2
+    columns = {over: curves[over], "transmission_error": error, "modelled": curves["kinematic_error"]}
+    columns |= {"residual": curves["residual"], "sigma": np.sqrt(variance)}
+    units = dict.fromkeys(columns, "rad") | {over: curves.unit(over)}
+    return Recording(columns, units)
+
+
+def curves_of_shafts(fit: Fit, model: str) -> Recording:
+    """What a model says of the angle between the shafts in a log along the motion of its input, whose output is compared.
+
+    Returns:
+        time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`; titled with the model
+    """
+    part = fit.parts[0]
+    log: Any = part.experiment
+    turned = log.angle / part.model.gear.kinematics.ratio
+    error, modelled = turned - log.measured[0], turned - part.predicted[0]
+    columns = {"time": log.time, "transmission_error": error - error.mean(), "modelled": modelled - error.mean()}
+    return Recording(columns, dict.fromkeys(columns, "rad") | {"time": "s"}, model)
+
+
+def _abscissa(experiment: Experiment) -> tuple[str, str, Array]:
+    if isinstance(experiment, FrictionTable):
+        return "speed", "rad/s", experiment.speed
+    if isinstance(experiment, TorsionLoop):
+        return "twist", "rad", experiment.twist
+    log: Any = experiment
+    return "time", "s", log.time
+
+
+def _sigma(fit: Fit, part: Part) -> Array:
+    """Standard deviation of what is predicted for the first channel, shape (n,)."""
+    zeros = [each.name for each in part.experiment.nuisances]
+    own: dict[str, int] = {}
+    for place, estimate in enumerate(fit.estimates):
+        path, _, record = estimate.path.partition(AT)
+        if record in ("", part.name):
+            own[path] = place
+    numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(part.model))}
+    known = [path for path in own if path in numbers and path not in zeros]
+    nuisances = np.array([fit.estimates[own[name]].value for name in zeros])
+    _, slopes = part.experiment.predict(part.model, [numbers[path] for path in known], nuisances)
+    places = [own[path] for path in (*known, *zeros)]
+    jacobian, covariance = slopes[:, 0], fit.covariance[np.ix_(places, places)]
+    with np.errstate(invalid="ignore"):  # infinite where the data do not determine an estimate
+        variance: Array = np.einsum("in,ij,jn->n", jacobian, covariance, jacobian, optimize=True)
+    return np.sqrt(np.clip(variance, 0.0, None))

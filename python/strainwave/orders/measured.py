@@ -1,0 +1,131 @@
+"""What a recording tells of the orders of a gear: from two encoders if it has both, from torque or current if it has one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from strainwave import arguments
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
+from strainwave.messages import listed
+from strainwave.orders.ripple import Ripple, Side, ripple
+from strainwave.orders.two_encoders import TransmissionError, transmission_error
+
+EFFORTS = ("joint_torque", "torque", "input_torque", "current")  # in which ripple is looked for, the best first
+ANGLES: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
+SPEEDS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("output_speed", "output"), ("speed", None))
+
+
+@dataclass(frozen=True, eq=False)
+class OrdersFound(ComparedByFields):
+    """What one recording tells.
+
+    Attributes:
+        name: of the recording
+        transmission: from two encoders, where it has both
+        ripple: from torque or current, where it has one and an angle
+        remarks: what was not possible, and why
+    """
+
+    name: str
+    transmission: TransmissionError | None
+    ripple: Ripple | None
+    remarks: tuple[str, ...] = ()
+
+
+def orders_found(
+    recording: Recording,
+    name: str = "recording",
+    *,
+    ratio: float | None = None,
+    side: Side | None = None,
+    highest: float | None = None,
+    rate: float | None = None,
+) -> OrdersFound:
+    """The orders of a gear in a recording, by all that it holds.
+
+    Args:
+        recording: columns with the names of a drive log: time, input_angle, output_angle, angle, a speed instead of an angle,
+            joint_torque, torque, input_torque, current
+        name: of the recording, for what is told of it
+        ratio: of the gear, if it is known
+        side: on which the angle or speed was measured, where its name does not say so
+        highest: order up to which ripple is looked for, of the shaft whose angle it is told over: the input of two
+        rate: samples per second of a recording without time [Hz]
+
+    Raises:
+        ValueError: the recording has neither two angles nor a torque or current with an angle, or cannot tell orders
+
+    >>> theta = np.linspace(0.0, 400.0, 9000)
+    >>> torque = 0.05 + 0.004 * np.cos(2 * theta) + np.random.default_rng(0).normal(0.0, 0.004, len(theta))
+    >>> found = orders_found(Recording({"angle": theta, "torque": torque}, {"angle": "rad", "torque": "N.m"}), side="input")
+    >>> [(line.kind, round(line.order, 1)) for line in found.ripple.lines]
+    [('either', 2.0)]
+    """
+    if side is not None:
+        arguments.one_of("side", side, ("input", "output"))
+    effort = next((each for each in EFFORTS if each in recording), None)
+    transmission = None
+    if "input_angle" in recording and "output_angle" in recording:
+        transmission = transmission_error(_for_two_encoders(recording), ratio=ratio, rate=rate)
+        if effort is None:
+            return OrdersFound(name, transmission, None)
+        size = abs(transmission.ratio.used)
+        try:
+            found = ripple(recording, effort, angle="input_angle", side="input", ratio=size, highest=highest, rate=rate)
+            return OrdersFound(name, transmission, found)
+        except ValueError as error:
+            return OrdersFound(name, transmission, None, (f"ripple in {effort} is not told: {error}",))
+    if effort is None:
+        raise ValueError(
+            f"orders need two angles, input_angle and output_angle, or a torque or current beside one angle; there are "
+            f"{listed(recording.names)}"
+        )
+    turning, angle, known, remarks = _turning(recording, side, rate)
+    found = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate)
+    return OrdersFound(name, None, replace(found, remarks=(*remarks, *found.remarks)))
+
+
+def _for_two_encoders(recording: Recording) -> Recording:
+    """With the names that `transmission_error` knows."""
+    names = {"input_angle": "input_angle", "output_angle": "output_angle", "time": "time"}
+    names |= {"joint_torque": "torque"} if "joint_torque" in recording else {}
+    names |= {"current": "current"} if "current" in recording and "joint_torque" not in recording else {}
+    kept = {old: new for old, new in names.items() if old in recording}
+    return Recording(
+        {new: recording[old] for old, new in kept.items()},
+        {new: recording.unit(old) for old, new in kept.items()},
+        recording.title,
+    )
+
+
+def _turning(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
+    """The recording with an angle, its name and side, and what was done for it."""
+    for name, known in ANGLES:
+        if name in recording:
+            return recording, name, _side(name, known, side), ()
+    for name, known in SPEEDS:
+        if name not in recording:
+            continue
+        if "time" not in recording and rate is None:
+            raise ValueError(
+                f"{name} tells an angle only over time; give the samples per second with --rate, or a column of time"
+            )
+        speed = recording.values(name, "rad/s")
+        if rate is not None:
+            rate = arguments.number("rate", rate, "Hz", low=0.0)
+        step = np.diff(recording.time) if "time" in recording else np.full(len(speed) - 1, 1.0 / float(rate or 1.0))
+        angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * step)])
+        said = f"there is no angle: {name} is summed up over time; its errors widen the lines"
+        return recording.with_column("angle", angle, "rad"), "angle", _side(name, known, side), (said,)
+    raise ValueError(f"orders need an angle, or a speed over time; there are {listed(recording.names)}")
+
+
+def _side(name: str, known: Side | None, said: Side | None) -> Side:
+    if said is None and known is None:
+        raise ValueError(f"{name} may be that of the motor or that of the joint; say which, with --side input or --side output")
+    if said is not None and known is not None and said != known:
+        raise ValueError(f'side = "{said}" is said, but {name} is that of the {known}')
+    return said or known or "output"

@@ -1,0 +1,176 @@
+r"""Spectra over an angle and over time, under coloured noise, at any speed.
+
+A line of order n is cos(n theta(t)). With the series y and the covariance C of its noise, the sum
+
+.. math:: S(n) = \sum_t (C^{-1} y)_t \, e^{-j n \theta_t}, \qquad I(n) = \sum_t \frac{1}{P(n \omega_t)}
+
+is the generalised matched filter for it (Kay1998): the square of S over I is exponentially distributed where there is noise
+alone, whose power P is that of the frequency at which the order passes; 2 S / I is the amplitude of the line. So a slow
+stretch, where the order passes in low and noisy frequencies, counts for less than a fast one. To divide by C costs one Fourier
+transform, S another one: the products are summed into narrow bins of the angle. Forward and backward are summed apart, since
+ripple of friction changes its sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.orders.floor import Floor
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+BINS = 16  # of the angle in a period of the highest order: a line loses less than 1 % of its height
+FINER = 4  # lines of the spectrum for each that is independent
+SPEEDS = 128  # bins of the speed, for the information of an order
+AROUND = 100  # independent lines whose median is the floor of one
+EFFICIENCY = 2.08  # variance of a median of exponential numbers, over that of their mean: 1 / log(2)²
+MOST_LINES = 2**23  # of a spectrum
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """How much of each order, or of each frequency, is in a series.
+
+    Attributes:
+        place: order [1], or frequency [cycles per sample], shape (n,)
+        evidence: twice it is chi-squared distributed with 2 `parts` degrees of freedom where there is noise alone, shape (n,)
+        amplitude: of a line there, the larger one of those of both directions, shape (n,)
+        noise: standard deviation of that amplitude's parts, shape (n,)
+        parts: directions that are summed apart, 1 or 2
+        floors: number of independent lines that the floor of each line rests on
+    """
+
+    place: Array
+    evidence: Array
+    amplitude: Array
+    noise: Array
+    parts: int
+    floors: float
+
+    def false_alarm(self, evidence: Array | float, tested: float) -> Array:
+        """Probability that noise alone gives so much anywhere in so many lines: Bonferroni's bound.
+
+        The floor is itself estimated, from few lines: tails of F instead of chi-squared.
+        """
+        from scipy.stats import f
+
+        single = f.sf(np.asarray(evidence) / self.parts, 2 * self.parts, 2.0 * self.floors)
+        bounded: Array = np.minimum(1.0, tested * single)
+        return bounded
+
+    def evidence_of(self, false_alarm: float, tested: float) -> float:
+        """Evidence that noise alone gives anywhere in so many lines with this probability."""
+        from scipy.stats import f
+
+        return self.parts * float(f.isf(false_alarm / tested, 2 * self.parts, 2.0 * self.floors))
+
+
+def order_spectrum_of(
+    weighed: Array, weight: Array, floor: Floor, angle: Array, speed: Array, sense: Array, lowest: float, highest: float
+) -> Spectrum:
+    """The spectrum over an angle.
+
+    Args:
+        weighed: series over its floor, shape (n,)
+        weight: by which the series was multiplied before, shape (n,)
+        floor: of the series
+        angle: of the shaft [rad], shape (n,)
+        speed: of it [rad per sample], shape (n,)
+        sense: 1 forward, -1 backward, shape (n,)
+        lowest, highest: order
+
+    Raises:
+        ValueError: the spectrum has too many lines to hold
+    """
+    span = float(np.ptp(angle))
+    width = tau / (BINS * highest)
+    bins = int(span / width) + 2
+    length = _good(max(FINER * bins, 64))
+    if length > MOST_LINES:
+        raise ValueError(
+            f"a spectrum up to order {highest:g} over {span / tau:.6g} revolutions has {length} lines; take a shorter "
+            "stretch, or look for lower orders"
+        )
+    order: Array = (np.arange(length // 2 + 1) * (tau / (length * width))).astype(np.float64)
+    kept = (order >= lowest) & (order <= highest)
+    order = order[kept]
+    senses = [each for each in (1.0, -1.0) if np.any(sense == each)]
+    evidence, amplitude, noise = np.zeros(len(order)), np.zeros(len(order)), np.full(len(order), np.inf)
+    cells = ((angle - angle.min()) / width).astype(int)
+    for each in senses:
+        there = sense == each
+        binned = np.bincount(cells[there], (weighed * weight)[there], bins)
+        filtered = np.fft.rfft(binned, length)[kept]
+        information = _information(order, np.abs(speed[there]), weight[there], floor)
+        found = np.abs(filtered)
+        evidence += found**2 / information
+        larger = 2.0 * found / information
+        noise = np.where(larger > amplitude, np.sqrt(2.0 / information), noise)
+        amplitude = np.maximum(amplitude, larger)
+    return _levelled(Spectrum(order, evidence, amplitude, noise, len(senses), 0.0))
+
+
+def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float) -> Spectrum:
+    """The spectrum over time, of the same kind, from the lowest frequency [cycles per sample] to half the sampling rate."""
+    length = _good(FINER * len(series))
+    place: Array = np.fft.rfftfreq(length).astype(np.float64)
+    kept = (place >= lowest) & (place < 0.5)
+    place = place[kept]
+    filtered = np.abs(np.fft.rfft(series * weight, length)[kept])
+    level = floor.at(place)
+    squared = float(weight @ weight)
+    evidence, amplitude = filtered**2 / (squared * level), 2.0 * filtered / squared
+    return _levelled(Spectrum(place, evidence, amplitude, np.sqrt(2.0 * level / squared), 1, 0.0))
+
+
+def _levelled(spectrum: Spectrum) -> Spectrum:
+    """With the median of the lines around each where it belongs: the noise over angle may differ from that over time."""
+    from scipy.ndimage import median_filter
+    from scipy.stats import chi2
+
+    independent = len(spectrum.evidence) / FINER
+    around = min(AROUND, max(1.0, independent))
+    width = max(3, int(around * FINER)) | 1
+    thinned = max(1, width // 201)
+    median = median_filter(spectrum.evidence[::thinned], (width // thinned) | 1, mode="reflect")
+    level = np.repeat(median, thinned)[: len(spectrum.evidence)] / (0.5 * float(chi2.ppf(0.5, 2 * spectrum.parts)))
+    level = np.maximum(level, 1.0)  # what the smooth part took out is no lower floor
+    return Spectrum(
+        spectrum.place,
+        spectrum.evidence / level,
+        spectrum.amplitude,
+        spectrum.noise * np.sqrt(level),
+        spectrum.parts,
+        max(2.0, around / EFFICIENCY * spectrum.parts),
+    )
+
+
+def _information(order: Array, speed: Array, weight: Array, floor: Floor) -> Array:
+    """I(n), from a histogram of the speed."""
+    fastest = float(speed.max()) or 1.0
+    cells = np.minimum((speed / fastest * SPEEDS).astype(int), SPEEDS - 1)
+    counts = np.bincount(cells, weight**2, SPEEDS)
+    middles = (np.arange(SPEEDS) + 0.5) * fastest / SPEEDS
+    used = counts > 0.0
+    information = np.zeros(len(order))
+    for count, middle in zip(counts[used], middles[used], strict=True):
+        information += count / floor.at(order * middle / tau)
+    return np.maximum(information, 1e-300)
+
+
+def _good(length: int) -> int:
+    from scipy.fft import next_fast_len
+
+    return int(next_fast_len(length, real=True))
+
+
+def spread_of(angle: Array, weight: Array) -> float:
+    """Standard deviation of the angle [rad], samples counted by their weight."""
+    share = weight**2 / float(weight @ weight)
+    middle = float(share @ angle)
+    return float(np.sqrt(share @ (angle - middle) ** 2))

@@ -1,0 +1,257 @@
+r"""Regression of the transmission error through the output stage, without simulation.
+
+With theta the input angle, q the output angle, e the kinematic error and i the ratio, a linear output stage is
+
+.. math:: J \ddot q = K \delta + D \dot\delta - T_\text{load}, \qquad \delta = \theta / i - q - e(\theta)
+
+so that the transmission error, which two encoders measure, is
+
+.. math:: \frac{\theta}{i} - q = (1 - F) \frac{\theta}{i} + F e(\theta) + H \frac{T_\text{load}}{K}, \qquad
+          F = \frac{1 + 2 \zeta s / \omega_0}{1 + 2 \zeta s / \omega_0 + s^2 / \omega_0^2}, \quad
+          H = \frac{1}{1 + 2 \zeta s / \omega_0 + s^2 / \omega_0^2}
+
+with omega_0 the natural frequency of the output with the input held. Slow against it, F = H = 1. An order that passes it is
+amplified, and above it the output stands still and the transmission error shows no kinematic error at all. Everything but
+omega_0 and zeta is linear, so that only these two are sought (GolubPereyra1973). Both sides are compared in the frequency
+domain, each line weighed by the noise around it, which is told from what is left; what the ends of the record add is a
+transient of the stage (PintelonSchoukens2012).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.orders.floor import floor_of
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+HIGHEST = 0.4  # of the sampling rate, up to which lines are compared
+ROUNDS = 4  # of weights and fit
+BLOCKS = 200  # of the record, over which scores are summed for the covariance
+TRANSIENT = 4  # terms of the ends of the record
+LEAST_GAIN = 30.0  # of the logarithm of the likelihood, that makes the output stage worth its two parameters
+STIFFNESS_SPREAD = 0.10  # by which the stiffness that ripple meets may differ from that of the whole motion (assumed)
+DAMPING_SPREAD = 0.30  # the same of the damping (assumed)
+TRIED = 2.0 * pi * HIGHEST * np.geomspace(0.004, 1.0, 12)  # natural frequencies from which it is sought [rad per sample]
+TRIED_DAMPING = 0.1
+
+
+@dataclass(frozen=True)
+class Stage:
+    """The output stage: natural frequency with the input held [rad per sample], damping ratio."""
+
+    frequency: float
+    damping: float
+
+    def gains(self, s: Complex) -> tuple[Complex, Complex]:
+        """F and H at s = j omega [rad per sample]."""
+        x = s / self.frequency
+        below = 1.0 + 2.0 * self.damping * x + x**2
+        return (1.0 + 2.0 * self.damping * x) / below, 1.0 / below
+
+
+@dataclass(frozen=True)
+class Regressed:
+    """What a regression found.
+
+    Attributes:
+        values: coefficients, first of the orders, then of the loads, shape (n,)
+        covariance: of them, shape (n, n)
+        freedom: degrees of freedom that the covariance rests on
+        stage: the output stage, None where it was not seen
+        spread: standard deviations of the logarithms of its frequency and damping
+        residual: what is left below the highest line that is compared, shape (samples,)
+    """
+
+    values: Array
+    covariance: Array
+    freedom: int
+    stage: Stage | None
+    spread: tuple[float, float]
+    residual: Array
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Series of a record to be compared, all evenly in time.
+
+    Args:
+        angle: theta / i [rad], shape (n,)
+        error: theta / i - q [rad], shape (n,)
+        orders: series that pass F, as sin(2 theta), shape (n, k)
+        loads: series that pass H, shape (n, l)
+    """
+
+    angle: Array
+    error: Array
+    orders: Array
+    loads: Array
+
+    def regress(self, *, dynamic: bool) -> Regressed:
+        """Fits the coefficients, and where it is seen the output stage."""
+        lines = _Lines.of(self)
+        still = lines.fitted(None)
+        if not dynamic:
+            return lines.result(still)
+        moved = lines.fitted(lines.nearest(still.floor), still.floor)
+        return lines.result(moved if still.misfit - moved.misfit > LEAST_GAIN else still)
+
+
+@dataclass(frozen=True)
+class _Fitted:
+    stage: Stage | None
+    values: Array  # in units in which each series has length 1
+    floor: Array  # at each line
+    misfit: float  # minus the logarithm of the likelihood
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """The problem in the frequency domain, from the first line to the highest that is compared."""
+
+    count: int
+    s: Complex
+    angle: Complex
+    error: Complex
+    orders: Complex
+    loads: Complex
+
+    @classmethod
+    def of(cls, problem: Problem) -> _Lines:
+        count = len(problem.error)
+        frequency = np.fft.rfftfreq(count)
+        kept = (frequency > 0.0) & (frequency < HIGHEST)
+
+        def lines(series: Array) -> Complex:
+            found: Complex = np.fft.rfft(series, axis=0)[kept] / np.sqrt(count)
+            return found
+
+        straight = np.linspace(problem.angle[0], problem.angle[-1], count)
+        s = (2j * pi * frequency[kept]).astype(np.complex128)
+        error = problem.error - problem.error.mean()
+        return cls(count, s, lines(problem.angle - straight), lines(error), lines(problem.orders), lines(problem.loads))
+
+    def nearest(self, floor: Array) -> Stage:
+        """The best of the stages from which the search may begin."""
+        tried = [Stage(float(frequency), TRIED_DAMPING) for frequency in TRIED]
+        return min(tried, key=lambda each: float(np.sum(self.misses(each, floor)[1] ** 2)))
+
+    def fitted(self, stage: Stage | None, floor: Array | None = None) -> _Fitted:
+        """The fit in turns with the weights, which the residual tells."""
+        from scipy.optimize import least_squares
+
+        floor = np.ones(len(self.s)) if floor is None else floor
+        values = np.zeros(0)
+        for _ in range(ROUNDS):
+            if stage is not None:
+                start = np.log([stage.frequency, stage.damping])
+                bounds = ([np.log(4.0 * pi / self.count), np.log(1e-3)], [np.log(2.0 * pi), np.log(3.0)])
+                start = np.clip(start, np.add(bounds[0], 1e-6), np.subtract(bounds[1], 1e-6))
+                found = least_squares(
+                    self._missed, start, args=(floor,), bounds=bounds, x_scale=[0.1, 0.3], xtol=1e-5, ftol=1e-7
+                )
+                stage = _stage(found.x)
+            values, _ = self.misses(stage, floor)
+            left = self.left(stage, values)
+            floor = floor_of(np.abs(left) ** 2, self.count).at(np.abs(self.s.imag) / (2.0 * pi))
+        misfit = float(np.sum(np.log(floor) + np.abs(left) ** 2 / floor))
+        return _Fitted(stage, values, floor, misfit)
+
+    def design(self, stage: Stage | None) -> tuple[Complex, Complex]:
+        """The series that the error is made of, shape (lines, n), and what is compared with them, shape (lines,)."""
+        if stage is None:
+            return np.concatenate([self.orders, self.loads], axis=1), self.error
+        f, h = stage.gains(self.s)
+        x = self.s / stage.frequency
+        ends = np.stack([h, h * x, np.ones_like(x), self.s / np.abs(self.s[-1])], axis=1)[:, :TRANSIENT] / np.sqrt(self.count)
+        return np.concatenate(
+            [self.orders * f[:, None], self.loads * h[:, None], ends], axis=1
+        ), self.error - h * x**2 * self.angle
+
+    def _missed(self, logarithms: Array, floor: Array) -> Array:
+        return self.misses(_stage(logarithms), floor)[1]
+
+    def misses(self, stage: Stage | None, floor: Array) -> tuple[Array, Array]:
+        """The best coefficients, and what is left, real parts over imaginary ones, each of variance 1 where it is noise."""
+        from scipy.linalg import lstsq
+
+        series, compared = self.design(stage)
+        weight = np.sqrt(2.0 / floor)
+        matrix, target = _stacked(series * weight[:, None]), _stacked(compared * weight)
+        size = np.linalg.norm(matrix, axis=0)
+        size[size == 0.0] = 1.0
+        values = lstsq(matrix / size, target, cond=1e-9, lapack_driver="gelsy", check_finite=False)[0] / size
+        return values, target - matrix @ values
+
+    def left(self, stage: Stage | None, values: Array) -> Complex:
+        series, compared = self.design(stage)
+        return compared - series @ values
+
+    def result(self, found: _Fitted) -> Regressed:
+        weight = np.sqrt(2.0 / found.floor)
+        series, _ = self.design(found.stage)
+        columns = [_stacked(series * weight[:, None])]
+        if found.stage is not None:
+            columns.append(np.stack([self._slope(found, k, weight) for k in (0, 1)], axis=1))
+        jacobian = np.concatenate(columns, axis=1)
+        size = np.linalg.norm(jacobian, axis=0)
+        size[size == 0.0] = 1.0
+        inverse = np.asarray(np.linalg.pinv((jacobian / size).T @ (jacobian / size), rcond=1e-12)) / np.outer(size, size)
+        left = self.left(found.stage, found.values)
+        scores = self._scores(jacobian, _stacked(left * weight))
+        freedom = max(len(scores) - jacobian.shape[1], 1)
+        covariance = inverse @ (scores.T @ scores) @ inverse * len(scores) / freedom
+        spread = (float("nan"), float("nan"))
+        if found.stage is not None:
+            spread = (float(np.sqrt(covariance[-2, -2])), float(np.sqrt(covariance[-1, -1])))
+            covariance[:-2, :-2] += self._considered(jacobian[:, :-2] / size[:-2], jacobian[:, -2:], size[:-2])
+        kept = self.orders.shape[1] + self.loads.shape[1]
+        whole = np.zeros(self.count // 2 + 1, complex)
+        whole[1 : len(left) + 1] = left * np.sqrt(self.count)
+        residual = np.fft.irfft(whole, self.count)
+        return Regressed(found.values[:kept], covariance[:kept, :kept], freedom, found.stage, spread, residual)
+
+    def _slope(self, found: _Fitted, which: int, weight: Array) -> Array:
+        """How the model changes with the logarithm of the stage's frequency or damping."""
+        assert found.stage is not None
+        at = np.log([found.stage.frequency, found.stage.damping])
+        step = np.eye(2)[which] * 1e-4
+        below, above = (self.left(_stage(at + sign * step), found.values) for sign in (-1.0, 1.0))
+        return _stacked((below - above) / 2e-4 * weight)
+
+    def _considered(self, linear: Array, slopes: Array, size: Array) -> Array:
+        """What it adds that a gear is no linear spring: ripple meets another stiffness and damping than the whole motion.
+
+        They are not estimated but considered, each with its spread (Schmidt's consider covariance: Jazwinski1970).
+        """
+        moved = np.linalg.lstsq(linear, slopes, rcond=1e-9)[0] * np.array([0.5 * STIFFNESS_SPREAD, DAMPING_SPREAD])
+        added: Array = (moved / size[:, None]) @ (moved / size[:, None]).T
+        return added
+
+    def _scores(self, jacobian: Array, left: Array) -> Array:
+        """Sums of series times residual over blocks of time, shape (blocks, n), so that noise may come and go."""
+        edges = np.linspace(0, self.count, min(BLOCKS, self.count // 25) + 1).astype(int)[:-1]
+        rest = self._over_time(left)
+        products = [np.add.reduceat(self._over_time(column) * rest, edges) for column in jacobian.T]
+        return 0.5 * np.stack(products, axis=1)
+
+    def _over_time(self, stacked: Array) -> Array:
+        half = len(self.s)
+        whole = np.zeros(self.count // 2 + 1, complex)
+        whole[1 : half + 1] = stacked[:half] + 1j * stacked[half:]
+        series: Array = np.fft.irfft(whole, self.count) * np.sqrt(self.count)
+        return series
+
+
+def _stage(logarithms: Array) -> Stage:
+    return Stage(float(np.exp(logarithms[0])), float(np.exp(logarithms[1])))
+
+
+def _stacked(values: Complex) -> Array:
+    stacked: Array = np.concatenate([values.real, values.imag])
+    return stacked

@@ -1,0 +1,326 @@
+"""The kinematic error of a gear from two encoders: ratio, orders, lost motion, what is elastic in it.
+
+    transmission error = input angle / ratio - output angle = kinematic error + twist
+
+Its orders of the input are regressed together with direction, gravity, inertia and losses of the output, through the output
+stage where the record shows its resonance (`stage`). No simulation is run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import hypot, inf, pi, tau
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from strainwave import arguments, kinematic_error
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording, check_recording
+from strainwave.files.units import convert
+from strainwave.messages import listed
+from strainwave.orders.shaft_pair import Pair, Ratio, loads_of, ratio_of, ratio_remarks
+from strainwave.orders.stage import HIGHEST, Problem, Regressed
+from strainwave.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
+
+Array = NDArray[np.float64]
+Shaft = Literal["input", "mesh", "output"]
+
+ORDERS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)  # of the input, looked for in every record
+MESH_ORDERS = (1.0, 2.0, 4.0)  # of the wave generator seen from the spline that turns: 2 z_c / z_f and its like
+OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gravity
+LONGEST = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
+MOST_HARMONICS = 16  # of `kinematic_error.Fourier`
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number with its standard deviation, in a unit."""
+
+    value: float
+    sigma: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class ErrorOrder:
+    """One order in the transmission error.
+
+    Attributes:
+        order: periods per revolution of the input [1]
+        shaft: whose angle it follows: the input; the input as the spline that turns sees it (`mesh`); or the output
+        amplitude: at the output, free of what output stage and load make of it [rad]
+        phase: where the recorded input angle is 0 [rad], as of a sine
+        amplitude_sigma, phase_sigma: standard deviations
+        false_alarm: probability that noise alone gives as much anywhere among the orders looked for
+        significant: whether that is less than was allowed
+    """
+
+    order: float
+    shaft: Shaft
+    amplitude: float
+    phase: float
+    amplitude_sigma: float
+    phase_sigma: float
+    false_alarm: float
+    significant: bool
+
+
+@dataclass(frozen=True, eq=False)
+class TransmissionError(ComparedByFields):
+    """What two encoders tell of a gear.
+
+    Attributes:
+        ratio: of the angles
+        orders: all that were looked for, by shaft and order
+        lost_motion: of the output, between forward and backward at one place: play, hysteresis, and the wind-up by friction of
+            the output; None where the shaft never turns back
+        windup: twist per torque or current, where the recording has one
+        natural_frequency: of the output with the input held [Hz]; None where the record does not show it, or has no time
+        damping_ratio: of that vibration [1]; None likewise
+        noise: root mean square of what is neither order nor explained by load and direction [rad]
+        revolutions: of the input, end to end
+        curves: time, input_angle, transmission_error, kinematic_error as found, residual, as compared
+        remarks: what to know of these numbers, in words
+    """
+
+    ratio: Ratio
+    orders: tuple[ErrorOrder, ...]
+    lost_motion: Measured | None
+    windup: Measured | None
+    natural_frequency: Measured | None
+    damping_ratio: Measured | None
+    noise: float
+    revolutions: float
+    curves: Recording
+    remarks: tuple[str, ...]
+
+    @property
+    def law(self) -> kinematic_error.Fourier:
+        """The significant orders of the input and of the mesh as a law, for the input angle as it was recorded."""
+        found = [each for each in self.orders if each.significant and each.shaft != "output"]
+        found = sorted(sorted(found, key=lambda each: -each.amplitude)[:MOST_HARMONICS], key=lambda each: each.order)
+        return kinematic_error.Fourier(
+            order=[each.order for each in found],
+            amplitude=[each.amplitude for each in found],
+            phase=[each.phase for each in found],
+        )
+
+
+def transmission_error(
+    recording: Recording,
+    *,
+    ratio: float | None = None,
+    orders: ArrayLike = ORDERS,
+    rate: float | None = None,
+    false_alarm: float = 0.01,
+) -> TransmissionError:
+    """Ratio, kinematic error and lost motion of a gear from the angles of both shafts.
+
+    Args:
+        recording: with `input_angle` and `output_angle`, of any zero and sense, that may wrap at each revolution; with `time`,
+            if the motion is not slow; and with `torque` or `current`, if the wind-up is to be told
+        ratio: signed, input over output, if it is known; its sign is that of the recorded angles, or one of them is counted the
+            other way round, which is said
+        orders: of the input to look for [1], shape (n,)
+        rate: samples per second of a recording without time [Hz]
+        false_alarm: largest probability that noise makes any order significant
+
+    Returns:
+        The orders with standard deviations that allow for coloured noise, and for a gear that is no linear spring.
+
+    Raises:
+        TypeError: an argument is not of its kind
+        ValueError: an angle is missing or does not turn, the two do not belong together, or the ratio given is not theirs
+
+    Valid where the twist is small and the output stage close to linear: each order is corrected for the vibration of the output
+    with 10 % of its stiffness and 30 % of its damping uncertain. `strainwave.twin` fits the same with the whole model.
+
+    >>> import strainwave as sw
+    >>> time = np.arange(0.0, 20.0, 0.002)
+    >>> theta = 30.0 * np.sin(0.5 * time)
+    >>> noise = np.random.default_rng(1).normal(0.0, 1e-5, len(time))
+    >>> output = -theta / 100.0 - 3e-4 * np.sin(2 * theta + 0.3) + noise
+    >>> columns = {"time": time, "input_angle": theta, "output_angle": output}
+    >>> found = sw.transmission_error(sw.Recording(columns, {"time": "s", "input_angle": "rad", "output_angle": "rad"}))
+    >>> found.ratio.used, [(each.order, round(each.amplitude, 5)) for each in found.orders if each.significant]
+    (-100.0, [(2.0, 0.0003)])
+    """
+    check_recording("recording", recording)
+    wanted = np.unique(arguments.numbers("orders", orders))
+    if wanted.ndim != 1 or not wanted.size or not (wanted > 0.0).all():
+        raise ValueError("orders must be one series of positive numbers")
+    false_alarm = arguments.probability("false_alarm", false_alarm)
+    load = next((name for name in ("torque", "current") if name in recording), None)
+    pair = _pair(recording, load, rate)
+    told = ratio_of(pair, ratio)
+    chosen, left_out = _chosen(pair, wanted, told.used)
+    shapes = [wave for order, _ in chosen for wave in _shape(pair, order)]
+    found, every = _regressed(pair, told.used, shapes, loads_of(pair, told.used), dynamic=pair.record.timed)
+    error = np.stack(shapes, axis=1) @ found.values[: len(shapes)]
+    whole = pair.input / told.used - pair.output
+    frequency, damping = _stage_numbers(found, pair.record, every)
+    remarks = [*ratio_remarks(told, pair, ratio), *left_out, *_stage_remarks(found, pair, every, chosen)]
+    if not pair.reverses:
+        remarks.append("the shafts turn one way only: lost motion is not told")
+    return TransmissionError(
+        ratio=told,
+        orders=tuple(_orders(chosen, found, false_alarm)),
+        lost_motion=_lost_motion(found, len(shapes)) if pair.reverses else None,
+        windup=_windup(pair, whole - error, load, recording),
+        natural_frequency=frequency,
+        damping_ratio=damping,
+        noise=float(np.sqrt(np.mean(found.residual**2))),
+        revolutions=float(np.ptp(pair.input)) / tau,
+        curves=_curves(pair, whole - whole.mean(), error, found.residual, every),
+        remarks=(*pair.record.remarks, *remarks),
+    )
+
+
+def _pair(recording: Recording, load: str | None, rate: float | None) -> Pair:
+    """Both shafts evenly in time, of a long record the beginning."""
+    record = evenly(recording, ["input_angle", "output_angle", *([load] if load else [])], rate)
+    record = beginning(record, LONGEST * _averaged(record, recording))
+    angles = (
+        unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in ("input_angle", "output_angle")
+    )
+    return Pair(record, *angles)
+
+
+def _chosen(pair: Pair, wanted: Array, ratio: float) -> tuple[list[tuple[float, Shaft]], list[str]]:
+    """The orders that the record can tell, and what is said of those that it cannot."""
+    turns_in, turns_out = float(np.ptp(pair.input)) / tau, float(np.ptp(pair.output)) / tau
+    highest = HIGHEST * tau / pair.fastest if pair.fastest > 0.0 else inf
+    found: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if 1.0 / turns_in <= order < highest]
+    remarks = []
+    if missed := [f"{order:g}" for order in wanted if order >= highest]:
+        remarks.append(f"orders {listed(missed)} pass faster than the samples can follow; record faster, or turn slower")
+    if missed := [f"{order:g}" for order in wanted if order < 1.0 / turns_in]:
+        remarks.append(f"orders {listed(missed)} need a whole period; the input turns {turns_in:.2g} revolutions")
+    if not found:
+        raise ValueError("none of the orders can be told: " + "; ".join(remarks))
+    slip = 1.0 / abs(ratio)
+    if turns_in * slip >= 1.0:
+        for order in MESH_ORDERS:
+            mesh = order * (1.0 - 1.0 / ratio)
+            if mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in found):
+                found.append((mesh, "mesh"))
+        found += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= 1.0]
+    else:
+        near = 2.0 * (1.0 - 1.0 / ratio)
+        remarks.append(
+            f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "
+            "spline, are told from each other after a whole one"
+        )
+    return found, remarks
+
+
+def _shape(pair: Pair, order: float) -> tuple[Array, Array]:
+    """Sine and cosine of an order, over the input angle as recorded; one of the output is told over the input, too."""
+    return np.sin(order * pair.input), np.cos(order * pair.input)
+
+
+def _regressed(
+    pair: Pair, ratio: float, shapes: Sequence[Array], loads: Sequence[Array], *, dynamic: bool
+) -> tuple[Regressed, int]:
+    """The regression, and how many samples each that is compared is the mean of."""
+    every = min(-(-len(pair.input) // LONGEST), _mean_of(pair.fastest))
+    problem = Problem(
+        angle=_means(pair.input / ratio, every),
+        error=_means(pair.input / ratio - pair.output, every),
+        orders=np.stack([_means(each, every) for each in shapes], axis=1),
+        loads=np.stack([_means(each, every) for each in loads], axis=1),
+    )
+    return problem.regress(dynamic=dynamic), every
+
+
+def _means(series: Array, every: int) -> Array:
+    """Of so many neighbours each; those at the end that are fewer are left out."""
+    means: Array = series[: len(series) // every * every].reshape(-1, every).mean(axis=1)
+    return means
+
+
+def _mean_of(fastest: float) -> int:
+    """How many neighbours may be averaged, that the highest order still is seen at the fastest speed [rad per sample]."""
+    return int(min(max(1.0, 2.0 * HIGHEST * pi / (max(ORDERS) * fastest)), 1e9)) if fastest > 0.0 else 10**9
+
+
+def _averaged(record: Evenly, recording: Recording) -> int:
+    """The same, of a record whose angle may still wrap."""
+    steps = np.abs(np.diff(convert(record.columns["input_angle"], recording.unit("input_angle"), "rad")))
+    return _mean_of(float(np.quantile(np.minimum(steps, np.abs(tau - steps)), 0.99)))
+
+
+def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: float) -> Iterator[ErrorOrder]:
+    """Each order with its standard deviations, and whether noise makes as much with less than the allowed probability."""
+    for place, (order, shaft) in enumerate(chosen):
+        own = slice(2 * place, 2 * place + 2)
+        pair, covariance = found.values[own], found.covariance[own, own]
+        sine, cosine = pair.tolist()
+        amplitude, phase = hypot(sine, cosine), float(np.arctan2(cosine, sine))
+        along = np.array([np.cos(phase), np.sin(phase)])
+        across = np.array([-along[1], along[0]])
+        sigmas = [float(np.sqrt(max(each @ covariance @ each, 0.0))) for each in (along, across)]
+        square = float(pair @ np.asarray(np.linalg.pinv(covariance)) @ pair)
+        single = (1.0 + square / found.freedom) ** (-0.5 * found.freedom)  # tail of F(2, freedom)
+        alarm = min(1.0, len(chosen) * single)
+        turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
+        yield ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
+
+
+def _lost_motion(found: Regressed, place: int) -> Measured:
+    """Twice what the direction makes of the error, whose coefficient stands at this place."""
+    return Measured(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
+
+
+def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) -> Measured | None:
+    """Twist per torque or current, beside direction, speed and acceleration of the input."""
+    if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
+        return None
+    reach = reach_of(len(twist))
+    unit = {"torque": "N.m", "current": "A"}[load]
+    driven = convert(pair.record.columns[load], recording.unit(load), unit)
+    speed = pair.speed
+    acceleration = smooth_speed(speed, reach)
+    loads = np.stack([driven, direction(speed), speed, acceleration], axis=1)
+    found = Problem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
+    return Measured(
+        float(found.values[0]), float(np.sqrt(found.covariance[0, 0])), f"rad/({unit})" if "." in unit else f"rad/{unit}"
+    )
+
+
+def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[Measured | None, Measured | None]:
+    if found.stage is None or not record.timed:
+        return None, None
+    hertz = found.stage.frequency / (tau * record.step * every)
+    return (
+        Measured(hertz, hertz * found.spread[0], "Hz"),
+        Measured(found.stage.damping, found.stage.damping * found.spread[1], "1"),
+    )
+
+
+def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]]) -> list[str]:
+    if found.stage is not None:
+        fastest = max(order for order, _ in chosen) * pair.fastest * every
+        if fastest < 0.3 * found.stage.frequency:
+            return []
+        return [
+            "orders come near the natural frequency of the output, or pass it: their amplitudes are corrected for it, and less "
+            "certain than those of a slow run"
+        ]
+    if not pair.record.timed:
+        return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
+    return []
+
+
+def _curves(pair: Pair, error: Array, orders: Array, residual: Array, every: int) -> Recording:
+    series = {"input_angle": pair.input, "output_angle": pair.output, "transmission_error": error, "kinematic_error": orders}
+    middle = np.arange(len(residual)) + 0.5 * (every - 1) / every
+    columns = {"time": pair.record.start + pair.record.step * every * middle}
+    columns |= {name: _means(values, every) for name, values in series.items()} | {"residual": residual}
+    units = {name: "s" if name == "time" else "rad" for name in columns}
+    if not pair.record.timed:
+        del columns["time"], units["time"]
+    return Recording(columns, units, "transmission error")

@@ -1,0 +1,142 @@
+"""Two encoders: ratio, orders and lost motion of synthetic pairs are recovered, whatever the zeros, senses, units and wraps."""
+
+from __future__ import annotations
+
+from math import tau
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from strainwave.orders.two_encoders import ErrorOrder
+
+from tests.samples import sample
+
+Array = NDArray[np.float64]
+UNITS = {"time": "s", "input_angle": "rad", "output_angle": "rad"}
+
+
+def slow(ratio: float, *, swing: float = 40.0, play: float = 0.0, noise: float = 1e-5, seed: int = 0) -> dict[str, Array]:
+    """A slow motion to and fro, with orders 2 and 4, as both shafts have it."""
+    time = np.arange(0.0, 30.0, 0.006)
+    theta = swing * (np.sin(0.4 * time) + 0.2 * np.sin(1.1 * time))
+    error = 2e-4 * np.sin(2 * theta + 0.4) + 5e-5 * np.sin(4 * theta - 1.0)
+    sense = np.sign(np.gradient(theta / ratio))
+    scatter = np.random.default_rng(seed).normal(0.0, noise, len(time))
+    return {"time": time, "input_angle": theta, "output_angle": theta / ratio - error - 0.5 * play * sense + scatter}
+
+
+def told(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: float) -> sw.TransmissionError:
+    return sw.transmission_error(sw.Recording(columns, units), **options)
+
+
+def order(found: sw.TransmissionError, which: float) -> ErrorOrder:
+    return next(each for each in found.orders if each.order == which and each.shaft == "input")
+
+
+def turned(angle: float) -> float:
+    return float((angle + np.pi) % tau - np.pi)
+
+
+@settings(deadline=None, max_examples=sample(4, 10))
+@given(
+    ratio=st.sampled_from([-50.0, 51.0, -80.0, 101.0, -160.0]),
+    zero=st.floats(-100.0, 100.0),
+    at=st.floats(-3.0, 3.0),
+    back=st.booleans(),
+)
+def test_orders_are_those_put_in_whatever_the_zeros_and_senses(ratio: float, zero: float, at: float, back: bool) -> None:
+    columns = slow(ratio)
+    columns["input_angle"] = columns["input_angle"] + zero
+    columns["output_angle"] = (-1.0 if back else 1.0) * columns["output_angle"] + at
+    found = told(columns)
+    assert found.ratio.used == (-ratio if back else ratio)
+    assert {each.order for each in found.orders if each.significant} == {2.0, 4.0}
+    for which, amplitude, phase in ((2.0, 2e-4, 0.4), (4.0, 5e-5, -1.0)):
+        each = order(found, which)
+        expected = turned(phase - which * zero + (np.pi if back else 0.0))
+        assert abs(each.amplitude - amplitude) < 4.0 * each.amplitude_sigma
+        assert abs(turned(each.phase - expected)) < 4.0 * each.phase_sigma
+        assert each.amplitude_sigma < 0.02 * amplitude
+    law = found.law
+    assert list(law.order) == [2.0, 4.0]
+
+
+def test_degrees_and_wraps_change_nothing() -> None:
+    plain = told(slow(-100.0))
+    columns = slow(-100.0)
+    wrapped = {
+        "time": columns["time"],
+        "input_angle": np.degrees(columns["input_angle"]) % 360.0,
+        "output_angle": np.degrees(columns["output_angle"]),
+    }
+    found = told(wrapped, {"time": "s", "input_angle": "deg", "output_angle": "deg"})
+    assert found.ratio.used == plain.ratio.used
+    for one, other in zip(found.orders, plain.orders, strict=True):
+        assert one.amplitude == pytest.approx(other.amplitude, abs=1e-9)
+
+
+def test_lost_motion_is_the_difference_between_forward_and_backward() -> None:
+    found = told(slow(-80.0, play=3e-4))
+    assert found.lost_motion is not None
+    assert abs(found.lost_motion.value - 3e-4) < 4.0 * found.lost_motion.sigma
+    assert found.lost_motion.sigma < 3e-5
+
+
+def test_a_shaft_that_turns_one_way_tells_no_lost_motion_but_orders_of_mesh_and_output() -> None:
+    ratio, theta = -50.0, np.linspace(0.0, 150.0 * tau, 40_000)
+    mesh = 2.0 * (1.0 - 1.0 / ratio)
+    error = 1e-4 * np.sin(2 * theta) + 4e-5 * np.sin(mesh * theta + 1.0) + 3e-4 * np.sin(theta / 50.0)
+    noise = np.random.default_rng(2).normal(0.0, 1e-5, len(theta))
+    found = sw.transmission_error(
+        sw.Recording(
+            {"input_angle": theta, "output_angle": theta / ratio - error + noise}, {"input_angle": "rad", "output_angle": "rad"}
+        )
+    )
+    assert found.lost_motion is None
+    assert any("one way" in each for each in found.remarks)
+    significant = {(round(each.order, 6), each.shaft): each.amplitude for each in found.orders if each.significant}
+    assert significant[2.0, "input"] == pytest.approx(1e-4, rel=0.02)
+    assert significant[round(mesh, 6), "mesh"] == pytest.approx(4e-5, rel=0.03)
+    assert list(found.law.order) == pytest.approx([2.0, mesh])
+
+
+def test_noise_alone_makes_an_order_significant_no_more_often_than_allowed() -> None:
+    seen = 0
+    for seed in range(24):
+        rng = np.random.default_rng(seed)
+        time = np.arange(0.0, 8.0, 0.004)
+        theta = 60.0 * np.sin(0.9 * time)
+        coloured = np.convolve(rng.normal(0.0, 1e-5, len(time) + 30), np.exp(-np.arange(31) / 8.0), "valid")
+        found = told({"time": time, "input_angle": theta, "output_angle": theta / 100.0 + coloured}, false_alarm=0.05)
+        seen += any(each.significant for each in found.orders)
+    assert seen <= 5  # of 24 at 5 %: more would happen in half a per cent of all trials
+
+
+def test_what_cannot_be_is_refused() -> None:
+    columns = slow(-80.0)
+    with pytest.raises(ValueError, match="ratio = 100 is not that of the angles"):
+        told(columns, ratio=100.0)
+    with pytest.raises(ValueError, match="do not move together"):
+        told({**columns, "output_angle": np.random.default_rng(0).normal(size=len(columns["time"]))})
+    with pytest.raises(ValueError, match="the two seem to be swapped"):
+        told({**columns, "input_angle": columns["output_angle"], "output_angle": columns["input_angle"]})
+    with pytest.raises(ValueError, match="does not change"):
+        told({**columns, "output_angle": np.zeros(len(columns["time"]))})
+
+
+def test_a_given_ratio_of_the_other_sign_says_that_an_encoder_counts_the_other_way_round() -> None:
+    found = told(slow(-80.0), ratio=80.0)
+    assert found.ratio.used == -80.0
+    assert any("counts the other way round" in each for each in found.remarks)
+
+
+def test_of_a_long_record_the_beginning_is_used_and_that_is_said() -> None:
+    time = np.arange(0.0, 400.0, 0.001)
+    theta = 60.0 * np.sin(0.9 * time)
+    scatter = np.random.default_rng(0).normal(0.0, 1e-5, len(time))
+    found = told({"time": time, "input_angle": theta, "output_angle": theta / 50.0 - 1e-4 * np.sin(2 * theta) + scatter})
+    assert any("samples are used" in each for each in found.remarks)
+    assert abs(order(found, 2.0).amplitude - 1e-4) < 4.0 * order(found, 2.0).amplitude_sigma
