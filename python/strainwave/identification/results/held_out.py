@@ -1,0 +1,35 @@
+"""The error of a model on data that took no part in its fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """The error of a model over a contiguous stretch that took no part in its fit: every sample, in the full band.
+
+    Attributes:
+        stretch: the stretch, as `last 30 % of the motion`
+        channel: that is predicted
+        unit: of all errors
+        error: root mean square of measured less predicted, at rest of what no friction that holds makes up for
+        zero: root mean square of the channel about its mean there: the error of a model that predicts nothing
+        plain: error of plain least squares there (offset, inertia, gravity, Coulomb and viscous friction); not a number without
+        samples: compared
+    """
+
+    stretch: str
+    channel: str
+    unit: str
+    error: float
+    zero: float
+    plain: float = np.nan
+    samples: int = 0
+
+    @property
+    def relative(self) -> float:
+        """The error over that of a model that predicts nothing [1]."""
+        return self.error / self.zero if self.zero > 0.0 else np.inf
