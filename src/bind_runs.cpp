@@ -246,9 +246,9 @@ nb::tuple run_derivatives(const ParameterDrive& drive, const Known& known, const
 
 nb::tuple needed_torque(const ParameterDrive& drive, const Numbers& motion, const Numbers& inputs,
                         const std::vector<int>& parameters) {
-    if (motion.ndim() != 2 || motion.shape(1) != 3 || inputs.ndim() != 2 || inputs.shape(0) != motion.shape(0) ||
+    if (motion.ndim() != 2 || motion.shape(1) != 4 || inputs.ndim() != 2 || inputs.shape(0) != motion.shape(0) ||
         inputs.shape(1) != std::size_t(kernel::input_count))
-        throw nb::value_error("n motions have shape (n, 3), and inputs of shape (n, 6)");
+        throw nb::value_error("n motions have shape (n, 4), and inputs of shape (n, 6)");
     const Parts parts = parts_of(drive);
     check_numbers(parts, parameters);
     const std::size_t n = motion.shape(0);
@@ -344,8 +344,8 @@ void bind_runs(nb::module_& core) {
         nb::sig("def inverse_dynamics(drive: Drive, motion: " SW_ARRAY ", inputs: " SW_ARRAY
                 ", parameters: collections.abc.Sequence[int]) -> tuple[" SW_ARRAY ", " SW_ARRAY "]"),
         "Torque [N.m] that the motor must give for each motion of the input, shape (n,), and derivatives, shape (parameters, n). "
-        "A motion is angle [rad], speed [rad/s] and acceleration [rad/s2]; the gear is as stiff as a rigid one, friction slides "
-        "steadily, and what acts is as in `inputs`, shape (n, 6).");
+        "A motion is angle [rad], speed [rad/s], acceleration [rad/s2] and the time since the motion before [s], 0 where friction "
+        "has long been sliding; the gear is as stiff as a rigid one, and what acts is as in `inputs`, shape (n, 6).");
     core.def("instruction_sets", &instruction_sets, nb::sig("def instruction_sets() -> list[str]"),
              "Those of this machine that kernels can be compiled for, the widest first.");
     core.def("add_kernel", &add_kernel_at, nb::arg("drive"), nb::arg("address"),

@@ -555,7 +555,7 @@ def instruction_set() -> str:
 
 def inverse_dynamics(drive: Drive, motion: numpy.typing.NDArray[numpy.float64], inputs: numpy.typing.NDArray[numpy.float64], parameters: Sequence[int]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
-    Torque [N.m] that the motor must give for each motion of the input, shape (n,), and derivatives, shape (parameters, n). A motion is angle [rad], speed [rad/s] and acceleration [rad/s2]; the gear is as stiff as a rigid one, friction slides steadily, and what acts is as in `inputs`, shape (n, 6).
+    Torque [N.m] that the motor must give for each motion of the input, shape (n,), and derivatives, shape (parameters, n). A motion is angle [rad], speed [rad/s], acceleration [rad/s2] and the time since the motion before [s], 0 where friction has long been sliding; the gear is as stiff as a rigid one, and what acts is as in `inputs`, shape (n, 6).
     """
 
 def instruction_sets() -> list[str]:

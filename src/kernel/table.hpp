@@ -123,8 +123,9 @@ struct Table {
     /// slopes[(p * rows.count + r) * samples + k].
     Outcome (*differentiate)(const Set& set, const Beginning& beginning, const Schedule& schedule, const int* parameters,
                              std::size_t parameter_count, const Rows& rows, double* slopes, const Progress& progress);
-    /// The torque that each of n motions of the input needs, and its derivatives by numbered parameters: motion[3 i ...] are angle
-    /// [rad], speed [rad/s] and acceleration [rad/s2], inputs[input_count i ...] what acts; slopes[p * n + i].
+    /// The torque that each of n motions of the input needs, and its derivatives by numbered parameters: motion[4 i ...] are angle
+    /// [rad], speed [rad/s], acceleration [rad/s2] and the time since the motion before [s], inputs[input_count i ...] what acts;
+    /// slopes[p * n + i].
     void (*inverse_dynamics)(const Set& set, const double* motion, const double* inputs, std::size_t n, const int* parameters,
                              std::size_t parameter_count, double* torque, double* slopes);
 };

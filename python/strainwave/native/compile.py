@@ -146,7 +146,7 @@ def _trial(drive: Drive, job: Job) -> Callable[[], Any]:
         return partial(_core.simulate_many, drive, [0], values, None, instants, inputs, keep, twist, np.inf, 1, many)
     free = list(range(min(_core.slopes, len(numbers))))
     if job == "inverse_dynamics":
-        return partial(_core.inverse_dynamics, drive, np.ones((TRIAL_STEPS, 3)), np.ascontiguousarray(inputs[:, 0]), free)
+        return partial(_core.inverse_dynamics, drive, np.ones((TRIAL_STEPS, 4)), np.ascontiguousarray(inputs[:, 0]), free)
     return partial(_core.differentiate, drive, None, instants, inputs, keep, free)
 
 

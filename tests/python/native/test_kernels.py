@@ -47,7 +47,7 @@ NESTED = sw.Drive(
 )
 
 
-MOTION = np.column_stack([np.linspace(-40.0, 40.0, 50), np.linspace(-100.0, 100.0, 50), np.full(50, 30.0)])
+MOTION = np.column_stack([np.linspace(-40.0, 40.0, 50), np.linspace(-100.0, 100.0, 50), np.full(50, 30.0), np.full(50, 1e-3)])
 ACTING = np.tile([0.0, 0.0, 2.0, 0.0, 300.0, 0.0], (50, 1))  # command, input of the load and temperature, with their rates
 
 KEPT = os.environ["STRAINWAVE_KERNELS"]  # between runs of the tests
