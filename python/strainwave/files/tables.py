@@ -5,6 +5,7 @@ Only files are known here, not what a recording must obey; `Recording` asks for 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -21,7 +22,8 @@ from strainwave.files.matlab_table import open_mat
 from strainwave.files.mdf_table import MAGIC, open_mdf
 from strainwave.files.numpy_table import open_numpy
 from strainwave.files.parquet_table import open_parquet
-from strainwave.files.text_table import open_csv
+from strainwave.files.text_layout import NUMBER
+from strainwave.files.text_table import open_text
 from strainwave.messages import one_line, quoted
 
 Array = NDArray[np.float64]
@@ -65,14 +67,14 @@ def _open_dat(path: str | Path) -> OpenTable:
             begin = file.read(8)
     except (OSError, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
-    return open_mdf(path) if begin.startswith(MAGIC) else open_csv(path)
+    return open_mdf(path) if begin.startswith(MAGIC) else open_text(path)
 
 
 FORMATS: dict[str, Callable[[str | Path], OpenTable]] = {
-    ".csv": open_csv,
-    ".txt": open_csv,
-    ".tsv": open_csv,
-    ".log": open_csv,
+    ".csv": open_text,
+    ".txt": open_text,
+    ".tsv": open_text,
+    ".log": open_text,
     ".parquet": open_parquet,
     ".dat": _open_dat,
     ".mat": open_mat,
@@ -88,6 +90,8 @@ FORMATS: dict[str, Callable[[str | Path], OpenTable]] = {
     ".mcap": open_bag,
     ".db3": open_bag,
 }
+BEGIN_BYTES = 4096  # of a file with an unknown suffix, by which it is taken for a table of numbers
+MIN_ROWS = 5  # of numbers in them
 INSTEAD = {  # what to do with other files that people have
     ".pkl": "a pickle may run any program as it is read: save it as .npz, .csv or .parquet",
     ".pickle": "a pickle may run any program as it is read: save it as .npz, .csv or .parquet",
@@ -95,6 +99,24 @@ INSTEAD = {  # what to do with other files that people have
     ".xls": "save the sheet as .csv",
     ".ods": "save the sheet as .csv",
 }
+
+
+def may_be_table(path: str | Path) -> bool:
+    """True if the suffix of a file is one of `FORMATS`, or is not known and the file begins with rows of numbers."""
+    suffix = Path(path).suffix.lower()
+    return suffix in FORMATS or (suffix not in INSTEAD and is_table_of_numbers(path))
+
+
+def is_table_of_numbers(path: str | Path) -> bool:
+    """True if a file begins with several rows of as many numbers, whatever its suffix."""
+    try:
+        with open_regular(path) as file:
+            rows = file.read(BEGIN_BYTES).decode("ascii").splitlines()[:-1]
+    except (OSError, UnicodeError, RefusedFile):
+        return False
+    cells = [re.split(r"[\s,;]+", row.strip()) for row in rows]
+    is_even = len(rows) >= MIN_ROWS and len({len(row) for row in cells}) == 1
+    return is_even and all(NUMBER.fullmatch(cell) for row in cells for cell in row)
 
 
 class Table(NamedTuple):
@@ -116,6 +138,8 @@ def open_table(path: str | Path) -> OpenTable:
     if Path(path).is_dir() and Path(path, "metadata.yaml").is_file():  # a bag of the second version
         return open_bag(path)
     suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS and suffix not in INSTEAD and is_table_of_numbers(path):
+        return open_text(path)
     if suffix not in FORMATS:
         *others, last = FORMATS
         known = f"{', '.join(others)} or {last}"

@@ -15,9 +15,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.files.array_table import ArrayTable
 from strainwave.files.budget import RefusedFile, read_regular
 from strainwave.files.labels import MAX_NAME, Content, Label, Source, check_names, labels_of, seconds_since_first, unreadable
-from strainwave.files.text_layout import CLOCK, MAX_LINE_BYTES, NUMBER, lines_above, lists_apart, seconds_of_clock, with_units
+from strainwave.files.text_layout import (
+    CLOCK,
+    MAX_LINE_BYTES,
+    NOT_FINITE,
+    NUMBER,
+    lines_above,
+    lists_apart,
+    scope_header,
+    seconds_of_clock,
+    sideways,
+    with_units,
+)
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:
@@ -30,20 +42,46 @@ TITLE = "# title: "
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
 NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
 _SEEN = 1000  # rows that tell what a column holds
+MAX_SIDEWAYS_BYTES = 2**26  # of a table with a row for each channel
+
+
+def open_text(path: str | Path) -> CsvTable | ArrayTable:
+    """Open a text table that has a column for each channel, or a row for each."""
+    file, data = _read_text(path)
+    found = sideways(_blank_comments(data)) if len(data) <= MAX_SIDEWAYS_BYTES else None
+    if found is None:
+        return _csv_table(file, data)
+    names, series = found
+    _check_names(file, names)
+    remark = f"it has a row for each channel: {len(names)} rows of {series.shape[1]} numbers, taken as columns"
+    return ArrayTable(file, "", labels_of(names), list(series), [remark])
 
 
 def open_csv(path: str | Path) -> CsvTable:
     """The header of a text table, and its rows as they stand; without a header the columns are column_1, column_2 …"""
+    return _csv_table(*_read_text(path))
+
+
+def _read_text(path: str | Path) -> tuple[str, bytes]:
+    """Return the name of a file as messages have it, and its text."""
     file = one_line(str(path))
     try:
         data = read_regular(path)
     except (OSError, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
-    data = re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB and of ROS
+    return file, re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB, of ROS
+
+
+def _csv_table(file: str, data: bytes) -> CsvTable:
     title = re.match(TITLE.encode() + rb"([^\n]*)", data)
     comment = re.match(rb"(?:(?:#[^\n]*| *)\n)*?#([^\n]*)\n(?!#)", data)
     data = _blank_comments(data)
+    if scope := scope_header(data):
+        _check_names(file, [label.text for label in scope.labels])
+        line = 1 + data.count(b"\n", 0, scope.end)
+        body = memoryview(data)[scope.end :]
+        return CsvTable(file, "", scope.delimiter, scope.labels, body, line, line - 1, (), is_scope=True)
     above_it = data[: lines_above(data)]
     data = re.sub(rb"[^\n]+", b"", above_it) + data[len(above_it) :]
     header = re.match(rb"\n*([^\n]+)(?:\n+([^\n]+))?", data)
@@ -61,7 +99,7 @@ def open_csv(path: str | Path) -> CsvTable:
         first = re.sub(r" (?=[\[(])", "", header[1].decode())
     labels = _labels(f"{file} line {line}", first, delimiter)
     begins = header.end(1)
-    numeric = [bool(NUMBER.fullmatch(label.text)) for label in labels]
+    numeric = [bool(NUMBER.fullmatch(label.text)) or label.text.casefold() in NOT_FINITE for label in labels]
     above = _labels_above(comment, len(labels), delimiter) if any(numeric) else None
     if above or all(numeric):
         begins = header.start(1)
@@ -141,7 +179,7 @@ def _labels_above(comment: re.Match[bytes] | None, count: int, delimiter: str) -
 class CsvTable:
     """A text table whose rows are still text; `line` is the line its header stands in, `file` how messages call it.
 
-    `above` lines stand above the header that are no part of the table.
+    `above` lines stand above the header that are no part of the table; of the export of a scope they describe its channels.
     """
 
     file: str
@@ -152,12 +190,13 @@ class CsvTable:
     line: int
     above: int = 0
     left_out: Sequence[str] = ()
+    is_scope: bool = False
 
     def numbers(self, sources: Sequence[Source]) -> dict[str, Array]:
         """The columns wanted; a cell that is no number is refused with its place."""
         import pyarrow
 
-        if self.above:
+        if self.above and not self.is_scope:
             raise ValueError(f"{self.file}: {self._of_header()}; delete what stands above it, or begin those lines with #")
         self._check_quotes()
         for mark in "." if self.delimiter == "," else ".,":
@@ -184,7 +223,7 @@ class CsvTable:
         import pyarrow
 
         whole, remarks = self._without_torn_end()
-        if self.above:
+        if self.above and not self.is_scope:
             remarks.insert(0, f"{self._of_header()}; what stands above it is left out")
         contents = self.contents
         dates = [source for source in sources if contents[source.position] == "dates"]
@@ -283,7 +322,7 @@ class CsvTable:
             for source in sources:
                 cell = cells[source.position].strip(" \t")
                 number = NUMBER.fullmatch(cell)
-                if cell in nothing:
+                if cell in nothing or (nothing and cell.casefold() in NOT_FINITE):
                     continue
                 if not number or number[1] not in marks:
                     return f" line {line}, column {quoted(source.label)}: {_not_a_number(cell, marks)}"
@@ -310,6 +349,7 @@ class CsvTable:
 
 
 def _content(cells: Sequence[str]) -> Content:
+    cells = [cell for cell in cells if cell.casefold() not in NOT_FINITE] or cells
     if cells and all(NUMBER.fullmatch(cell) for cell in cells):
         return "numbers"
     is_date = cells and any(all(form.fullmatch(cell) for cell in cells) for form in (_DATE, CLOCK))

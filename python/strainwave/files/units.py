@@ -81,7 +81,11 @@ _OF_ARC = re.compile(
 _PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s"}  # as the data sheets of sensors write them
 
 # What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.
-_COUNTED = re.compile(r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII)
+_COUNTED = re.compile(r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII | re.IGNORECASE)
+
+# A share of a rated value, as drives report torque and current: permille of 0.4 N.m, % of 12 A.
+_SHARES = {"%": 1e-2, "percent": 1e-2, "\u2030": 1e-3, "permille": 1e-3, "promille": 1e-3, "permil": 1e-3}
+_SHARE = re.compile(rf"({'|'.join(_SHARES)}) of (\d{{1,9}}(?:\.\d{{1,9}})?) ?(\S.{{0,40}})")
 
 # German data sheets count revolutions as U, but only per time; alone, U is a voltage there.
 _REVOLUTIONS = re.compile(r"^U(?=/(?:min|s)$|\*(?:min|s)-1$)")
@@ -118,8 +122,8 @@ def convert(values: Values, unit: str, to: str) -> Values:
 
     if np.isnan(arguments.numbers("values", values)).any():
         raise ValueError("values must be numbers, and nan is none")
-    if any(isinstance(each, str) and _COUNTED.fullmatch(each) for each in (unit, to)):
-        return _convert_counted(values, unit, to)
+    if any(isinstance(each, str) and (_COUNTED.fullmatch(each) or _SHARE.fullmatch(each)) for each in (unit, to)):
+        return _convert_scaled(values, unit, to)
     source, target = _parse(unit), _parse(to)
     if source == target:
         return values
@@ -134,21 +138,33 @@ def convert(values: Values, unit: str, to: str) -> Values:
     return converted
 
 
-def _convert_counted(values: Values, unit: str, to: str) -> Values:
-    """Express counts of an encoder as revolutions, or the other way round."""
-    (per_unit, unit), (per_to, to) = _revolutions(unit), _revolutions(to)
-    if (per_unit, unit) == (per_to, to):
+def _convert_scaled(values: Values, unit: str, to: str) -> Values:
+    """Express counts of an encoder as revolutions or shares of a rated value as that value, or the other way round."""
+    (size, plain), (size_to, plain_to) = _size(unit), _size(to)
+    if (size, plain) == (size_to, plain_to):
         return values
     with np.errstate(over="ignore"):
-        turned: Values = convert(values, unit, to) * (per_to / per_unit)
-    _check_finite(values, turned, unit, to)
-    return turned
+        scaled: Values = convert(values, plain, plain_to) * (size / size_to)
+    _check_finite(values, scaled, unit, to)
+    return scaled
 
 
-def _revolutions(unit: str) -> tuple[int, str]:
-    """How many counts make up one of the unit beside it."""
-    counted = _COUNTED.fullmatch(unit)
-    return (int(counted[1]), f"rev{counted[2] or ''}") if counted else (1, unit)
+def _size(unit: str) -> tuple[float, str]:
+    """Return the size of a unit in a plain one: of a count in revolutions, of a share of a rated value in its unit."""
+    if counted := _COUNTED.fullmatch(unit):
+        return 1.0 / int(counted[1]), f"rev{counted[2] or ''}"
+    if share := _SHARE.fullmatch(unit):
+        return _SHARES[share[1]] * float(share[2]), share[3]
+    return 1.0, unit
+
+
+def is_share(unit: str) -> bool:
+    """True if a unit is a share whose rated value is not given.
+
+    >>> is_share("%"), is_share("‰"), is_share("% of 12 A")
+    (True, True, False)
+    """
+    return unit.strip().casefold() in _SHARES
 
 
 def _turning(unit: pint.Unit, other: pint.Unit) -> pint.Unit:
@@ -206,13 +222,18 @@ def check(unit: str) -> str:
     Raises:
         ValueError: the unit is not known, or ambiguous like `N.m/rad.s` (write `N.m/(rad.s)`).
 
-    An encoder's counts are a unit with the counts of one revolution behind them: `counts/16384`, `inc/4096`.
+    An encoder's counts are a unit with the counts of one revolution behind them: `counts/16384`, `inc/4096`. A share of a
+    rated value is one with this value: `permille of 0.4 N.m`, `% of 12 A`.
 
-    >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)"), check("inc/4096")
-    ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad', 'counts/4096')
+    >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)"), check("inc/4096"), check("‰ of 0.4 Nm")
+    ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad', 'counts/4096', 'permille of 0.4 N.m')
     """
     if isinstance(unit, str) and (counted := _COUNTED.fullmatch(unit)):
         return f"counts/{counted[1]}{counted[2] or ''}"
+    if isinstance(unit, str) and (share := _SHARE.fullmatch(unit)):
+        if not float(share[2]) > 0.0:
+            raise ValueError(f"unit {quoted(unit)}: the rated value must be larger than 0")
+        return f"{'%' if _SHARES[share[1]] == 1e-2 else 'permille'} of {share[2]} {check(share[3])}"
     standard = _spelling(_parse(unit))
     if len(standard) > _LONGEST:
         raise ValueError(f"unit {quoted(unit)} has more than {_LONGEST} characters in standard spelling")
@@ -266,6 +287,8 @@ def _parsed(unit: str) -> pint.Unit:
     except (pint.PintError, tokenize.TokenError, ValueError, TypeError, AssertionError):
         if _COUNTED.fullmatch(f"{unit.strip()}/1"):
             raise ValueError(f"unit {quoted(unit)} needs the counts of one revolution; write it like counts/16384") from None
+        if is_share(unit):
+            raise ValueError(f"unit {quoted(unit)} needs the rated value; write it like permille of 0.4 N.m") from None
         raise ValueError(f"unit {quoted(unit)} is not known; write it like N.m, rad/s, deg") from None
     except OverflowError:
         scale = math.inf
