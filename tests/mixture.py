@@ -88,7 +88,7 @@ def distances(told: Identified, truth: dict[str, float]) -> Iterator[tuple[str, 
     """File, number and distance from the truth [1], of each number of each file."""
     for finding in told.findings:
         known = truth | OTHER_LOADS.get(finding.name, {})
-        for each in finding.told:
+        for each in finding.estimates:
             if not each.why and each.path in NAMES:
                 yield finding.name, each.path, (each.value - known[NAMES[each.path]]) / each.sigma
 

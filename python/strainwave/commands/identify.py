@@ -106,8 +106,8 @@ def _every_joint(
 def _summary(found: Identified) -> Iterator[str]:
     from strainwave.identification.results.file_result import lines_of
 
-    points = [finding for finding in found.findings if finding.part_of]
-    for finding in found.findings:
+    points = [finding for finding in found.files if finding.part_of]
+    for finding in found.files:
         if not finding.part_of:
             yield from _of_file(finding)
     if points:
@@ -116,12 +116,12 @@ def _summary(found: Identified) -> Iterator[str]:
         yield from (f"  {finding.name:{width}}  {finding.model}" for finding in points)
         yield from (f"  {remark}" for remark in dict.fromkeys(remark for finding in points for remark in finding.remarks))
     yield ""
-    yield from lines_of(found.numbers)
-    for number in found.numbers:
+    yield from lines_of(found.parameters)
+    for number in found.parameters:
         for other in number.contradicts:
             best, value = number.of_file(number.source), number.others[other]
             yield (
-                f"contradiction: {number.told.label} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} in "
+                f"contradiction: {number.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} in "
                 f"{number.source}, {value.value:.4g} ± {value.sigma:.2g} in {other}"
             )
 

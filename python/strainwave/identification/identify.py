@@ -21,7 +21,7 @@ from strainwave.identification.reading.joined_recordings import joined
 from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
-from strainwave.identification.results.file_result import CombinedParameter, FileResult, numbers_of
+from strainwave.identification.results.file_result import CombinedParameter, FileResult, combine
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.messages import listed, shortened
 
@@ -42,14 +42,14 @@ class Identified:
 
     Attributes:
         start: the set it started from
-        findings: each file with what it tells, in the order given; then what several files tell only together
-        numbers: every number told: the mean of the files that agree about it
+        files: each file with what it tells, in the order given; then what several files tell only together
+        parameters: every number determined: the mean of the files that agree about it
         gear_set: the set with the laws of the files that tell them best, and their numbers
     """
 
     start: GearSet
-    findings: tuple[FileResult, ...]
-    numbers: tuple[CombinedParameter, ...]
+    files: tuple[FileResult, ...]
+    parameters: tuple[CombinedParameter, ...]
     gear_set: GearSet
 
 
@@ -86,7 +86,7 @@ def identify(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     sw.Recording(columns, {"speed": "rad/s", "torque": "N.m"}).to_csv(f"{folder}/table.csv")
     ...     found = identify("hfuc-25-100", [f"{folder}/table.csv"])
-    >>> found.findings[0].recognised.kind, round(found.gear_set.gear.friction_input.coulomb, 2)
+    >>> found.files[0].recognised.kind, round(found.gear_set.gear.friction_input.coulomb, 2)
     ('friction', 0.05)
     """
     check_arguments(files, mapping)
@@ -112,7 +112,7 @@ def identify(
     found.take_turns(runs)
     own = [each if isinstance(each, FileResult) else found.findings[each.path] for each in read.values()]
     findings = (*_named_apart(own, list(read), found.copies), *found.together)
-    numbers = numbers_of(findings)
+    numbers = combine(findings)
     if not numbers:
         raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, findings))}")
     return Identified(start, findings, numbers, with_means(found.known, numbers))
@@ -132,7 +132,7 @@ def _why_nothing(finding: FileResult) -> str:
     """Why a file tells no number."""
     if finding.refused or finding.part_of:
         return f"{finding.name}: {finding.refused or f'a part of the {finding.part_of}'}"
-    whys = dict.fromkeys(told.why for told in finding.told if told.why)
+    whys = dict.fromkeys(told.why for told in finding.estimates if told.why)
     fitted = f"{finding.model} was fitted, but {'; '.join(whys)}" if whys else "nothing was fitted"
     return f"{finding.name}: {fitted}; see whether columns, units and sides are what they are taken for"
 
@@ -294,16 +294,16 @@ def with_means(known: GearSoFar, numbers: Sequence[CombinedParameter]) -> GearSe
     """The set with the means of files that agree, where it has the law that the number belongs to."""
     gear_set = known.gear_set
     for number in numbers:
-        if len(number.mean_of) < 2 or not number.told.path.startswith("gear."):
+        if len(number.mean_of) < 2 or not number.estimate.path.startswith("gear."):
             continue
         names = [Path(name).name for name in number.mean_of]
-        for path, name in known.told_by.items():
-            if plain(path) != number.told.path or "[" in path or name not in names:
+        for path, name in known.determined_by.items():
+            if plain(path) != number.estimate.path or "[" in path or name not in names:
                 continue
             try:
-                gear = gear_set.gear.replace({path.removeprefix("gear."): number.told.value})
+                gear = gear_set.gear.replace({path.removeprefix("gear."): number.estimate.value})
             except ValueError:  # a mean that the law does not allow beside its other numbers
                 continue
-            source = Entry(source=f"identified from the {number.taken_from}", uncertainty=number.told.sigma)
+            source = Entry(source=f"identified from the {number.taken_from}", uncertainty=number.estimate.sigma)
             gear_set = replace(gear_set, gear=gear, sources={**gear_set.sources, path: source})
     return gear_set

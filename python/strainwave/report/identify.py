@@ -56,25 +56,25 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
     Returns:
         HTML; the same for the same arguments
     """
-    anchors = {id(finding): f"file-{place}" for place, finding in enumerate(found.findings)}
+    anchors = {id(finding): f"file-{place}" for place, finding in enumerate(found.files)}
     given = _given_with_all(found)
     return render(
         "identify.html.jinja",
         {
             "start": found.start,
             "counts": _counts(found),
-            "contradictions": [_contradiction(each, other) for each in found.numbers for other in each.contradicts],
+            "contradictions": [_contradiction(each, other) for each in found.parameters for other in each.contradicts],
             "apart": number(APART),
             "agree": number(AGREE),
-            "doubts": [(each.name, doubt) for each in found.findings for doubt in each.doubts],
-            "refused": [(each.name, each.refused) for each in found.findings if each.refused],
+            "doubts": [(each.name, doubt) for each in found.files for doubt in each.doubts],
+            "refused": [(each.name, each.refused) for each in found.files if each.refused],
             "given": [_constant(name, value) for name, value in given.items()],
-            "files": [_file(each, anchors[id(each)], given) for each in found.findings if not each.part_of],
-            "points": [_file(each, "", given) for each in found.findings if each.part_of],
+            "files": [_file(each, anchors[id(each)], given) for each in found.files if not each.part_of],
+            "points": [_file(each, "", given) for each in found.files if each.part_of],
             "mapping_from_options_points": list(
-                dict.fromkeys(told for each in found.findings if each.part_of for told in each.remarks)
+                dict.fromkeys(told for each in found.files if each.part_of for told in each.remarks)
             ),
-            "numbers": [_number(each, found) for each in found.numbers],
+            "numbers": [_number(each, found) for each in found.parameters],
             "comparisons": list(_comparisons(found)),
             "untold": _untold(found),
             "kept": _kept(found),
@@ -90,12 +90,12 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
 
 def _counts(found: Identified) -> str:
     """How many files came to what: "5 files: 3 tell 17 numbers, 1 shows what another file shows too, 1 is refused"."""
-    refused = sum(bool(each.refused) for each in found.findings)
-    copies = sum(bool(each.same_as) and not each.refused for each in found.findings)
-    points = sum(bool(each.part_of) for each in found.findings)
-    given = [each for each in found.findings if each.recognised is None or each.recognised.columns]  # no table of several files
+    refused = sum(bool(each.refused) for each in found.files)
+    copies = sum(bool(each.same_as) and not each.refused for each in found.files)
+    points = sum(bool(each.part_of) for each in found.files)
+    given = [each for each in found.files if each.recognised is None or each.recognised.columns]  # no table of several files
     telling = sum(_tells(each) and not each.same_as for each in given)
-    files, numbers = len(given), len(found.numbers)
+    files, numbers = len(given), len(found.parameters)
     parts = [f"{telling} {'tells' if telling == 1 else 'tell'} {numbers} {'number' if numbers == 1 else 'numbers'}"]
     for count, one, several in (
         (copies, "shows what another file shows too", "show what others show too"),
@@ -108,7 +108,7 @@ def _counts(found: Identified) -> str:
 
 
 def _tells(finding: FileResult) -> bool:
-    return any(not told.why for told in finding.told)
+    return any(not told.why for told in finding.estimates)
 
 
 def _contradiction(each: CombinedParameter, other: str) -> dict[str, str]:
@@ -135,7 +135,7 @@ def _sigmas(distance: float) -> str:
 
 def _given_with_all(found: Identified) -> Mapping[str, float]:
     """The constants that a person gave with every file."""
-    given = [set(each.recognised.constants.items()) for each in found.findings if each.recognised and each.recognised.columns]
+    given = [set(each.recognised.constants.items()) for each in found.files if each.recognised and each.recognised.columns]
     return dict(sorted(set.intersection(*given))) if given else {}
 
 
@@ -153,7 +153,7 @@ def _file(finding: FileResult, anchor: str, given: Mapping[str, float]) -> dict[
         "columns": list(_columns(finding, given)),
         "model": finding.model,
         "error": f"{number(100.0 * finding.error, 2)} %" if np.isfinite(finding.error) else "",
-        "told": sum(not each.why for each in finding.told),
+        "told": sum(not each.why for each in finding.estimates),
         "same_as": finding.same_as,
         "refused": finding.refused,
         "remarks": finding.remarks,
@@ -178,7 +178,7 @@ def _columns(finding: FileResult, given: Mapping[str, float]) -> Iterator[str]:
 def _plates(found: Identified, anchors: dict[int, str]) -> Iterator[dict[str, Any]]:
     from markupsafe import Markup
 
-    for finding in found.findings:
+    for finding in found.files:
         if finding.curves is not None:
             anchor = anchors[id(finding)]
             yield {
@@ -244,7 +244,7 @@ def _options(field: dict[str, Any]) -> list[Any]:
 
 
 def _number(each: CombinedParameter, found: Identified) -> dict[str, Any]:
-    told, same_as = each.told, {finding.name: finding.same_as for finding in found.findings}
+    told, same_as = each.estimate, {finding.name: finding.same_as for finding in found.files}
     files = [each.source, *each.others] if len(each.mean_of) > 1 else list(each.others)
     return {
         "path": told.path,
@@ -293,8 +293,8 @@ def _start(start: GearSet, told: FileEstimate) -> str:
 def _untold(found: Identified) -> list[tuple[str, str, list[dict[str, str]]]]:
     """What was fitted to a file, and is not told by it: the file, why, and the numbers."""
     untold: dict[tuple[str, str], list[dict[str, str]]] = {}
-    for finding in found.findings:
-        for told in finding.told:
+    for finding in found.files:
+        for told in finding.estimates:
             if told.why or not np.isfinite(told.sigma):
                 why = told.why or "the file does not determine it"
                 value = uncertain_quantity(told.value, told.sigma, told.unit)
@@ -305,7 +305,7 @@ def _untold(found: Identified) -> list[tuple[str, str, list[dict[str, str]]]]:
 
 def _kept(found: Identified) -> dict[str, list[str]]:
     """The numbers of the gear of which no file tells anything, by where the set has them from."""
-    told = {each.told.path for each in found.numbers}
+    told = {each.estimate.path for each in found.parameters}
     kept: dict[str, list[str]] = {}
     for path, (value, of) in verdict.numbers(found.gear_set.gear).items():
         entry = found.start.sources.get(path)
@@ -329,18 +329,18 @@ def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
     """A drawing for each part of the drive of which more than one file tells a number."""
     from markupsafe import Markup
 
-    copies = {finding.name for finding in found.findings if finding.same_as}
+    copies = {finding.name for finding in found.files if finding.same_as}
     parts: dict[str, list[CombinedParameter]] = {}
-    for each in found.numbers:
-        if each.others and (each.told.value != 0.0 or each.told.is_phase):
-            parts.setdefault(each.told.path.partition(" of ")[0].rpartition(".")[0], []).append(each)
+    for each in found.parameters:
+        if each.others and (each.estimate.value != 0.0 or each.estimate.is_phase):
+            parts.setdefault(each.estimate.path.partition(" of ")[0].rpartition(".")[0], []).append(each)
     for place, (part, numbers) in enumerate(parts.items()):
-        rows = [(plain_symbols(name_of(each.told)), list(_rows(each, copies))) for each in numbers]
+        rows = [(plain_symbols(name_of(each.estimate)), list(_rows(each, copies))) for each in numbers]
         yield part.removeprefix("gear.").replace("_", " ").capitalize(), Markup(plots.comparison(rows, f"comparison-{place}"))
 
 
 def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.Row]:
-    taken, mean = each.told, len(each.mean_of) > 1
+    taken, mean = each.estimate, len(each.mean_of) > 1
     scale = 1.0 if taken.is_phase else abs(taken.value)  # a phase has no size: of it, 1 rad is 100 %
     title = f"mean of {len(each.mean_of)} files" if mean else each.source
     yield plots.Row(title, 0.0, 100.0 * taken.sigma / scale, "value taken")
@@ -368,11 +368,11 @@ def _results(found: Identified) -> dict[str, Any]:
     return {
         "made_by": f"strainwave {metadata.version('strainwave')}",
         "start": found.start.name,
-        "files": [_file_results(each) for each in found.findings],
+        "files": [_file_results(each) for each in found.files],
         "numbers": [
             {
-                **_told_results(each.told),
-                "name": name_of(each.told),
+                **_told_results(each.estimate),
+                "name": name_of(each.estimate),
                 "file": each.source,
                 "mean_of": each.mean_of if len(each.mean_of) > 1 else [],
                 "widened": each.widened,
@@ -383,7 +383,7 @@ def _results(found: Identified) -> dict[str, Any]:
                 ],
                 "contradicts": each.contradicts,
             }
-            for each in found.numbers
+            for each in found.parameters
         ],
     }
 
@@ -409,14 +409,14 @@ def _file_results(finding: FileResult) -> dict[str, Any]:
         "doubts": finding.doubts,
         "refused": finding.refused or None,
         "remarks": finding.remarks,
-        "told": [{**_told_results(each), "not_told_because": each.why or None} for each in finding.told],
+        "told": [{**_told_results(each), "not_told_because": each.why or None} for each in finding.estimates],
     }
 
 
 def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
     """What each file says of each number, the best first, and their mean; then what files do not tell."""
-    copies = {finding.name for finding in found.findings if finding.same_as}
-    for each in found.numbers:
+    copies = {finding.name for finding in found.files if finding.same_as}
+    for each in found.parameters:
         best, mean = each.of_file(each.source), each.mean_of if len(each.mean_of) > 1 else ()
         for name in (each.source, *each.others):
             told = each.of_file(name)
@@ -428,8 +428,8 @@ def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
                 "contradicts": "yes" if name in each.contradicts else "no",
             }
         if mean:
-            yield _told_results(each.told) | {"file": each.taken_from, "taken": "yes"}
-    for finding in found.findings:
-        for told in finding.told:
+            yield _told_results(each.estimate) | {"file": each.taken_from, "taken": "yes"}
+    for finding in found.files:
+        for told in finding.estimates:
             if told.why:
                 yield _told_results(told) | {"file": finding.name, "taken": "no", "not_told_because": told.why}

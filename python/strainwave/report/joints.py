@@ -52,8 +52,8 @@ def joints_summary(joints: Joints) -> Iterator[str]:
     """What each joint is told to be, in lines."""
     for name, found in joints.found.items():
         yield f"joint {name}: {'; '.join(_of_files(found))}"
-        yield from (f"  DOUBT: {doubt}" for finding in found.findings for doubt in finding.doubts)
-        yield from lines_of(found.numbers)
+        yield from (f"  DOUBT: {doubt}" for finding in found.files for doubt in finding.doubts)
+        yield from lines_of(found.parameters)
     yield from (f"joint {name}: NOT USED: {why}" for name, why in joints.refused.items())
     yield from (f"{name}: NOT USED: {why}" for name, why in joints.left_out.items())
 
@@ -64,15 +64,15 @@ def joints_csv(joints: Joints) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     for name, found in joints.found.items():
-        for each in found.numbers:
-            told = each.told
+        for each in found.parameters:
+            told = each.estimate
             writer.writerow([name, told.path, told.law, told.unit, told.value, told.sigma, each.taken_from])
     return text.getvalue()
 
 
 def _of_files(found: Identified) -> Iterator[str]:
     """What was made of each file."""
-    for each in found.findings:
+    for each in found.files:
         held_out = f", error on data held out {_error(each)} of what varies" if _error(each) else ""
         yield f"{each.name} {f'NOT USED: {each.refused}' if each.refused else each.model}{held_out}"
 
@@ -85,17 +85,22 @@ def _joint(name: str, found: Identified) -> dict[str, Any]:
     return {
         "name": name,
         "report": f"{folder_of(name)}/report.html",
-        "files": [{"name": each.name, "model": each.refused or each.model, "error": _error(each)} for each in found.findings],
-        "doubts": [doubt for each in found.findings for doubt in each.doubts],
+        "files": [{"name": each.name, "model": each.refused or each.model, "error": _error(each)} for each in found.files],
+        "doubts": [doubt for each in found.files for doubt in each.doubts],
     }
 
 
 def _rows(joints: Joints) -> Iterator[dict[str, Any]]:
     """A row for each number that any joint tells, with its value of each joint; nothing where a joint does not tell it."""
-    keys = dict.fromkeys((each.told.path, each.told.unit) for found in joints.found.values() for each in found.numbers)
+    keys = dict.fromkeys(
+        (each.estimate.path, each.estimate.unit) for found in joints.found.values() for each in found.parameters
+    )
     for path, of_unit in keys:
         told = {
-            name: next((each.told for each in found.numbers if (each.told.path, each.told.unit) == (path, of_unit)), None)
+            name: next(
+                (each.estimate for each in found.parameters if (each.estimate.path, each.estimate.unit) == (path, of_unit)),
+                None,
+            )
             for name, found in joints.found.items()
         }
         first = next(each for each in told.values() if each is not None)

@@ -31,7 +31,7 @@ def test_names_of_files_tell_the_speeds_of_currents_without_anything_beside_them
         np.savetxt(tmp_path / names.format(speed), seen["current"][1], "%.6f")
     said = FileMapping(columns={"current": "1"}, side="output", constants={"torque_constant": joint.torque_constant})
     found = identify("hfuc-25-100", [tmp_path], mapping=lambda path: said)
-    told = {each.told.path.rpartition(".")[2]: each.told.value for each in found.numbers}
+    told = {each.estimate.path.rpartition(".")[2]: each.estimate.value for each in found.parameters}
     assert told["coulomb"] == pytest.approx(joint.coulomb, rel=0.02)
     assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
 
@@ -47,7 +47,7 @@ def test_currents_at_constant_speeds_of_a_joint_tell_friction_at_the_motor(tmp_p
         np.savetxt(tmp_path / f"{speed:g}.csv", rows, "%.6f", ",", header="q,dq,current", comments="")
     said = FileMapping(constants={"torque_constant": joint.torque_constant})
     found = identify("hfuc-25-100", sorted(tmp_path.glob("*.csv")), mapping=lambda path: said)
-    told = {each.told.path.rpartition(".")[2]: each.told.value for each in found.numbers}
+    told = {each.estimate.path.rpartition(".")[2]: each.estimate.value for each in found.parameters}
     assert told["coulomb"] == pytest.approx(joint.coulomb, rel=0.02)
     assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
     assert told["stribeck_speed"] == pytest.approx(joint.stribeck_speed, rel=0.15)

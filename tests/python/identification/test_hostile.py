@@ -143,14 +143,14 @@ SAID: dict[str, tuple[Make, str]] = {
 def test_a_spoilt_log_is_used_and_what_was_done_is_said(tmp_path: Path, name: str) -> None:
     make, told = SAID[name]
     found = identify(START, [make(tmp_path)])
-    assert any(re.search(told, remark) for remark in found.findings[0].remarks)
-    number = next(each.told for each in found.numbers if each.told.path == "load.inertia")
+    assert any(re.search(told, remark) for remark in found.files[0].remarks)
+    number = next(each.estimate for each in found.parameters if each.estimate.path == "load.inertia")
     assert number.value == pytest.approx(TRUTH["inertia"], abs=max(4.0 * number.sigma, 0.02 * TRUTH["inertia"]))
 
 
 def test_milliamperes_called_amperes_are_doubted(tmp_path: Path) -> None:
     found = identify(START, [log(current=1e3 * CURRENT)(tmp_path)])
-    (doubt,) = found.findings[0].doubts
+    (doubt,) = found.files[0].doubts
     assert "a factor of 1000 lies between mA and A" in doubt
 
 
@@ -162,7 +162,7 @@ def test_milliamperes_called_amperes_are_doubted(tmp_path: Path) -> None:
     ],
 )
 def test_what_a_table_cannot_tell_is_said(tmp_path: Path, make: Make, told: str) -> None:
-    assert any(told in remark for remark in identify(START, [make(tmp_path)]).findings[0].remarks)
+    assert any(told in remark for remark in identify(START, [make(tmp_path)]).files[0].remarks)
 
 
 def both(folder: Path) -> Identified:
@@ -173,8 +173,8 @@ def both(folder: Path) -> Identified:
 
 def test_a_file_given_twice_counts_once(tmp_path: Path) -> None:
     found = both(tmp_path)
-    assert found.findings[1].same_as == found.findings[0].name
-    number = next(each for each in found.numbers if each.told.path.endswith("coulomb"))
+    assert found.files[1].same_as == found.files[0].name
+    number = next(each for each in found.parameters if each.estimate.path.endswith("coulomb"))
     assert number.mean_of == (number.source,)
 
 
@@ -202,15 +202,15 @@ def test_of_files_of_one_run_the_one_with_most_channels_counts(tmp_path: Path) -
 def test_a_doubted_table_is_used_if_it_is_accepted(tmp_path: Path) -> None:
     path = friction(SPEED, 1e3 * TORQUE)(tmp_path)
     found = identify(START, [path], accept=True)
-    assert "867 times" in found.findings[0].doubts[0]
-    assert next(each.told.value for each in found.numbers if "coulomb" in each.told.path) == pytest.approx(50.0)
+    assert "867 times" in found.files[0].doubts[0]
+    assert next(each.estimate.value for each in found.parameters if "coulomb" in each.estimate.path) == pytest.approx(50.0)
     said = identify(START, [path], mapping=lambda _: FileMapping(side="input"))
-    assert not said.findings[0].doubts
+    assert not said.files[0].doubts
 
 
 def test_a_folder_stands_for_the_measurements_in_it(tmp_path: Path) -> None:
     found = identify(START, [folder_of(empty=False)(tmp_path)])
-    assert [each.name for each in found.findings] == ["table.csv"]
+    assert [each.name for each in found.files] == ["table.csv"]
 
 
 def test_one_bad_file_does_not_stop_the_command_and_only_bad_files_do(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from strainwave.identification.results.file_result import (
     FileResult,
     distance,
     mean_of,
-    numbers_of,
+    combine,
 )
 from strainwave.identification.results.gear_so_far import GearSoFar
 
@@ -64,23 +64,23 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
 
 
 def test_each_file_is_told_what_it_is_and_none_stops_the_others(found: Identified) -> None:
-    kinds = [each.recognised.kind if each.recognised is not None else "" for each in found.findings]
+    kinds = [each.recognised.kind if each.recognised is not None else "" for each in found.files]
     assert kinds == ["friction", "friction", "", "log", "log", "log"]
-    assert [bool(each.refused) for each in found.findings] == [False, False, True, False, False, False]
+    assert [bool(each.refused) for each in found.files] == [False, False, True, False, False, False]
 
 
 def test_files_of_one_name_are_told_by_their_folders(found: Identified) -> None:
-    names = [each.name for each in found.findings]
+    names = [each.name for each in found.files]
     assert names[0] == "rough.csv"
     assert names[3].endswith("light/run.csv")
     assert len(set(names)) == len(names)
 
 
 def test_the_file_that_tells_a_number_best_gives_it_and_the_law(found: Identified) -> None:
-    number = next(each for each in found.numbers if each.told.path == "gear.friction_input.coulomb")
+    number = next(each for each in found.parameters if each.estimate.path == "gear.friction_input.coulomb")
     assert "fine.csv" in number.mean_of
-    assert abs(number.told.value - 0.05) < 4.0 * number.told.sigma
-    assert found.gear_set.gear.friction_input.coulomb == number.told.value
+    assert abs(number.estimate.value - 0.05) < 4.0 * number.estimate.sigma
+    assert found.gear_set.gear.friction_input.coulomb == number.estimate.value
     assert "fine.csv" in found.gear_set.sources["gear.friction_input.coulomb"].source
     assert not number.contradicts
 
@@ -94,12 +94,12 @@ def test_a_mean_replaces_only_what_one_of_its_files_has_told(file: str, coulomb:
 
 
 def test_one_run_in_two_files_counts_once_and_other_loads_are_no_contradiction(found: Identified) -> None:
-    assert found.findings[5].same_as == found.findings[3].name
-    inertia = [each for each in found.numbers if each.told.path == "load.inertia"]
+    assert found.files[5].same_as == found.files[3].name
+    inertia = [each for each in found.parameters if each.estimate.path == "load.inertia"]
     assert len(inertia) == 2
     for number, truth in zip(inertia, (0.4, 1.6), strict=True):
         assert not number.contradicts
-        assert number.told.value == pytest.approx(truth, abs=max(4.0 * number.told.sigma, 0.01 * truth))
+        assert number.estimate.value == pytest.approx(truth, abs=max(4.0 * number.estimate.sigma, 0.01 * truth))
 
 
 def test_nothing_at_all_is_refused_with_the_reasons(tmp_path: Path) -> None:
@@ -119,30 +119,30 @@ def test_links_in_a_folder_are_named_and_not_read(tmp_path: Path) -> None:
         identify("hfuc-20-80", [tmp_path / "folder"])
     table(tmp_path / "folder" / "own.csv", 0.05, 2e-4, 1)
     found = identify("hfuc-20-80", [tmp_path / "folder"])
-    assert [(each.name, bool(each.refused)) for each in found.findings] == [("own.csv", False), ("link.csv", True)]
+    assert [(each.name, bool(each.refused)) for each in found.files] == [("own.csv", False), ("link.csv", True)]
     named = identify("hfuc-20-80", [link, tmp_path / "folder"])
-    assert [(each.name, bool(each.refused)) for each in named.findings] == [("link.csv", False), ("own.csv", False)]
+    assert [(each.name, bool(each.refused)) for each in named.files] == [("link.csv", False), ("own.csv", False)]
 
 
 def finding(name: str, value: float, sigma: float, common: float = 0.0) -> FileResult:
-    return FileResult(name, told=(FileEstimate("gear.friction_input.coulomb", "N.m", value, sigma, "", common=common),))
+    return FileResult(name, estimates=(FileEstimate("gear.friction_input.coulomb", "N.m", value, sigma, "", common=common),))
 
 
 def test_two_files_far_apart_contradict_each_other_and_only_those_that_agree_are_averaged() -> None:
-    (number,) = numbers_of([finding("a", 0.05, 1e-3), finding("b", 0.06, 2e-3), finding("c", 0.051, 1e-2)])
+    (number,) = combine([finding("a", 0.05, 1e-3), finding("b", 0.06, 2e-3), finding("c", 0.051, 1e-2)])
     assert (number.source, number.contradicts, number.mean_of) == ("a", ("b",), ("a", "c"))
-    assert number.told.value == pytest.approx((0.05 * 1e6 + 0.051 * 1e4) / (1e6 + 1e4))
-    assert number.told.sigma == pytest.approx((1e6 + 1e4) ** -0.5)
+    assert number.estimate.value == pytest.approx((0.05 * 1e6 + 0.051 * 1e4) / (1e6 + 1e4))
+    assert number.estimate.sigma == pytest.approx((1e6 + 1e4) ** -0.5)
     assert number.of_file("a").value == 0.05
     assert number.taken_from == "mean of a, c"
 
 
 def test_files_that_scatter_more_than_they_say_widen_the_mean() -> None:
     near = [finding(name, value, 1e-3) for name, value in (("a", 0.05), ("b", 0.0519), ("c", 0.0481))]
-    (number,) = numbers_of(near)
+    (number,) = combine(near)
     assert number.mean_of == ("a", "b", "c")
     assert number.widened == pytest.approx(1.9)
-    assert number.told.sigma == pytest.approx(1.9e-3 / 3**0.5)
+    assert number.estimate.sigma == pytest.approx(1.9e-3 / 3**0.5)
 
 
 @given(
@@ -204,7 +204,7 @@ def voltage_log(path: Path, sign: float = 1.0) -> Path:
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_voltage_tells_friction_without_what_the_motor_induces(tmp_path: Path, sign: float) -> None:
     found = identify(measured_motor(), [voltage_log(tmp_path / "log.csv", sign)])
-    told = {each.told.path: each.told for each in found.numbers}
+    told = {each.estimate.path: each.estimate for each in found.parameters}
     for path, truth in (("gear.friction_input.coulomb", 0.05), ("gear.friction_input.viscous", 3e-4), ("load.inertia", 0.8)):
         assert abs(told[path].value - truth) < 4.0 * told[path].sigma
         assert told[path].sigma < 0.1 * truth
@@ -222,8 +222,10 @@ def test_a_torque_that_was_measured_is_as_sure_as_itself_whatever_the_torque_con
     common = {}
     for name, recording in files.items():
         recording.to_csv(tmp_path / name)
-        (finding,) = identify(unsure_set, [tmp_path / name]).findings
-        (common[name],) = (each.common / abs(each.value) for each in finding.told if each.path == "gear.friction_input.coulomb")
+        (finding,) = identify(unsure_set, [tmp_path / name]).files
+        (common[name],) = (
+            each.common / abs(each.value) for each in finding.estimates if each.path == "gear.friction_input.coulomb"
+        )
     assert common == {"torque.csv": 0.0, "current.csv": pytest.approx(0.02)}
 
 
@@ -241,8 +243,8 @@ def test_shares_of_regressors_are_found_beside_friction(tmp_path: Path) -> None:
     columns = np.column_stack([time, alone["input_angle"], current, *beside.values()])
     np.savetxt(tmp_path / "log.csv", columns, delimiter=",", header=header, comments="")
     said = FileMapping(columns={"regressors": "Y1, Y2"})
-    found = identify(measured_motor(), [tmp_path / "log.csv"], mapping=lambda path: said).findings[0]
-    told = {each.path: each for each in found.told}
+    found = identify(measured_motor(), [tmp_path / "log.csv"], mapping=lambda path: said).files[0]
+    told = {each.path: each for each in found.estimates}
     for path, truth in (("gear.friction_input.coulomb", 0.05), ("gear.friction_input.viscous", 3e-4), ("load.inertia", 0.8)):
         assert abs(told[path].value - truth) < 4.0 * told[path].sigma
     remark = next(each for each in found.remarks if each.startswith("shares of the regressors"))
@@ -257,7 +259,7 @@ def test_a_load_is_as_uncertain_as_the_rotor_beside_it(tmp_path: Path) -> None:
     known = measured_motor()
     of_gear = {"gear.input_inertia": sw.Entry("measured", uncertainty=2e-6)}
     inertia = [
-        next(each.told for each in identify(start, [file]).numbers if each.told.path == "load.inertia")
+        next(each.estimate for each in identify(start, [file]).parameters if each.estimate.path == "load.inertia")
         for start in (known.replace(sources={**known.sources, "gear.input_inertia": sw.Entry("x", uncertainty=0.0)}),
                       known.replace(sources={**known.sources, **of_gear}))
     ]  # fmt: skip

@@ -44,7 +44,7 @@ def test_every_joint_that_moves_has_a_folder_and_stands_on_the_page(tmp_path: Pa
     page = (tmp_path / "out" / "report.html").read_text()
     for joint in ("1", "2"):
         alone = identify("hfuc-25-100", [log], mapping=partial(_said, joint))
-        told = {each.told.path: each.told.value for each in alone.numbers}
+        told = {each.estimate.path: each.estimate.value for each in alone.parameters}
         assert {row["path"]: float(row["value"]) for row in rows if row["joint"] == joint} == told
         assert told["gear.friction_input.coulomb"] == pytest.approx(JOINT.coulomb, rel=0.05)
         results = json.loads((tmp_path / "out" / f"joint-{joint}" / "results.json").read_text())

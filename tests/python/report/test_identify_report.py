@@ -17,7 +17,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.evidence.verdict import numbers
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.recognise import recognise
-from strainwave.identification.results.file_result import FileEstimate, FileResult, numbers_of
+from strainwave.identification.results.file_result import FileEstimate, FileResult, combine
 from strainwave.report import identify_figures
 from strainwave.report.identify import identify_files, identify_report, name_of
 from strainwave.report.provenance import Provenance
@@ -58,7 +58,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
         ),
         FileResult("<b>notes</b>.txt", refused="no name of a column tells what it measures; give --column"),
     )  # fmt: skip
-    return Identified(START, findings, numbers_of(findings), START)
+    return Identified(START, findings, combine(findings), START)
 
 
 @pytest.fixture(scope="module")
@@ -86,8 +86,8 @@ def test_it_counts_what_files_come_to(page: str) -> None:
 
 
 def test_what_is_fine_needs_no_alarm(found: Identified) -> None:
-    one = found.findings[0]
-    html = identify_report(Identified(START, (one,), numbers_of((one,)), START))
+    one = found.files[0]
+    html = identify_report(Identified(START, (one,), combine((one,)), START))
     assert not [each for each in Page(html).root.walk() if each.attributes.get("role") == "alert"]
     assert "1 file: 1 tells 1 number." in text_of(html)
     assert "Files beside each other" not in text_of(html)
@@ -121,7 +121,7 @@ def test_what_is_not_told_stands_with_its_reason(page: str) -> None:
 def test_every_file_that_was_fitted_has_a_drawing_of_its_own(page: str, found: Identified) -> None:
     root = Page(page).root
     titles = [each.attributes["aria-label"] for each in root.find("svg")]
-    for finding in found.findings:
+    for finding in found.files:
         drawn = f"Measured against modelled, {finding.name}" in titles
         assert drawn == (finding.curves is not None)
     names = [each.attributes["id"] for each in root.walk() if "id" in each.attributes]
@@ -169,14 +169,14 @@ values = st.floats(1e-6, 1e6)
 @settings(max_examples=sample(5, 15), deadline=None)
 def test_files_hold_every_number_to_the_last_digit(first: float, second: float, sigma: float, same: bool) -> None:
     findings = (
-        FileResult("a.csv", told=(told(COULOMB, first, sigma),)),
+        FileResult("a.csv", estimates=(told(COULOMB, first, sigma),)),
         FileResult(
             "b.csv",
-            told=(told(COULOMB, second, 2.0 * sigma), told(STIFF, 1.0, 2.0, why="noise")),
+            estimates=(told(COULOMB, second, 2.0 * sigma), told(STIFF, 1.0, 2.0, why="noise")),
             same_as="a.csv" if same else "",
         ),
     )
-    made = identify_files(Identified(START, findings, numbers_of(findings), START))
+    made = identify_files(Identified(START, findings, combine(findings), START))
     rows = list(csv.DictReader(io.StringIO(made["numbers.csv"])))
     assert [(row["file"], float(row["value"]), float(row["sigma"])) for row in rows[:2]] == [
         ("a.csv", first, sigma), ("b.csv", second, 2.0 * sigma)
@@ -196,28 +196,28 @@ def test_files_hold_every_number_to_the_last_digit(first: float, second: float, 
 def test_a_phase_is_compared_around_the_turn() -> None:
     path = "gear.kinematic_error.phase[0]"
     findings = tuple(
-        FileResult(name, told=(told(path, phase, 0.05, "rad"),)) for name, phase in (("a.csv", 3.1), ("b.csv", -3.1))
+        FileResult(name, estimates=(told(path, phase, 0.05, "rad"),)) for name, phase in (("a.csv", 3.1), ("b.csv", -3.1))
     )
-    html = identify_report(Identified(START, findings, numbers_of(findings), START))
+    html = identify_report(Identified(START, findings, combine(findings), START))
     assert "1.2 σ)" in text_of(html)  # 2 pi - 6.2 over the root of 2 x 0.05²
 
 
 def test_numbers_of_nothing_and_without_size_do_not_stop_the_page(found: Identified) -> None:
     findings = (
-        FileResult("a.csv", told=(told(COULOMB, 0.0, 0.001),)),
-        FileResult("b.csv", told=(told(COULOMB, 0.01, 0.001),)),
-        replace(found.findings[0], name=f"{'long' * 20}.csv"),
+        FileResult("a.csv", estimates=(told(COULOMB, 0.0, 0.001),)),
+        FileResult("b.csv", estimates=(told(COULOMB, 0.01, 0.001),)),
+        replace(found.files[0], name=f"{'long' * 20}.csv"),
     )
-    html = identify_report(Identified(START, findings, numbers_of(findings), START))
+    html = identify_report(Identified(START, findings, combine(findings), START))
     assert Page(html)
     assert Path(findings[2].name).suffix == ".csv"
 
 
 def test_a_file_beyond_two_sigma_is_shown_as_not_counted() -> None:
     findings = tuple(
-        FileResult(name, told=(told(COULOMB, value, 1e-3, "N.m"),)) for name, value in (("a.csv", 0.05), ("b.csv", 0.0535))
+        FileResult(name, estimates=(told(COULOMB, value, 1e-3, "N.m"),)) for name, value in (("a.csv", 0.05), ("b.csv", 0.0535))
     )
-    page = identify_report(Identified(START, findings, numbers_of(findings), START))
+    page = identify_report(Identified(START, findings, combine(findings), START))
     assert "b.csv: 0.0535 ± 0.0010 (2.5 σ, not counted)" in text_of(page)
     drawn = next(each for each in Page(page).root.find("svg")).text
     assert "not counted" in drawn
@@ -227,8 +227,8 @@ def test_a_file_beyond_two_sigma_is_shown_as_not_counted() -> None:
 def test_numbers_of_the_gear_come_before_the_loads_of_runs() -> None:
     first, second = "load.inertia", "load.gravity_torque"
     findings = tuple(
-        FileResult(name, told=tuple(told(path, 1.0, 0.1, "kg.m2") for path in (first, second, COULOMB)))
+        FileResult(name, estimates=tuple(told(path, 1.0, 0.1, "kg.m2") for path in (first, second, COULOMB)))
         for name in ("a.csv", "b.csv")
     )
-    order = [(each.told.path, each.source) for each in numbers_of(findings)]
+    order = [(each.estimate.path, each.source) for each in combine(findings)]
     assert order == [(COULOMB, "a.csv"), (first, "a.csv"), (second, "a.csv"), (first, "b.csv"), (second, "b.csv")]

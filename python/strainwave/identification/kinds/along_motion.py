@@ -42,7 +42,9 @@ def log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     if warm is None:
         return finding, after
     after, said = warm.known(after, name)
-    return replace(finding, told=(*finding.told, *warm.told), remarks=(*warm.remarks, *said, *finding.remarks)), after
+    return replace(
+        finding, estimates=(*finding.estimates, *warm.estimates), remarks=(*warm.remarks, *said, *finding.remarks)
+    ), after
 
 
 def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
@@ -58,8 +60,8 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     if set(ENCODERS) <= set(recording.names):
         errors = transmission_error(recording)
         between = between_encoders(taken, best, errors, known)
-        surer = {each.path for each in between.told}
-        told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.told)
+        surer = {each.path for each in between.estimates}
+        told = [each for each in (*told, *orders_of(errors)) if each.path not in surer] + list(between.estimates)
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(between.known(known, file.path.name), errors, file.path.name)
     remarks += _shares(best.fit, file.regressors)
@@ -88,7 +90,7 @@ def _with_friction(known: GearSoFar, best: MotionCandidate, told: Sequence[FileE
     sigmas = {each.path: each.sigma for each in told}
     for part in ("friction_input", "friction_mesh"):
         law = getattr(gear, part)
-        if part not in known.told and law != getattr(known.gear_set.gear, part):
+        if part not in known.determined and law != getattr(known.gear_set.gear, part):
             known = known.with_parts({part: law}, sigmas, name)
     return known
 

@@ -113,7 +113,7 @@ def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar
 
 def _tells_breakaway(known: GearSoFar) -> bool:
     """Whether an earlier file has told the torque of breakaway."""
-    return any(plain(path) == "gear.friction_input.breakaway" for path in known.told_by)
+    return any(plain(path) == "gear.friction_input.breakaway" for path in known.determined_by)
 
 
 def _mean(sides: list[Estimate]) -> Estimate:

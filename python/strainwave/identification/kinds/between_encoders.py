@@ -39,14 +39,14 @@ class Between:
     """What is told of the gear between two encoders.
 
     Attributes:
-        told: its numbers; they take the place of those that the log has told of the same paths
+        estimates: its numbers; they take the place of those that the log has told of the same paths
         remarks: what to know of them
         curves: the angle between the shafts as measured and as modelled; None where nothing was fitted
         found: the model; None likewise
         parts: those of the gear that it tells in units of a gear; none but the kinematic error where torques are in A
     """
 
-    told: tuple[FileEstimate, ...] = ()
+    estimates: tuple[FileEstimate, ...] = ()
     remarks: tuple[str, ...] = ()
     curves: Recording | None = None
     found: ElasticCandidate | None = None
@@ -57,10 +57,10 @@ class Between:
         if self.found is None:
             return known
         gear, before = self.found.drive.gear, known.gear_set.gear
-        new = {part: getattr(gear, part) for part in self.parts if part not in known.told}
+        new = {part: getattr(gear, part) for part in self.parts if part not in known.determined}
         if "stiffness" in new:
             new["stiffness"] = _spring(gear.stiffness, before.stiffness, self.found.reach)
-        sigmas = {each.path: each.sigma for each in self.told if not each.why}
+        sigmas = {each.path: each.sigma for each in self.estimates if not each.why}
         sigmas |= {
             each.path: float(sigma)
             for each, sigma in zip(self.found.fit.estimates, self.found.sigmas, strict=True)

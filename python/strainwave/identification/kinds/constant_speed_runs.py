@@ -260,7 +260,7 @@ def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, G
     waves = _waves(found)
     sigmas = {each.path: each.sigma for each in told if not each.why}
     name, after = f"friction over the angle of {listed(names)}", known
-    if "friction_input" not in known.told:
+    if "friction_input" not in known.determined:
         remarks.append("no other file tells friction: the gear takes this law, valid over the angles measured")
         after = known.with_parts({"friction_input": found.law}, sigmas, listed(names))
     elif waves and sliding.name != "cyclic":

@@ -11,6 +11,7 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.drive_log import ENCODERS
+from strainwave.identification.experiments.friction_table import with_load
 from strainwave.identification.kinds.along_motion import log
 from strainwave.identification.kinds.at_rest import breakaway, presliding
 from strainwave.identification.kinds.plausibility import clipped_loop, of_levels, too_fast
@@ -59,7 +60,8 @@ def _without_motion(file: Recognised) -> str:
 
 def _friction(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     table, uncertain = with_torque(file, known.gear_set)
-    return friction_of(file, _unloaded(table, file, known.gear_set), uncertain, known)
+    table, remarks = with_load(_unloaded(table, file, known.gear_set), abs(known.gear_set.gear.kinematics.ratio), file.side)
+    return friction_of(replace(file, remarks=(*file.remarks, *remarks)), table, uncertain, known)
 
 
 def _unloaded(table: Recording, file: Recognised, gear_set: GearSet) -> Recording:
@@ -88,13 +90,14 @@ def friction_of(file: Recognised, table: Recording, uncertain: float, known: Gea
     side = "output" if file.side == "output" else known.side  # one that was only found is doubted if the set speaks against it
     found = twin(known.gear_set, friction=table, side=side, sources={"friction": file.path.name})
     finding = _of_twin(file, found, known.accept)
-    told = tuple(each.resting_on(uncertain) for each in finding.told)
-    finding = replace(finding, told=told, remarks=(*finding.remarks, *of_levels(table)))
-    if finding.refused or known.knows_better("friction_input", finding.told):
+    told = tuple(each.resting_on(uncertain) for each in finding.estimates)
+    finding = replace(finding, estimates=told, remarks=(*finding.remarks, *of_levels(table)))
+    if finding.refused or known.knows_better("friction_input", finding.estimates):
         return finding, known
-    gear = known.gear_set.gear.replace(friction_input=found.gear_set.gear.friction_input)
-    after = replace(_with_gear(known, gear, found, {"friction_input"}, finding), friction=table)
-    return finding, after.judged("friction_input", finding.told)
+    parts = {"friction_input", "friction_mesh"} if "load" in table else {"friction_input"}
+    gear = known.gear_set.gear.replace(**{part: getattr(found.gear_set.gear, part) for part in parts})
+    after = replace(_with_gear(known, gear, found, parts, finding), friction=table)
+    return finding, after.judged("friction_input", finding.estimates)
 
 
 def _torsion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
@@ -104,12 +107,12 @@ def _torsion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]
     friction = known.friction if at_input else None
     found = twin(known.gear_set, friction=friction, torsion=file.recording, sources={"torsion": file.path.name})
     finding = _of_twin(file, found, known.accept)
-    if finding.refused or known.knows_better("stiffness", finding.told):
+    if finding.refused or known.knows_better("stiffness", finding.estimates):
         return finding, known
     # a loop at the input has friction inside, and what a table says wrong of it becomes hysteresis
-    parts = {"stiffness"} if at_input and "hysteresis" in known.told else {"stiffness", "hysteresis"}
+    parts = {"stiffness"} if at_input and "hysteresis" in known.determined else {"stiffness", "hysteresis"}
     gear = known.gear_set.gear.replace(**{part: getattr(found.gear_set.gear, part) for part in parts})
-    return finding, _with_gear(known, gear, found, parts, finding).judged("stiffness", finding.told)
+    return finding, _with_gear(known, gear, found, parts, finding).judged("stiffness", finding.estimates)
 
 
 def _of_twin(file: Recognised, found: Twin, accept: bool) -> FileResult:
@@ -136,10 +139,10 @@ def _with_gear(known: GearSoFar, gear: Any, found: Twin, parts: set[str], findin
     """The set with a gear of which some parts are those of a twin, with their sources."""
     sources = {path: entry for path, entry in known.gear_set.sources.items() if not is_of(path, parts)}
     sources |= {path: entry for path, entry in found.gear_set.sources.items() if is_of(path, parts)}
-    told_by = {path: file for path, file in known.told_by.items() if not is_of(path, parts)}
-    told_by |= {each.path: finding.name for each in finding.told if is_of(each.path, parts) and not each.why}
+    determined_by = {path: file for path, file in known.determined_by.items() if not is_of(path, parts)}
+    determined_by |= {each.path: finding.name for each in finding.estimates if is_of(each.path, parts) and not each.why}
     gear_set = replace(known.gear_set, gear=gear, sources=sources)
-    return replace(known, gear_set=gear_set, told=known.told | parts, told_by=told_by)
+    return replace(known, gear_set=gear_set, determined=known.determined | parts, determined_by=determined_by)
 
 
 def _law(path: str, gear: Any) -> str:

@@ -25,7 +25,7 @@ def encoders(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]
 def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoFar:
     """Return the set with a kinematic error, unless an earlier file determined it."""
     law = found.law
-    if "kinematic_error" in known.told or not law.order:
+    if "kinematic_error" in known.determined or not law.order:
         return known
     by_order = {each.order: each for each in found.orders if each.significant and each.shaft != "output"}
     sigmas = {f"gear.kinematic_error.amplitude[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}

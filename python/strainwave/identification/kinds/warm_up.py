@@ -30,14 +30,14 @@ class Warmed:
     Attributes:
         found: friction, and how it changes
         effort: the channel that tells it
-        told: its numbers
+        estimates: its numbers
         remarks: the same in words
         curves: means of the friction over the temperature beside the line
     """
 
     found: Warming
     effort: str
-    told: tuple[FileEstimate, ...]
+    estimates: tuple[FileEstimate, ...]
     remarks: tuple[str, ...]
     curves: Recording
 
@@ -45,14 +45,14 @@ class Warmed:
         """What is known after it, and what was assumed for it."""
         law: Any = known.gear_set.gear.friction_input
         fall = self.found.fall
-        if self.told[0].why or fall.value <= 0.0 or law.name == "thermal":
+        if self.estimates[0].why or fall.value <= 0.0 or law.name == "thermal":
             return known, ()
         warmer = friction.Thermal(
             law=law, dry_fall=fall.value, viscous_fall=fall.value, reference_temperature=self.found.reference_temperature
         )
         at = _celsius(self.found.reference_temperature)
         said = f"the friction of the gear is taken to hold at {at}, its dry and viscous part to fall alike"
-        return known.with_law(warmer, {self.told[0].path: self.told[0].sigma}, name), (said,)
+        return known.with_law(warmer, {self.estimates[0].path: self.estimates[0].sigma}, name), (said,)
 
 
 def warmed(file: Recognised) -> Warmed | None:

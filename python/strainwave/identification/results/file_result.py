@@ -88,7 +88,7 @@ class FileResult:
         name: of the file
         recognised: what it is, and why; None where it could not be read
         model: the model that was chosen, in words
-        told: its numbers
+        estimates: of its parameters
         error: rms on data held out over the rms of what varied [1]; not a number where nothing was held out
         remarks: what to know of it, in short sentences
         doubts: what speaks against the file as it was taken, though it is used
@@ -103,7 +103,7 @@ class FileResult:
     name: str
     recognised: Recognised | None = None
     model: str = ""
-    told: tuple[FileEstimate, ...] = ()
+    estimates: tuple[FileEstimate, ...] = ()
     error: float = np.nan
     remarks: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
@@ -120,7 +120,7 @@ class CombinedParameter:
     """A number of the gear or its drive as all files tell it.
 
     Attributes:
-        told: as it is taken: the mean of the files that agree, or as the one file has it that tells it best
+        estimate: the value taken: the mean of the files that agree, or as the one file has it that tells it best
         source: the name of the file that tells it best
         others: what other files say of it, by name
         contradicts: names of files that say something else, beyond three standard deviations of both
@@ -129,7 +129,7 @@ class CombinedParameter:
         widened: by what the standard deviation of the mean is multiplied, as files scatter more than they should [1]
     """
 
-    told: FileEstimate
+    estimate: FileEstimate
     source: str
     others: Mapping[str, FileEstimate] = field(default_factory=dict)
     contradicts: tuple[str, ...] = ()
@@ -146,18 +146,18 @@ class CombinedParameter:
 
     def of_file(self, name: str) -> FileEstimate:
         """As one file tells it."""
-        return (self.best or self.told) if name == self.source else self.others[name]
+        return (self.best or self.estimate) if name == self.source else self.others[name]
 
 
 def lines_of(numbers: Sequence[CombinedParameter]) -> Iterator[str]:
     """A line for each number, to print."""
-    width = max((len(each.told.label) for each in numbers), default=0)
+    width = max((len(each.estimate.label) for each in numbers), default=0)
     for each in numbers:
-        told = each.told
+        told = each.estimate
         yield f"  {told.label:{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {each.taken_from}"
 
 
-def numbers_of(findings: Sequence[FileResult]) -> tuple[CombinedParameter, ...]:
+def combine(findings: Sequence[FileResult]) -> tuple[CombinedParameter, ...]:
     """Every number told: the mean of the files that agree about it; files that show one measurement count once.
 
     Files that lie further from the best one than two standard deviations take no part in the mean: one of them, or the model,
@@ -165,7 +165,7 @@ def numbers_of(findings: Sequence[FileResult]) -> tuple[CombinedParameter, ...]:
     """
     by_path: dict[tuple[str, str, str], dict[str, FileEstimate]] = {}
     for finding in findings:
-        for told in finding.told:
+        for told in finding.estimates:
             if not told.why and np.isfinite(told.sigma):
                 # what a drive carries may differ from one run to another, and is no number of the gear
                 run = (finding.same_as or finding.name) if told.path.startswith("load.") else ""

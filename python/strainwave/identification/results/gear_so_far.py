@@ -27,24 +27,24 @@ class GearSoFar:
     Attributes:
         gear_set: the set, with what earlier files have told of it
         friction: the recording of a friction table, if one was given
-        told: parts of the gear that earlier files have told
+        determined: parts of the gear that earlier files determine
         side: what a person says of the side of the file that is fitted next; None where nothing
         accept: whether files are used in spite of doubts about their sizes
         sigmas: standard deviation of the first number of friction and spring, as the file has it that tells the part
-        told_by: the file that told each number, by its path in the gear set
+        determined_by: the file that told each number, by its path in the gear set
     """
 
     gear_set: GearSet
     friction: Recording | None = None
-    told: frozenset[str] = frozenset()
+    determined: frozenset[str] = frozenset()
     side: Side | None = None
     accept: bool = False
     sigmas: Mapping[str, float] = field(default_factory=dict)
-    told_by: Mapping[str, str] = field(default_factory=dict)
+    determined_by: Mapping[str, str] = field(default_factory=dict)
 
     def knows_better(self, part: str, told: Sequence[FileEstimate]) -> bool:
         """Whether an earlier file tells a part of the gear better than this one."""
-        return part in self.told and self.sigmas.get(part, np.inf) <= _first_sigma(part, told)
+        return part in self.determined and self.sigmas.get(part, np.inf) <= _first_sigma(part, told)
 
     def judged(self, part: str, told: Sequence[FileEstimate]) -> GearSoFar:
         """The same, with how well a file tells a part."""
@@ -54,13 +54,13 @@ class GearSoFar:
         """The same, with parts of the gear that a file of this name tells."""
         gear = self.gear_set.gear.replace(**parts)
         sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
-        told_by = {path: file for path, file in self.told_by.items() if not is_of(path, parts)}
+        determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
         for path in (path for path in numbers(gear) if is_of(path, parts)):
             told = path in sigmas and np.isfinite(sigmas[path])
             sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
-            told_by |= {path: name} if told else {}
+            determined_by |= {path: name} if told else {}
         gear_set = replace(self.gear_set, gear=gear, sources=sources)
-        return replace(self, gear_set=gear_set, told=self.told | set(parts), told_by=told_by)
+        return replace(self, gear_set=gear_set, determined=self.determined | set(parts), determined_by=determined_by)
 
     def sliding(self) -> Any:
         """The friction of the input as it slides, without what modulates it over angle and temperature."""
@@ -99,14 +99,14 @@ class GearSoFar:
         before, values = self.gear_set.sources, {path: value for path, (value, _) in numbers(self.gear_set.gear).items()}
         known = {plain(each): each for each in before}
         after = self.with_parts({"friction_input": law}, sigmas, name)
-        sources, told_by = dict(after.gear_set.sources), dict(after.told_by)
+        sources, determined_by = dict(after.gear_set.sources), dict(after.determined_by)
         for path, (value, _) in numbers(after.gear_set.gear).items():
             if path.startswith("gear.friction_input.") and path not in sigmas:
                 old = known.get(plain(path), "")
                 kept = old and values.get(old) == value
                 sources[path] = before[old] if kept else Entry(source=f"assumed beside what {name} tells")
-                told_by |= {path: self.told_by[old]} if kept and old in self.told_by else {}
-        return replace(after, gear_set=replace(after.gear_set, sources=sources), told_by=told_by)
+                determined_by |= {path: self.determined_by[old]} if kept and old in self.determined_by else {}
+        return replace(after, gear_set=replace(after.gear_set, sources=sources), determined_by=determined_by)
 
 
 def is_of(path: str, parts: Collection[str]) -> bool:

@@ -39,11 +39,11 @@ def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> 
     done = arms.run((joint,) * 3, arms.fourier(40.0, (0, 1, 2), seed=3))
     arms.mat(tmp_path / "arm.mat", arms.Recorder(rate=250.0)(done))
     found = identify("hfuc-25-100", [tmp_path / "arm.mat"], mapping=lambda path: FileMapping(joint="2"))
-    (finding,) = found.findings
+    (finding,) = found.files
     assert finding.error < 0.02  # 9 % without the terms
     (said,) = (remark for remark in finding.remarks if "move too" in remark)
     assert said.startswith("joints 1, 3 move too: ")
-    told = {each.path.rpartition(".")[2]: each.value for each in finding.told}
+    told = {each.path.rpartition(".")[2]: each.value for each in finding.estimates}
     print(f"\n{told}, truth {joint}, error held out {finding.error:.3g}")
     assert told["coulomb"] == pytest.approx(joint.coulomb, rel=0.05)
     assert told["viscous"] == pytest.approx(joint.viscous, rel=0.05)
@@ -53,7 +53,7 @@ def test_a_log_of_one_joint_has_no_terms_of_others(tmp_path: Path) -> None:
     done = arms.run((arms.Joint(),) * 3, arms.fourier(12.0, (1,), seed=4))
     arms.mat(tmp_path / "arm.mat", arms.Recorder(rate=250.0)(done))
     found = identify("hfuc-25-100", [tmp_path / "arm.mat"], mapping=lambda path: FileMapping(joint="2"))
-    assert not any("move too" in remark for remark in found.findings[0].remarks)
+    assert not any("move too" in remark for remark in found.files[0].remarks)
 
 
 def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Path) -> None:
@@ -63,4 +63,4 @@ def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Pat
     alone = identify("hfuc-25-100", [tmp_path / "arm.csv"], mapping=lambda path: FileMapping(columns=columns))
     said = FileMapping(columns={**columns, "other_angles": "4"})
     together = identify("hfuc-25-100", [tmp_path / "arm.csv"], mapping=lambda path: said)
-    assert together.findings[0].error < 0.5 * alone.findings[0].error
+    assert together.files[0].error < 0.5 * alone.files[0].error

@@ -62,7 +62,7 @@ def test_twenty_seconds_of_an_arm_are_predicted_better_than_with_a_model_of_it(s
     seen = recorder(arms.run((joint,) * 3, arms.fourier(20.0, (0, 1, 2), seed)))
     path = tmp_path / "arm.csv"
     arms.rtde(path, seen)
-    (finding,) = identify("hfuc-25-100", [path], mapping=lambda _: FileMapping(joint="1")).findings
+    (finding,) = identify("hfuc-25-100", [path], mapping=lambda _: FileMapping(joint="1")).files
     specialist = arms.least_squares(seen, 1, "current", links=True)
     print(f"\n{finding.error:.2%}, by least squares with a model of the arm {specialist:.2%}")
     assert finding.error < specialist

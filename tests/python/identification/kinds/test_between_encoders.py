@@ -31,7 +31,7 @@ def identified(folder: Path, noise: float) -> Identified:
 
 def test_a_log_tells_how_the_gear_gives_way_and_the_gear_has_it(tmp_path: Path) -> None:
     found = identified(tmp_path, 1e-5)
-    told = {each.told.path: each.told for each in found.numbers}
+    told = {each.estimate.path: each.estimate for each in found.parameters}
     truths = {"gear.hysteresis.breakaway[0]": 0.8, "load.inertia": 0.8, "gear.kinematic_error.amplitude of order 2": 1e-4}
     spring = next(path for path in told if path.startswith("gear.stiffness.k"))
     for path, truth in {spring: 9e3, **truths}.items():
@@ -41,11 +41,11 @@ def test_a_log_tells_how_the_gear_gives_way_and_the_gear_has_it(tmp_path: Path) 
     assert gear.hysteresis.breakaway[0] == told["gear.hysteresis.breakaway[0]"].value
     assert gear.damping == told["gear.damping"].value
     assert found.gear_set.sources["gear.damping"].source == "identified from log.csv"
-    assert found.findings[0].between is not None
+    assert found.files[0].between is not None
     assert "log.csv, between the shafts" in identify_report(found)
 
 
 def test_why_encoders_tell_no_stiffness_is_said(tmp_path: Path) -> None:
     found = identified(tmp_path, 0.03)
-    assert any(each.startswith("stiffness and hysteresis are not told: up to") for each in found.findings[0].remarks)
-    assert not any(each.told.path.startswith("gear.stiffness") for each in found.numbers)
+    assert any(each.startswith("stiffness and hysteresis are not told: up to") for each in found.files[0].remarks)
+    assert not any(each.estimate.path.startswith("gear.stiffness") for each in found.parameters)

@@ -89,7 +89,7 @@ def run(path: Path, speed: float, *, angle: bool = False, named: bool = True, co
 
 
 def told(found: Identified, name: str) -> tuple[float, float]:
-    number = next(each.told for each in found.numbers if each.told.path == f"gear.friction_input.{name}")
+    number = next(each.estimate for each in found.parameters if each.estimate.path == f"gear.friction_input.{name}")
     return number.value, number.sigma
 
 
@@ -100,7 +100,7 @@ def both_ways(folder: Path, **how: bool) -> list[Path]:
 @pytest.mark.parametrize("timed", [False, True])
 def test_a_small_motion_at_rest_is_a_presliding_loop_and_gives_the_gear_bristles(tmp_path: Path, timed: bool) -> None:
     found = identify(START, [loop(tmp_path / "small.csv", timed=timed), table(tmp_path / "table.csv")])
-    small = found.findings[0]
+    small = found.files[0]
     assert small.recognised is not None
     assert small.recognised.kind == "presliding"
     assert "mrad in all" in small.recognised.why[0]
@@ -133,15 +133,15 @@ def test_a_loop_that_never_slides_tells_stiffness_alone(tmp_path: Path) -> None:
         tmp_path / "tiny.csv", {"input_angle": angle, "input_torque": torque}, {"input_angle": "rad", "input_torque": "N.m"}
     )
     found = identify(START, [path])
-    assert "told only from below" in " ".join(found.findings[0].remarks)
-    assert any(each.why for each in found.findings[0].told)
+    assert "told only from below" in " ".join(found.files[0].remarks)
+    assert any(each.why for each in found.files[0].estimates)
     assert found.gear_set.gear.friction_input == sw.GearSet.read(START).gear.friction_input
 
 
 def test_ramps_of_torque_tell_the_breakaway(tmp_path: Path) -> None:
     found = identify(START, [ramps(tmp_path / "ramps.csv"), table(tmp_path / "table.csv")])
-    assert found.findings[0].recognised is not None
-    assert found.findings[0].recognised.kind == "breakaway"
+    assert found.files[0].recognised is not None
+    assert found.files[0].recognised.kind == "breakaway"
     value, sigma = told(found, "breakaway")
     assert abs(value - 0.06) < max(3.0 * sigma, 0.002)
     law: Any = found.gear_set.gear.friction_input
@@ -157,9 +157,9 @@ def test_directions_that_break_away_apart_make_the_mean_less_sure(tmp_path: Path
 
 def test_records_of_one_speed_each_are_one_table(tmp_path: Path) -> None:
     found = identify(START, both_ways(tmp_path))
-    assert [each.part_of for each in found.findings[:-1]] == [found.findings[-1].name] * (2 * len(SPEEDS))
-    assert found.findings[-1].recognised is not None
-    assert "one table" in found.findings[-1].recognised.why[0]
+    assert [each.part_of for each in found.files[:-1]] == [found.files[-1].name] * (2 * len(SPEEDS))
+    assert found.files[-1].recognised is not None
+    assert "one table" in found.files[-1].recognised.why[0]
     for name, truth in (("coulomb", COULOMB), ("viscous", VISCOUS)):
         value, sigma = told(found, name)
         assert abs(value - truth) < 3.0 * sigma
@@ -182,7 +182,7 @@ def test_too_few_speeds_are_refused_with_what_to_record(tmp_path: Path) -> None:
 def test_friction_over_the_angle_gives_waves_around_the_table(tmp_path: Path) -> None:
     files = [*both_ways(tmp_path), run(tmp_path / "turns.csv", 10.0, angle=True, count=3200)]
     found = identify(START, files)
-    position = found.findings[-1]
+    position = found.files[-1]
     assert "ten orders" in position.model
     cosine, sine = told(found, "cosine[1]")[0], told(found, "sine[1]")[0]
     assert (cosine, sine) == pytest.approx((0.01 * np.cos(0.4), 0.01 * np.sin(0.4)), abs=2e-4)
@@ -216,7 +216,7 @@ def test_a_warm_up_tells_how_friction_falls(tmp_path: Path) -> None:
     law: Any = found.gear_set.gear.friction_input
     assert law.name == "thermal"
     assert law.dry_fall == value
-    assert "°C" in " ".join(found.findings[0].remarks)
+    assert "°C" in " ".join(found.files[0].remarks)
 
 
 def test_a_ratio_that_is_said_is_used(tmp_path: Path) -> None:
@@ -246,11 +246,11 @@ def test_an_inertia_of_the_load_that_is_said_is_not_fitted(tmp_path: Path) -> No
 
     free, held = found_with({}), found_with({"load_inertia": TRUTH["inertia"]})
     wrong = found_with({"load_inertia": 1.5 * TRUTH["inertia"]})
-    assert "load.inertia" in {each.told.path for each in free.numbers}
-    assert "load.inertia" not in {each.told.path for each in held.numbers}
+    assert "load.inertia" in {each.estimate.path for each in free.parameters}
+    assert "load.inertia" not in {each.estimate.path for each in held.parameters}
     assert told(held, "viscous")[1] <= 1.05 * told(free, "viscous")[1]
-    assert not held.findings[0].doubts
-    assert "see whether load_inertia" in wrong.findings[0].doubts[0]
+    assert not held.files[0].doubts
+    assert "see whether load_inertia" in wrong.files[0].doubts[0]
 
 
 def test_a_table_and_a_loop_tell_the_same_as_in_a_twin(tmp_path: Path) -> None:
@@ -270,4 +270,4 @@ def test_records_with_an_angle_are_averaged_over_whole_turns(tmp_path: Path) -> 
             files.append(write(path, columns, {"time": "s", "input_angle": "rad", "input_torque": "N.m"}))
     found = identify(START, files)
     assert told(found, "coulomb")[0] == pytest.approx(COULOMB, rel=2e-3)
-    assert len(found.findings) == len(files) + 2  # the table, and friction over the angle
+    assert len(found.files) == len(files) + 2  # the table, and friction over the angle

@@ -31,13 +31,13 @@ def test_parts_in_any_order_tell_what_the_whole_tells(tmp_path: Path, rows: np.n
     whole = identify("hfuc-25-100", [write(tmp_path / "whole.csv", rows)])
     for order in ((1, 0, 2), (2, 1, 0)):
         found = identify("hfuc-25-100", [parts[place] for place in order])
-        (finding,) = found.findings
+        (finding,) = found.files
         assert finding.name == "run_0.csv"
         assert finding.remarks[0] == "run_1.csv, run_2.csv go on where it ends, and are joined to it"
-        for one, other in zip(found.numbers, whole.numbers, strict=True):
-            assert one.told.path == other.told.path
-            assert one.told.value == pytest.approx(other.told.value, rel=1e-4)
-            assert one.told.sigma == pytest.approx(other.told.sigma, rel=0.01)
+        for one, other in zip(found.parameters, whole.parameters, strict=True):
+            assert one.estimate.path == other.estimate.path
+            assert one.estimate.value == pytest.approx(other.estimate.value, rel=1e-4)
+            assert one.estimate.sigma == pytest.approx(other.estimate.sigma, rel=0.01)
 
 
 def test_what_does_not_go_on_stays_apart(tmp_path: Path, rows: np.ndarray) -> None:
