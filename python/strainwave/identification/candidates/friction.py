@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any, get_args
 
@@ -14,7 +14,15 @@ from numpy.typing import NDArray
 from strainwave import friction
 from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields
-from strainwave.identification.candidates.steady_shapes import Shape, beside_speed, over_speed
+from strainwave.identification.candidates.steady_shapes import (
+    QUADRANTS,
+    Shape,
+    alike,
+    beside_speed,
+    is_loaded,
+    over_speed,
+    under_load,
+)
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit, fit
@@ -58,6 +66,7 @@ class FrictionCandidate(ComparedByFields):
         error_sigma: standard error of `error` [N.m]
         whiteness: probability that residuals in the order of the speed are as alike as these by chance (LjungBox1978)
         information: Akaike's criterion, corrected for few samples (HurvichTsai1989) [1]; the least is best
+        ties: numbers that follow a fitted one, and its path
         chance: probability that the first candidate's residuals shrink as much by chance (F test); of the first, 1
     """
 
@@ -68,6 +77,7 @@ class FrictionCandidate(ComparedByFields):
     error_sigma: float
     whiteness: float
     information: float
+    ties: Mapping[str, str] = field(default_factory=dict)
     chance: float = 1.0
 
     @property
@@ -77,8 +87,8 @@ class FrictionCandidate(ComparedByFields):
 
     @property
     def parameters(self) -> int:
-        """How many numbers were fitted."""
-        return len(self.fit.estimates)
+        """How many numbers were fitted; those that follow another one are not counted."""
+        return len(self.fit.plan.unknowns)
 
     @property
     def coulomb(self) -> float:
@@ -242,9 +252,11 @@ def outliers(off: Array) -> NDArray[np.bool_]:
 
 def _tried(table: FrictionTable, gear: Gear) -> list[tuple[Shape, FrictionCandidate]]:
     """Every law that the table may tell, those over the speed alone first, the simplest of all at the beginning."""
-    tried = [(shape, found) for shape in over_speed(table) if _falls(found := _candidate(shape, table, gear))]
+    shapes = [*over_speed(table), *(under_load(table, gear.kinematics.ratio) if is_loaded(table) else ())]
+    tried = [(shape, found) for shape in shapes if _falls(found := _candidate(shape, table, gear))]
     shape, best = _chosen(tried)
-    beside = beside_speed(table, replace(shape, law=best.law), best.fit.residuals[0])
+    mesh = shape.mesh and best.fit.gear.friction_mesh
+    beside = beside_speed(table, replace(shape, law=best.law, mesh=mesh), best.fit.residuals[0])
     return [*tried, *((more, _candidate(more, table, gear)) for more in beside)]
 
 
@@ -272,7 +284,8 @@ def _rows(table: FrictionTable, kept: NDArray[np.bool_]) -> FrictionTable:
 
 def _on_all(candidate: FrictionCandidate, table: FrictionTable, trusted: NDArray[np.bool_]) -> FrictionCandidate:
     """The same with the whole table beside it, what was left out too."""
-    whole = fit(candidate.fit.gear, table, [estimate.path for estimate in candidate.fit.estimates], training=trusted)
+    unknowns, ties = candidate.fit.plan.unknowns, candidate.ties
+    whole = fit(candidate.fit.gear, table, [each.path for each in unknowns], ties=ties, training=trusted)
     held_out = whole.predicted[0].copy()
     held_out[trusted] = candidate.held_out
     return replace(candidate, fit=whole, held_out=held_out)
@@ -358,7 +371,16 @@ def _written(candidate: FrictionCandidate, gear: Gear, known: Plain) -> Fit:
     """The fit with the law as the gear shall have it."""
     fell = any(estimate.path.endswith("breakaway") for estimate in candidate.fit.estimates)
     with warnings.catch_warnings(action="ignore", category=PassivityWarning):
-        return replace(candidate.fit, model=gear.replace(friction_input=_kept(candidate.law, known, fell)))
+        law, mesh = _kept(candidate.law, known, fell), _completed(candidate.fit)
+        return replace(candidate.fit, model=gear.replace(friction_input=law, friction_mesh=mesh))
+
+
+def _completed(found: Fit) -> Any:
+    """Return the friction of the mesh; a quadrant without loads loses as much as the measured one that is most like it."""
+    mesh: Any = found.gear.friction_mesh
+    paths = [each.path for each in found.estimates]
+    measured = [name for name in QUADRANTS if f"friction_mesh.{name}" in paths]
+    return mesh.replace(**{name: getattr(mesh, alike(name, measured)) for name in QUADRANTS}) if measured else mesh
 
 
 def _kept(found: Any, known: Plain, fell: bool) -> Any:
@@ -374,20 +396,21 @@ def _kept(found: Any, known: Plain, fell: bool) -> Any:
 
 
 def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandidate:
-    paths = [f"friction_input.{path}" for path in shape.free]
-    whole = fit(gear.replace(friction_input=shape.law), table, paths)
+    start = gear.replace(friction_input=shape.law, friction_mesh=shape.mesh or gear.friction_mesh)
+    whole = fit(start, table, shape.paths, ties=shape.followers)
     fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(FOLDS, len(table.speed))
     held_out = np.empty(len(table.speed))
     for part in np.unique(fold):
         left_out = fold == part
-        held_out[left_out] = fit(whole.gear, table, paths, training=~left_out).predicted[0, left_out]
+        rest = fit(whole.gear, table, shape.paths, ties=shape.followers, training=~left_out)
+        held_out[left_out] = rest.predicted[0, left_out]
     squares = (table.torque - held_out) ** 2
     error = float(np.sqrt(np.mean(squares)))
     spread = float(np.std(squares, ddof=1) / np.sqrt(len(squares)))
     residual = whole.residuals[0]
     return FrictionCandidate(
         shape.name, whole, held_out, error, 0.5 * spread / error if error > 0.0 else 0.0,
-        whiteness(residual[np.argsort(table.speed, kind="stable")]), information(residual, len(paths)),
+        whiteness(residual[np.argsort(table.speed, kind="stable")]), information(residual, len(shape.paths)), shape.followers,
     )  # fmt: skip
 
 

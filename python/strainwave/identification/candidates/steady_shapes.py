@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Any
 
@@ -25,6 +25,9 @@ SURE = 1e-3  # probability that chance alone gives a harmonic, over all looked f
 WAVES = 4  # harmonics taken at most
 NEAR = 0.02  # of a speed: speeds that differ by less are one
 MAP_SPEEDS, LEVELS = 8, 128  # that a map may have
+QUADRANTS = ("driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse")
+MIN_LOAD = 0.1  # of the largest load: smaller loads determine no loss
+MIN_ROWS_PER_QUADRANT = 3
 CELLS = 12  # of a turn, at most
 IN_A_CELL = 8  # samples, at least on average
 
@@ -37,16 +40,32 @@ class Shape:
         name: what it describes
         law: the law at its start
         free: paths of its free numbers, the dry torque first
+        mesh: the friction of the mesh at its start; None keeps that of the gear
+        losses: names of the free ratios of `mesh`
+        ties: names of ratios of `mesh` that follow a free one
     """
 
     name: str
     law: Any
     free: tuple[str, ...]
+    mesh: Any = None
+    losses: tuple[str, ...] = ()
+    ties: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def paths(self) -> list[str]:
+        """Paths of the free numbers in a gear."""
+        return [*(f"friction_input.{path}" for path in self.free), *(f"friction_mesh.{name}" for name in self.losses)]
+
+    @property
+    def followers(self) -> dict[str, str]:
+        """Paths in a gear that follow a free one, and its path."""
+        return {f"friction_mesh.{name}": f"friction_mesh.{other}" for name, other in self.ties.items()}
 
     def around(self, name: str, outer: type[Any], free: tuple[str, ...], **members: Any) -> Shape:
         """The same, modulated by another law."""
         inner = tuple(f"law.{path}" for path in self.free)
-        return Shape(f"{self.name}, {name}", outer(law=self.law, **members), (*inner, *free))
+        return replace(self, name=f"{self.name}, {name}", law=outer(law=self.law, **members), free=(*inner, *free))
 
 
 def over_speed(table: FrictionTable) -> Iterator[Shape]:
@@ -121,8 +140,9 @@ def beside_speed(table: FrictionTable, shape: Shape, residual: Array) -> Iterato
         yield from _lubricated(
             shape, table, "lubricated over the temperature", viscosity_fall=0.01, reference_temperature=middle
         )
-    if table.load is not None and np.ptp(np.abs(table.load)) > 0.0:
-        yield from _lubricated(shape, table, "over the load", load_sensitivity=0.1 / float(np.abs(table.load).max()))
+    if is_loaded(table) and table.load is not None:
+        without = replace(shape, name=shape.name.partition(", loss")[0], mesh=None, losses=(), ties={})
+        yield from _lubricated(without, table, "over the load", load_sensitivity=0.1 / float(np.abs(table.load).max()))
     if table.angle is not None:
         if waves := harmonics_of(table, residual):
             order, amplitude, phase = map(list, zip(*waves, strict=True))
@@ -131,19 +151,77 @@ def beside_speed(table: FrictionTable, shape: Shape, residual: Array) -> Iterato
         yield from _map(table, table.angle)
 
 
+def is_loaded(table: FrictionTable) -> bool:
+    """True if the table has loads of different size."""
+    return table.load is not None and bool(np.ptp(np.abs(table.load)) > 0.0)
+
+
+def quadrants(table: FrictionTable, ratio: float) -> tuple[str, ...]:
+    """Return the ratios of `friction.LoadDependent` at the mesh that the loads of a table determine.
+
+    Args:
+        table: speeds and loads of the input
+        ratio: of the gear, negative if the output turns the other way
+    """
+    assert table.load is not None
+    heavy = np.abs(table.load) > MIN_LOAD * np.abs(table.load).max()
+    driving, forward = table.load * table.speed > 0.0, ratio * table.speed > 0.0
+    rows = {
+        f"{power}_{way}": int(np.sum(heavy & one & other))
+        for power, one in (("driving", driving), ("backdriving", ~driving))
+        for way, other in (("forward", forward), ("reverse", ~forward))
+    }
+    return tuple(name for name, count in rows.items() if count >= MIN_ROWS_PER_QUADRANT)
+
+
+def alike(quadrant: str, measured: Sequence[str]) -> str:
+    """Return the measured quadrant that is most like one: itself, else the other sense of the same flow of power, else any."""
+    power = quadrant.partition("_")[0]
+    return next((each for each in measured if each.startswith(power)), measured[0])
+
+
+def under_load(table: FrictionTable, ratio: float) -> Iterator[Shape]:
+    """Yield shapes over the speed with a loss in proportion to the load: one ratio, one each way of the power, one a quadrant.
+
+    Quadrants without loads take no part.
+    """
+    measured = quadrants(table, ratio)
+    if not measured or table.load is None:
+        return
+    way, size = np.sign(table.speed), np.abs(table.load)
+    columns = np.stack([np.ones_like(size), np.abs(table.speed), size], axis=1)
+    loss = float(np.clip((np.linalg.pinv(columns, rcond=1e-10) @ (way * table.torque))[2], 1e-3, 1.0))
+    alone = replace(table, torque=table.torque - way * loss * size)
+    mesh = friction.LoadDependent(**dict.fromkeys(QUADRANTS, loss))
+    tried = {
+        "loss under load": dict.fromkeys(measured, measured[0]),
+        "losses of driving and back-driving": {name: alike(name, measured) for name in measured},
+        "losses of each quadrant": {name: name for name in measured},
+    }
+    seen = list[dict[str, str]]()
+    for name, leads in tried.items():
+        if leads not in seen:
+            seen.append(leads)
+            ties = {each: lead for each, lead in leads.items() if each != lead}
+            for shape in over_speed(alone):
+                losses = tuple(dict.fromkeys(leads.values()))
+                yield replace(shape, name=f"{shape.name}, {name}", mesh=mesh, losses=losses, ties=ties)
+
+
 def _lubricated(shape: Shape, table: FrictionTable, name: str, **changed: float) -> Iterator[Shape]:
     """The same friction, as of a bearing that load and viscosity act on; the first number changed is to be found."""
     outer = shape.law if isinstance(shape.law, friction.Asymmetric) else None
     law = shape.law if outer is None else outer.law
     if isinstance(law, friction.Stribeck):
         fall = {"breakaway": law.breakaway, "stribeck_speed": law.stribeck_speed}
-    elif isinstance(law, friction.Coulomb):  # at every speed of the table nothing is left of a fall
+    elif isinstance(law, friction.Coulomb) and "viscosity_fall" in changed:  # without a fall a load acts as a loss of the mesh
         fall = {"breakaway": 0.0, "stribeck_speed": 1e-3 * float(np.abs(table.speed).min())}
     else:
         return
     mixed = friction.MixedLubrication(coulomb=law.coulomb, viscous=law.viscous, **(fall | changed))
     (found, *_), inner = changed, "" if outer is None else "law."
-    yield Shape(f"{shape.name}, {name}", mixed if outer is None else outer.replace(law=mixed), (*shape.free, inner + found))
+    law, free = mixed if outer is None else outer.replace(law=mixed), (*shape.free, inner + found)
+    yield replace(shape, name=f"{shape.name}, {name}", law=law, free=free)
 
 
 def _map(table: FrictionTable, angle: Array) -> Iterator[Shape]:

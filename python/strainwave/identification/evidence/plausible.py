@@ -114,7 +114,8 @@ def _is_accelerating(recording: Recording, found: Fit, ratio: float) -> bool:
     speed, torque = ratio * recording.values("speed", "rad/s"), recording.values("torque", "N.m") / ratio
     if len(speed) < FEWEST:
         return False
-    residual = torque - found.gear.friction_input.steady(speed)
+    load = recording.values("load", "N.m") / ratio if "load" in recording else None
+    residual = torque - FrictionTable(speed, torque, load=load).predict(found.gear, (), np.zeros(0))[0][0]
     change = np.gradient(speed)
     columns = np.column_stack((change, np.ones_like(change)))
     rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0]

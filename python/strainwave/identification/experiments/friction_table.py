@@ -14,12 +14,16 @@ from strainwave._core import Gear
 from strainwave.analysis.branches import thinned
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
+from strainwave.friction import Viscous
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 
 Array = NDArray[np.float64]
-TABLE = 1_000  # speeds of either sign in a table, at most
-ROOM_TEMPERATURE = 293.15  # K: where no temperature was measured
-BESIDE = {"angle": "rad", "load": "N.m", "temperature": "K"}  # what else may tell friction, and its unit
+MAX_SPEEDS = 1_000  # of either sign in a table; a longer table is thinned
+ROOM_TEMPERATURE = 293.15  # K, if no temperature was measured
+BESIDE = {"angle": "rad", "load": "N.m", "temperature": "K"}  # other quantities that friction may depend on, and their units
+FRICTIONLESS = Viscous()
+MAX_LOSS = 1.0  # of the torque transmitted: a gear that loses more cannot be turned from its output
+MIN_LOSS = 0.005  # of the torque transmitted: no gear is better; a smaller loss belongs to a load of the other shaft
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,17 +68,17 @@ class FrictionTable(ComparedByFields):
             raise ValueError("the torque drives the motion instead of opposing it; give it the sign of the speed")
         beside = {name: recording.values(name, unit) for name, unit in BESIDE.items() if name in recording.names}
         whole = cls(speed, torque, len(recording), **beside)
-        return whole if len(speed) <= TABLE else whole._thinned()
+        return whole if len(speed) <= MAX_SPEEDS else whole._thinned()
 
     def _thinned(self) -> FrictionTable:
         columns = {name: values for name in ("speed", "torque", *BESIDE) if (values := getattr(self, name)) is not None}
         if "angle" in columns:  # the mean of two angles is none
-            rows = np.arange(0, len(self.speed), -(-len(self.speed) // (2 * TABLE)))
+            rows = np.arange(0, len(self.speed), -(-len(self.speed) // (2 * MAX_SPEEDS)))
             taken: dict[str, Any] = {name: values[rows] for name, values in columns.items()}
             return replace(self, **taken)
         sides = [np.flatnonzero(side) for side in (self.speed < 0.0, self.speed > 0.0)]
         ordered = [side[np.argsort(self.speed[side], kind="stable")] for side in sides if len(side)]
-        means = [thinned(*(values[side] for values in columns.values()), samples=TABLE) for side in ordered]
+        means = [thinned(*(values[side] for values in columns.values()), samples=MAX_SPEEDS) for side in ordered]
         joined = [np.concatenate(each) for each in zip(*means, strict=True)]
         thin: dict[str, Any] = dict(zip(columns, joined, strict=True))
         return replace(self, **thin)
@@ -97,4 +101,81 @@ class FrictionTable(ComparedByFields):
         angle, load = (none if values is None else values for values in (self.angle, self.load))
         temperature = none + ROOM_TEMPERATURE if self.temperature is None else self.temperature
         torque, slopes = _core.differentiate_steady(model, self.speed, angle, load, temperature, list(numbers))
-        return torque[np.newaxis], slopes[:, np.newaxis]
+        if model.friction_mesh == FRICTIONLESS:
+            return torque[np.newaxis], slopes[:, np.newaxis]
+        ratio, alone = model.kinematics.ratio, model.replace(friction_input=model.friction_mesh)
+        paths = [path for path, *_ in _core.parameters(model)]
+        there = {path: number for number, (path, *_) in enumerate(_core.parameters(alone))}
+        of_mesh = [place for place, number in enumerate(numbers) if paths[number].startswith("friction_mesh.")]
+        asked = [there[paths[numbers[place]].replace("friction_mesh", "friction_input")] for place in of_mesh]
+        at_mesh, by_number = _core.differentiate_steady(
+            alone, self.speed / ratio, angle / ratio, load * ratio, temperature, asked
+        )
+        slopes[of_mesh] += by_number / ratio
+        return (torque + at_mesh / ratio)[np.newaxis], slopes[:, np.newaxis]
+
+
+def with_load(recording: Recording, ratio: float, side: str | None = "input") -> tuple[Recording, tuple[str, ...]]:
+    """Return a table with the column `load`, the torque transmitted at the side of the table, and what was assumed for it.
+
+    A dynamometer measures the whole torque of the motor and that of the output, `output_torque`: friction is what the motor
+    gives more than the output takes over the ratio. The output torque may be measured as the action or as the reaction: the
+    sign is taken that leaves less unexplained with a loss from 0 to 1. A column `load_torque` of a table of friction is counted
+    at the shaft where the loss that it causes is possible.
+
+    Args:
+        recording: speed and torque, and one of the two columns; without them it is returned as it is
+        ratio: of the gear, its size
+        side: at which speed and torque were measured
+    """
+    if side == "output":
+        loads = [recording[name] for name in ("load_torque", "output_torque") if name in recording]
+        return (_loaded(recording, recording["torque"], loads[0]) if loads else recording), ()
+    speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
+    if "output_torque" in recording:
+        at_output = recording.values("output_torque", "N.m")
+        sign = _sign_of_output(speed, torque, at_output / ratio)
+        load = sign * at_output / ratio
+        remark = f"friction is the torque of the motor less that of the output over the ratio of {ratio:g}"
+        turned = ", which is measured as the reaction: its sign is turned" if sign < 0.0 else ""
+        return _loaded(recording, torque - load, load), (f"{remark}{turned}", *_of_driving(speed, load))
+    if "load_torque" not in recording:
+        return recording, ()
+    load = recording.values("load_torque", "N.m")
+    found, _ = _plain(speed, np.sign(speed) * np.abs(torque), load)
+    at_input = MIN_LOSS <= found < MAX_LOSS or not MIN_LOSS <= ratio * found < MAX_LOSS
+    side, other = ("input", "output") if at_input else ("output", "input")
+    losses = (found, found * ratio) if at_input else (found * ratio, found)
+    remark = f"the load is counted at the {side}: the loss is {losses[0]:.3g} of it; it would be {losses[1]:.3g} at the {other}"
+    return _loaded(recording, torque, load if at_input else load / ratio), (remark,)
+
+
+def _loaded(recording: Recording, torque: Array, load: Array) -> Recording:
+    kept = {name: recording[name] for name in recording.names if name not in ("output_torque", "load_torque")}
+    units = {name: recording.unit(name) for name in kept} | {"torque": "N.m", "load": "N.m"}
+    return Recording(kept | {"torque": torque, "load": load}, units, recording.title)
+
+
+def _plain(speed: Array, torque: Array, load: Array) -> tuple[float, float]:
+    """Return the loss per load [1] by plain least squares, and the sum of squares left [N2.m2]."""
+    way = np.sign(speed)
+    columns = np.stack([way, speed, way * np.abs(load)], axis=1)
+    found = np.linalg.pinv(columns, rcond=1e-10) @ torque
+    return float(found[2]), float(np.sum((torque - columns @ found) ** 2))
+
+
+def _sign_of_output(speed: Array, torque: Array, load: Array) -> float:
+    tried = {sign: _plain(speed, torque - sign * load, load) for sign in (1.0, -1.0)}
+    possible = [sign for sign, (loss, _) in tried.items() if -MIN_LOSS <= loss < MAX_LOSS]
+    return min(possible or tried, key=lambda sign: tried[sign][1])
+
+
+def _of_driving(speed: Array, load: Array) -> tuple[str, ...]:
+    """Return what a dynamometer leaves open if the power flows one way only."""
+    power = speed * load
+    if power.min() < -0.05 * np.abs(power).max() and power.max() > 0.05 * np.abs(power).max():
+        return ()
+    return (
+        "the power flows one way only: the loss rests on the ratio and on the scales of both torques, of which an error of 1 % "
+        "changes it by 0.01",
+    )
