@@ -249,7 +249,7 @@ def _number(each: CombinedParameter, found: Identified) -> dict[str, Any]:
     return {
         "path": told.path,
         "name": name_of(told),
-        "law": told.law if told.law.startswith(("in ", "of ")) else "",
+        "law": told.law if told.law.startswith(("in ", "of ", "at ")) else "",
         "unit": unit(told.unit),
         "value": uncertain(told.value, told.sigma),
         "source": each.source if len(each.mean_of) < 2 else f"the mean of {len(each.mean_of)} files",

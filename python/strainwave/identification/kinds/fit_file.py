@@ -19,6 +19,13 @@ from strainwave.identification.kinds.two_encoders import encoders
 from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.curves import curves_of
+from strainwave.identification.results.determined import (
+    AT_SPEEDS,
+    MIN_SPEEDS,
+    best_known_friction,
+    different_speeds,
+    friction_at_speeds,
+)
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, is_of, with_torque
 from strainwave.identification.twin import Twin, twin
@@ -87,11 +94,21 @@ def friction_of(file: Recognised, table: Recording, uncertain: float, known: Gea
     fast = too_fast(ratio * table.values("speed", "rad/s"))
     if fast and not known.accept:
         raise ValueError(f"{fast}; if they are right, --accept")
+    speed, torque = table.values("speed", "rad/s"), table.values("torque", "N.m")
+    if "load" not in table and different_speeds(speed) < MIN_SPEEDS:
+        at_speeds, few = friction_at_speeds(speed, torque, side=file.side or "input")
+        at_speeds = tuple(each.resting_on(uncertain) for each in at_speeds)
+        return FileResult(file.path.name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few)), known
     side = "output" if file.side == "output" else known.side  # one that was only found is doubted if the set speaks against it
     found = twin(known.gear_set, friction=table, side=side, sources={"friction": file.path.name})
     finding = _of_twin(file, found, known.accept)
-    told = tuple(each.resting_on(uncertain) for each in finding.estimates)
-    finding = replace(finding, estimates=told, remarks=(*finding.remarks, *of_levels(table)))
+    estimates = finding.estimates
+    if any(each.why for each in estimates):
+        fit = found.evidence[-1].fit
+        speeds = np.quantile(ratio * np.abs(speed), np.linspace(0.0, 1.0, 9)).tolist()
+        estimates = (*estimates, best_known_friction(fit.gear, [each.path for each in fit.estimates], fit.covariance, speeds))
+    estimates = tuple(each.resting_on(uncertain) for each in estimates)
+    finding = replace(finding, estimates=estimates, remarks=(*finding.remarks, *of_levels(table)))
     if finding.refused or known.knows_better("friction_input", finding.estimates):
         return finding, known
     parts = {"friction_input", "friction_mesh"} if "load" in table else {"friction_input"}

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import listed
 
 Array = NDArray[np.float64]
@@ -67,7 +68,7 @@ class FileEstimate:
     @property
     def label(self) -> str:
         """Its path, with what distinguishes it from others of that path."""
-        return f"{self.path} ({self.law})" if self.law.startswith(("in ", "of ")) else self.path
+        return f"{self.path} ({self.law})" if self.law.startswith(("in ", "of ", "at ")) else self.path
 
     @property
     def is_of_torque(self) -> bool:
@@ -98,6 +99,7 @@ class FileResult:
         part_of: the table that it is one point of, with others; empty where it stands for itself
         curves: measured beside modelled, as `curves` of this package makes them; None where nothing was fitted
         between: the same of the angle between the shafts, with its model as the title; None where it was not fitted
+        held_out: the error on data that took no part in the fit; None where nothing was held out
     """
 
     name: str
@@ -113,6 +115,7 @@ class FileResult:
     part_of: str = ""
     curves: Recording | None = None
     between: Recording | None = None
+    held_out: HeldOut | None = None
 
 
 @dataclass(frozen=True)

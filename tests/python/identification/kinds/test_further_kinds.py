@@ -174,9 +174,13 @@ def test_the_speed_may_stand_in_the_mapping_file(tmp_path: Path) -> None:
     assert told(found, "coulomb")[0] == pytest.approx(COULOMB, rel=0.02)
 
 
-def test_too_few_speeds_are_refused_with_what_to_record(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"2 records at 2 different speeds.*record 4 speeds or more"):
-        identify(START, [run(tmp_path / "slow.csv", 10.0), run(tmp_path / "fast.csv", 100.0)])
+def test_too_few_speeds_give_the_friction_at_each_and_what_to_record(tmp_path: Path) -> None:
+    found = identify(START, [run(tmp_path / "slow.csv", 10.0), run(tmp_path / "fast.csv", 100.0)])
+    for each, speed in zip(found.parameters, (10.0, 100.0), strict=True):
+        assert each.estimate.law == f"at {speed:g} rad/s of the input"
+        assert abs(each.estimate.value - COULOMB - VISCOUS * speed) < 4.0 * each.estimate.sigma
+    assert found.gear_set.gear == sw.load(START)
+    assert "record 4 speeds or more" in " ".join(found.files[-1].remarks)
 
 
 def test_friction_over_the_angle_gives_waves_around_the_table(tmp_path: Path) -> None:
