@@ -123,11 +123,15 @@ def _check_labels(file: str, labels: Sequence[Label]) -> None:
 def places_of(labels: Sequence[Label], wanted: str) -> list[int]:
     """Where the columns stand that are called so; if none is, the column of this number, counted from 1.
 
+    A column of a matrix may be named by its number there: `out:3` is `out_3`.
+
     >>> places_of([Label("t [s]", "t", "s"), Label("q", "q", None)], "q"), places_of([Label("t [s]", "t", "s")], "1")
     ([1], [0])
     """
     found = [i for i, label in enumerate(labels) if label.text == wanted]
     found = found or [i for i, label in enumerate(labels) if label.name == wanted]
+    if not found and (matrix := re.fullmatch(r"(.+):([1-9]\d{0,3})", wanted, re.ASCII)):
+        found = [i for i, label in enumerate(labels) if f"{matrix[1]}_{matrix[2]}" in (label.text, label.name)]
     if not found and re.fullmatch(r"[1-9]\d{0,5}", wanted, re.ASCII) and int(wanted) <= len(labels):
         return [int(wanted) - 1]
     return found

@@ -77,7 +77,7 @@ def scope_header(data: bytes) -> ScopeHeader | None:
 
     The first column is the time of all channels, or each channel has its own time before it.
 
-    >>> rows = b"Name\\tBench\\nName\\tPos\\tTorque\\nSampleTime[ms]\\t1\\t1\\nUnit\\t\\xc2\\xb0 (Angle)\\t(None)\\n0\\t0,5\\t7\\n"
+    >>> rows = b"Name\\tPos\\tTorque\\nSampleTime[ms]\\t1\\t1\\nUnit\\t\\xc2\\xb0 (Angle)\\t(None)\\n0\\t0,5\\t7\\n"
     >>> [label.text for label in scope_header(rows).labels]
     ['time [ms]', 'Pos [°]', 'Torque']
     """
@@ -90,7 +90,7 @@ def scope_header(data: bytes) -> ScopeHeader | None:
         if first is None or "name" not in keys[:first]:
             continue
         at = first - 1 - keys[:first][::-1].index("name")
-        described = {key: row for key, row in zip(keys[at:first], rows[at:first], strict=True)}
+        described = dict(zip(keys[at:first], rows[at:first], strict=True))
         if described.keys() & set(SCOPE_KEYS):
             return ScopeHeader(_labels_of_scope(described, len(rows[first])), lines[first][0], mark)
     return None

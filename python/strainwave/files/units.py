@@ -71,7 +71,7 @@ _WORDS = {
     "Nm": "N*m", "NM": "N*m", "Ncm": "N*cm", "Nmm": "N*mm", "mNm": "mN*m", "kNm": "kN*m", "Nms": "N*m*s", "kgm": "kg*m",
     "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "RPM": "rpm", "ohm": "Ohm", "sec": "s", "msec": "ms",
     "cNm": "cN*m", "kgfm": "kgf*m", "kgfcm": "kgf*cm", "Grad": "deg", "tr": "rev", "Umdr": "rev", "Upm": "rpm", "UPM": "rpm",
-    "degree": "deg", "degrees": "deg",
+    "degree": "deg", "degrees": "deg", "turn": "rev", "turns": "rev", "revs": "rev", "rot": "rev",
 }  # fmt: skip
 # As catalogues write minutes and seconds of arc: arc-min, arc min, arc. min., arcminutes, Winkelminuten.
 _OF_ARC = re.compile(
@@ -81,7 +81,9 @@ _OF_ARC = re.compile(
 _PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s"}  # as the data sheets of sensors write them
 
 # What an encoder counts, where the counts of one revolution are said: counts/16384, inc/4096/s.
-_COUNTED = re.compile(r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII | re.IGNORECASE)
+_COUNTED = re.compile(
+    r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII | re.IGNORECASE
+)
 
 # A share of a rated value, as drives report torque and current: permille of 0.4 N.m, % of 12 A.
 _SHARES = {"%": 1e-2, "percent": 1e-2, "\u2030": 1e-3, "permille": 1e-3, "promille": 1e-3, "permil": 1e-3}

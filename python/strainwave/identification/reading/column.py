@@ -28,6 +28,8 @@ class Column:
         regressor: whether it is a torque of which a share that is not known acts
         unit: its unit in the file; None where none is stated
         sure: whether its unit is stated, or its numbers tell it by themselves
+        is_open: True if its unit is not stated, and its numbers leave others
+        estimated: whether its name says that it is an estimate
         values: in SI units, once they are read
     """
 
@@ -41,6 +43,8 @@ class Column:
     regressor: bool = False
     unit: str | None = None
     sure: bool = True
+    is_open: bool = False
+    estimated: bool = False
     values: Array | None = None
 
     @property

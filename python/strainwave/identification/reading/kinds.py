@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.identification.reading.at_rest import at_rest
@@ -14,6 +15,7 @@ from strainwave.identification.reading.kind import KINDS, Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Quantity, Side
 from strainwave.identification.reading.sides import (
+    APART,
     UndecidedError,
     pair,
     side_of_motion,
@@ -24,13 +26,18 @@ from strainwave.identification.reading.sides import (
 from strainwave.identification.reading.steady import averaged, stretches
 from strainwave.messages import as_option, listed
 
+Array = NDArray[np.float64]
+
 SHAFTS: tuple[Side, Side] = ("input", "output")
 STEADY = 0.05  # of the usual speed: a record whose speed differs from it by less has one speed
 WITHIN = 0.95  # of the rows, that must lie so near: the others are its beginning and end
 SAMPLED = 500  # rows: no table of friction measured point by point has more
 FEWEST = 4  # rows of a torsion loop or branch, and speeds of a table
 TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted, it turns
+MAX_REFLECTED = 0.1  # relative: a motion of the input that differs by less from that of the output is divided by the ratio
+MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
 TWISTED = 0.3  # rad at the output: what moves by more is no twist of a gear
+MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms that are told apart, of terms of size 1
 LOADED = 0.9  # correlation of torque and angle of a spring, which an alternating torque has
 
 
@@ -131,19 +138,50 @@ def _to_and_fro_or_turns(columns: Sequence[Column]) -> Kind:
 
 
 def _friction(columns: Sequence[Column], mapping: FileMapping) -> Found:
+    speed = _needed(columns, "speed", "friction")
+    columns, load, loaded = _with_load(columns, speed)
     effort: Quantity = "torque" if _measured(columns, "torque") else "current"
-    speed, torque = _needed(columns, "speed", "friction"), _needed(columns, effort, "friction")
+    torque = _needed(columns, effort, "friction")
     side, told = side_of_table(speed, torque, mapping.side)
     order = "in no order of time" if (np.diff(speed.si) < 0.0).any() else "in the order of speed"
     why = f"its columns are {pair(speed, torque)}, {len(speed.si)} rows {order}: {KINDS['friction']}"
-    found = {"speed": speed, effort: torque, **_temperature(columns)}
+    found = {"speed": speed, effort: torque, **load, **_temperature(columns)}
     if len(speed.si) <= SAMPLED:
-        return Found("friction", found, side, (why, told))
+        return Found("friction", found, side, (why, told, *loaded))
     parts = stretches(speed.si)
     rows = sum(part.stop - part.start for part in parts)
     why = f"its columns are {pair(speed, torque)} at one speed after another: {KINDS['friction']}"
     said = f"{rows} of its {len(speed.si)} rows are steady; the means of {len(parts)} stretches at one speed are taken"
-    return Found("friction", averaged(found, parts), side, (why, told), (said,))
+    return Found("friction", averaged(found, parts), side, (why, told, *loaded), (said,))
+
+
+def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Column], dict[str, Column], tuple[str, ...]]:
+    """The columns without the torque that loads the gear, this torque by its name, and what determines it.
+
+    It is `output_torque` if the other torque drives it too, as on a dynamometer, and `load_torque` beside a torque that is
+    friction alone.
+    """
+    named = [column for column in columns if column.channel.loading]
+    torques = _measured(columns, "torque")
+    loads = named or [column for column in torques if column.channel.side == "output"]
+    own = [column for column in torques if column not in loads]
+    if len(loads) != 1 or len(own) != 1 or loads[0].said != own[0].said:
+        return columns, {}, ()
+    ((load,), (torque,)) = loads, own
+    name = "load_torque" if named or not _drives(speed.si, torque, load) else "output_torque"
+    what = "which loads the gear" if name == "load_torque" else f"which {torque.name} drives through the gear"
+    return [column for column in columns if column is not load], {name: load}, (f"{load.name} is a torque {what}",)
+
+
+def _drives(speed: Array, torque: Column, load: Column) -> bool:
+    """True if a torque contains what drives a load, not only the friction under it."""
+    way = np.sign(speed)
+    terms = np.stack([way, speed, load.si, way * np.abs(load.si)], axis=1)
+    sizes = np.linalg.norm(terms, axis=0)
+    if not sizes.all() or np.linalg.matrix_rank(terms / sizes, tol=MIN_INDEPENDENCE) < len(sizes):
+        return torque.channel.side == "input"
+    _, _, driving, rubbing = np.linalg.lstsq(terms, torque.si, rcond=None)[0]
+    return bool(abs(driving) > abs(rubbing))
 
 
 def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
@@ -153,6 +191,10 @@ def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
     if (rows := len(angle.si)) < FEWEST:
         raise UndecidedError(f"{rows} rows of {pair(angle, torque)} are no torsion loop or branch; {FEWEST} are the least")
     side = mapping.side or torque.channel.side or angle.channel.side or ("output" if twists else None)
+    by_stiffness: tuple[str, ...] = ()
+    if side is None and (stiffness := np.ptp(torque.si) / max(float(np.ptp(angle.si)), 1e-300)) > MIN_STIFFNESS_AT_OUTPUT:
+        side = "output"
+        by_stiffness = (f"its stiffness of {stiffness:.3g} N.m/rad is that of an output; at an input it is far smaller",)
     if side is None:
         raise UndecidedError(
             f"{pair(angle, torque)} are a torsion loop or branch, but no side is stated: --side input if the motor was turned "
@@ -169,7 +211,7 @@ def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
     counted = f"{torque.name} is a torque of the motor, counted at the output: {inside}"
     remarks = (counted,) if "motor" in torque.name.casefold() else ()
     told = "twist and torque are those of the output"
-    return Found("torsion", {"twist": angle, "torque": torque}, side, (why, told), remarks)
+    return Found("torsion", {"twist": angle, "torque": torque}, side, (why, told, *by_stiffness), remarks)
 
 
 def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
@@ -208,11 +250,18 @@ def _put_sided(
     if not motions:
         raise UndecidedError(f"a log needs an angle or a speed; it holds {_names(columns)}")
     sides: set[Side] = set()
+    reflected = [column for column in motions if column.channel.reflected]
     for column in motions:
         side, told = side_of_motion(column, (*motions, *torques), found.get("time"), mapping.side)
         sides.add(side)
         why.append(told)
-        _put(found, f"{side}_{column.channel.quantity}", column)
+        _put(found, f"{'reflected' if column in reflected else side}_{column.channel.quantity}", column)
+    why += _reflect(found, mapping)
+    if len(torques) > 1 and not any(column.said or column.channel.side for column in torques):
+        first = torques[0]
+        stem = first.name.removesuffix(first.which).rstrip("_.") if first.robot and first.which else first.name
+        ways = f"--column input_torque={stem} if it is that of the motor, or --column joint_torque={stem} if of the joint"
+        raise UndecidedError(f"each of {_names(torques)} may be the torque; say which, with {ways}", (), ways)
     for column in torques:
         side, told = side_of_torque(column, sides, mapping.side)
         why.append(told)
@@ -220,12 +269,35 @@ def _put_sided(
     return sides, [told for told in why if told]
 
 
+def _are_of_both(one: Column, other: Column) -> bool:
+    """True if one motion is so much larger than the other one that they are those of the input and of the output."""
+    small, large = sorted(float(np.ptp(column.si)) for column in (one, other))
+    return large > APART * small > 0.0
+
+
+def _reflect(found: dict[str, Column], mapping: FileMapping) -> list[str]:
+    """Name motions of the input that are as large as those of the output by what they are: divided by the ratio."""
+    if abs(abs(mapping.constants.get("ratio", np.inf)) - 1.0) < MAX_REFLECTED:
+        return []
+    pairs = [(found.get(f"input_{each}"), found.get(f"output_{each}"), each) for each in ("angle", "speed")]
+    why = []
+    for motor, joint, quantity in pairs:
+        if motor is None or joint is None or not np.std(joint.si) > 0.0:
+            continue
+        slope = float(np.cov(motor.si, joint.si)[0, 1] / np.var(joint.si, ddof=1))
+        if abs(abs(slope) - 1.0) < MAX_REFLECTED:
+            found[f"reflected_{quantity}"] = found.pop(f"input_{quantity}")
+            why.append(f"{motor.name} moves as far as {joint.name}: it is the {quantity} of the motor divided by the ratio")
+    return why
+
+
 def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]:
     """The motions, of two whose names say no side with those that their sizes tell; and what tells so."""
     found, why = list(motions), list[str]()
     for quantity in ("angle", "speed"):
-        pair_of = [column for column in found if column.channel.quantity == quantity and column.channel.side is None]
-        if len(pair_of) == 2:
+        pair_of = [column for column in found if column.channel.quantity == quantity]
+        open_ones = [column for column in pair_of if column.channel.side is None]
+        if len(pair_of) == 2 and open_ones and (len(open_ones) == 2 or _are_of_both(*pair_of)):
             fast, slow, told = sides_of_angles(pair_of)
             for column, side in zip((fast, slow), SHAFTS, strict=True):
                 found[found.index(column)] = replace(column, channel=column.channel._replace(side=side))

@@ -25,6 +25,7 @@ EQUAL = 1e-3  # relative: a step and a part of a revolution
 JOINT = 4.0 * np.pi  # rad: a joint that is written in radians does not get further, two turns to each side
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # what time since 1970 exceeds, in each unit
 FINER = ("ms", "us", "ns")  # than a second
+DIFFERENCES = (5000, 200)  # parts of a record over which slopes are taken, the finest first: encoders have steps
 WRAP = 0.5  # of the range of an angle: by more it does not move within a thousandth of a log, but where it begins anew
 SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
 
@@ -75,6 +76,43 @@ def missing_units(columns: Sequence[Column], raw: Mapping[int, Array]) -> dict[i
     return found
 
 
+def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
+    """Other units that the columns without a stated one may be in, by their places: those that fit their numbers as well.
+
+    Args:
+        columns: with the units that were assumed of those that state none, and their values
+    """
+    angles = [c for c in columns if c.is_open and c.channel.quantity == "angle" and not c.channel.commanded]
+    known = {speed.position for angle, speed in _pairs(columns) if not angle.is_open}
+    speeds = [c for c in columns if c.is_open and c.channel.quantity == "speed" and c.position not in known]
+    if not angles:
+        units = [unit for unit in SPEEDS if speeds and unit != speeds[0].unit]
+        return [{speed.position: unit for speed in speeds} for unit in units]
+    if any(angle in angles and not speed.is_open for angle, speed in _pairs(columns)):
+        return []
+    found = []
+    for unit in ANGLES:
+        factor = convert(1.0, unit, "rad") / convert(1.0, str(angles[0].unit), "rad")
+        units_of_speeds = [_unit_of_size(factor * convert(1.0, str(speed.unit), "rad/s")) for speed in speeds]
+        if unit == angles[0].unit or None in units_of_speeds or any(_too_far(angle, factor) for angle in angles):
+            continue
+        paired = {speed.position: str(each) for speed, each in zip(speeds, units_of_speeds, strict=True)}
+        found.append({**{angle.position: unit for angle in angles}, **paired})
+    return found
+
+
+def _too_far(angle: Column, factor: float) -> bool:
+    """True if a joint would move further than joints do, were its angle so many times as large."""
+    at_joint = angle.channel.side == "output" or (angle.robot and angle.channel.side is None)
+    return at_joint and factor * float(np.abs(angle.si).max()) > JOINT
+
+
+def _unit_of_size(size: float) -> str | None:
+    """The unit of a speed by its size [rad/s]; None if none has it."""
+    sizes = {unit: convert(1.0, unit, "rad/s") for unit in (*SPEEDS, "rev/s")}
+    return next((unit for unit, each in sizes.items() if abs(size / each - 1.0) < EQUAL), None)
+
+
 def _alone(column: Column, values: Array) -> Assumed:
     """What the numbers of a column tell by themselves."""
     there = values[np.isfinite(values)]
@@ -118,10 +156,6 @@ def _of_angle(column: Column, values: Array) -> Assumed:
     for unit, turn in (("deg", 360.0), ("rad", 2.0 * np.pi), ("rev", 1.0)):
         if step and COARSEST <= (bits := round(np.log2(turn / step))) <= FINEST and abs(turn / step / 2.0**bits - 1.0) < EQUAL:
             return Assumed(unit, f"as its steps are those of an encoder of {bits} bits", True)
-    if step and np.array_equal(values, np.round(values)) and np.ptp(values) > 1000.0:
-        name = "command" if column.channel.commanded else column.name
-        hint = as_option("unit", name, "counts/16384")
-        raise ValueError(f"column {quoted(column.name)} seems to hold counts of an encoder; say how many are a turn: {hint}")
     at_joint = column.channel.side == "output" or (column.robot and column.channel.side is None)
     if at_joint and np.abs(values).max() > JOINT:
         return Assumed("deg", f"as a joint does not reach {np.abs(values).max():.4g} rad")
@@ -157,7 +191,17 @@ def _slope(angle: Array, speed: Array, time: Array) -> float:
 
     Where an angle begins anew with each revolution it has no slope.
     """
-    apart = max(2, len(time) // 5000)
+    for parts in DIFFERENCES:
+        if slope := _slope_over(angle, speed, time, max(2, len(time) // parts)):
+            return slope
+    return 0.0
+
+
+@np.errstate(all="ignore")
+def _slope_over(angle: Array, speed: Array, time: Array, apart: int) -> float:
+    """The same over rows that are so far apart."""
+    if len(time) <= apart:
+        return 0.0
     moved = angle[apart:] - angle[:-apart]
     smooth = np.abs(moved) < WRAP * (np.nanmax(angle) - np.nanmin(angle))
     forward = np.flatnonzero(np.isfinite(moved + speed[apart:]) & (time[apart:] > time[:-apart]) & smooth)
@@ -172,7 +216,7 @@ def _fitting(slope: float, units: Mapping[int, str], angle: Column, speed: Colum
     """Pairs of units that make the slope of the angle the speed; those in radians first."""
     pairs = []
     for one in (units[angle.position],) if angle.position in sure else ANGLES:
-        for other in (units[speed.position],) if speed.position in sure else SPEEDS:
+        for other in (units[speed.position],) if speed.position in sure else SPEEDS if one != "rev" else ("rev/s", *SPEEDS):
             expected = convert(1.0, f"{one}/s", other)
             if abs(slope / expected - 1.0) < LIKE:
                 pairs.append((one, other))

@@ -1,4 +1,4 @@
-"""The speed that the name of a file says, as of one record of many at constant speed."""
+"""What the name of a file contains: the speed of one record of many at constant speed, and the joint."""
 
 from __future__ import annotations
 
@@ -17,6 +17,19 @@ _SPEED = re.compile(
     r"(?<![\w.+-])(?P<sign>[+-]|(?:neg|minus|pos|plus)[ _]?)?(?P<number>[0-9]{1,6}(?:[.p][0-9]{1,9})?)[ _]?"
     rf"(?P<unit>{'|'.join(sorted(map(re.escape, UNITS), key=len, reverse=True))})(?![a-z0-9])"
 )
+
+
+_JOINT = re.compile(r"(?<![a-z0-9])(?:joint|jnt|gelenk|axis|achse|j|q)[ _-]?0*(?P<number>[0-9]{1,2})(?![0-9a-z.])")
+
+
+def joint_in(path: Path) -> str:
+    """The joint in the name of a file; empty if it contains none, or two.
+
+    >>> joint_in(Path("joint_3_trapez.csv")), joint_in(Path("q2_run_1.csv")), joint_in(Path("run_2.csv"))
+    ('3', '2', '')
+    """
+    found = {match["number"] for match in _JOINT.finditer(path.stem.casefold())}
+    return found.pop() if len(found) == 1 else ""
 
 
 def speed_in(path: Path) -> float | None:

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from strainwave.files.labels import Label
-from strainwave.files.units import counts, measures
+from strainwave.files.units import counts, is_share, measures
 
 Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature"]
 Side = Literal["input", "output"]
@@ -66,9 +66,12 @@ NEUTRAL = (
 OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
-    "id", "est", "estimated", "estimate", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
-    "simulated", "predicted", "rne", "ff", "feedforward", "permille", "promille", "percent", "pct", "prozent",
+    "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
+    "simulated", "predicted", "rne", "ff", "feedforward",
 )  # fmt: skip
+ESTIMATED = ("est", "estimated", "estimate")  # of which the column counts only if nothing else has its quantity
+# Words for a share of a rated value, each with its unit.
+SHARES = {"permille": "permille", "promille": "permille", "percent": "%", "pct": "%", "prozent": "%"}
 # Symbols that say two things at once.
 SYMBOLS: dict[str, tuple[str, ...]] = {
     "qm": ("q", "motor"), "qg": ("q", "reference"), "ql": ("q", "link"), "qdes": ("q", "desired"), "qref": ("q", "reference"),
@@ -85,9 +88,8 @@ ROBOT = ("q", "dq", "qd", "qdot", "qp", "tau", "effort", "efforts", "eff")  # wh
 
 QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTITIES.items() for word in words}
 _SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for word in words}
-_VOCABULARY = {
-    word for word in (*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS) if len(word) > 2 and word not in ("par", "the")
-}
+_WORDS = (*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS, *ESTIMATED, *SHARES)
+_VOCABULARY = {word for word in _WORDS if len(word) > 2 and word not in ("par", "the")}
 _GREEK = str.maketrans({"ω": "omega", "τ": "tau", "θ": "theta", "φ": "phi"})
 _UNIT_NAMES = {"rpm": "rpm"}  # words that say quantity and unit
 
@@ -102,6 +104,7 @@ class Meaning(NamedTuple):
         which: what else the name says, as the number of a joint; empty where nothing
         unit: the unit that the name states, as it is written there
         robot: whether this is the word of robots for a joint's channel
+        estimated: True for an estimate of the quantity, as servo drives export of speeds
     """
 
     quantity: Quantity
@@ -110,15 +113,16 @@ class Meaning(NamedTuple):
     which: str = ""
     unit: str | None = None
     robot: bool = False
+    estimated: bool = False
 
 
 def meaning(label: Label) -> Meaning | None:
     """What a column seems to hold; None where its name and unit say nothing that is known.
 
     >>> meaning(Label("Motordrehzahl [U/min]", "Motordrehzahl", "U/min"))
-    Meaning(quantity='speed', side='input', commanded=False, which='', unit='U/min', robot=False)
+    Meaning(quantity='speed', side='input', commanded=False, which='', unit='U/min', robot=False, estimated=False)
     >>> meaning(Label("joint3_pos_deg", "joint3_pos_deg", None))
-    Meaning(quantity='angle', side='output', commanded=False, which='3', unit='deg', robot=False)
+    Meaning(quantity='angle', side='output', commanded=False, which='3', unit='deg', robot=False, estimated=False)
     """
     if label.unit is None and (alone := _of_unit_alone(label.name)):
         return alone
@@ -129,7 +133,8 @@ def meaning(label: Label) -> Meaning | None:
     quantity, at = _of_last_part(name, words, unit) or _quantity(words, unit)
     if quantity is None and any(word in COMMANDED for word in words):
         quantity = "angle"
-    if quantity is None or (unit is not None and not measures(unit, UNITS[quantity]) and not counts(unit)):
+    unit = unit or next((SHARES[word] for word in words if word in SHARES), None)
+    if quantity is None or (unit is not None and not _may_be_of(unit, quantity)):
         return None
     words = [BEHIND.get(word, word) if 0 < place - at <= FAR else word for place, word in enumerate(words)]
     sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
@@ -140,7 +145,13 @@ def meaning(label: Label) -> Meaning | None:
         which_of(words),
         unit or next((_UNIT_NAMES[word] for word in words if word in _UNIT_NAMES), None),
         at >= 0 and words[at] in ROBOT,
+        any(word in ESTIMATED for word in words),
     )
+
+
+def _may_be_of(unit: str, quantity: Quantity) -> bool:
+    """True if numbers of a quantity may be in a unit, perhaps with a number to add: of counts, or of a rated value."""
+    return measures(unit, UNITS[quantity]) or counts(unit) or (is_share(unit) and quantity in ("torque", "current"))
 
 
 def _of_last_part(name: str, words: list[str], unit: str | None) -> tuple[Quantity, int] | None:
@@ -197,16 +208,18 @@ def _parts(word: str) -> list[str] | None:
 
 
 def _without_unit(name: str) -> tuple[str, str | None]:
-    """A name whose last word, or last two, are a unit of what the others name: `torque_Nm`, `speed rad/s`, `vel_deg_s`."""
+    """A name whose last words are a unit of what the others name: `torque_Nm`, `speed rad/s`, `vel_deg_s`, `pos_deg_1`."""
     words = re.split(r"[_\s.]+", name.strip())
-    for count in (2, 1):
-        if len(words) <= count:
+    number = [words.pop()] if len(words) > 2 and words[-1].isdigit() else []
+    for count in (3, 2, 1):
+        if len(words) <= count or (count == 3 and words[-2].casefold() != "per"):
             continue
-        unit = "/".join(words[-count:])
+        unit = "/".join(word for word in words[-count:] if word.casefold() != "per")
         if any(re.fullmatch(r"J?|[A-Za-z]?\d+", word) for word in words[-count:]):  # of a joint: its number, as A1, or the word
             continue
-        rest = "_".join(words[:-count]).removesuffix("_in")  # position in rad
+        rest = "_".join([*words[:-count], *number]).removesuffix("_in")  # position in rad
         quantity, _ = _quantity(words_of(rest), None)
+        unit = {"nm": "N.m"}.get(unit, unit) if quantity == "torque" else unit
         if quantity is not None and measures(unit, UNITS[quantity]):
             return rest, unit
     return name, None
@@ -239,5 +252,5 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
 def which_of(words: list[str]) -> str:
     """What words say of a channel but its quantity and side: the number of a joint, or its name."""
     numbers = [word.lstrip("0") or "0" for word in words if word.isdigit()]
-    known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, "dot"}
+    known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *BEHIND, *ESTIMATED, *SHARES, "dot"}
     return ".".join(numbers) or "_".join(word for word in words if word not in known)

@@ -11,17 +11,20 @@ from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.recording import Recording
-from strainwave.files.tables import OpenTable, open_table
+from strainwave.files.tables import OpenTable
+from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints, read
 from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.kinds import kind_of
+from strainwave.identification.reading.layout import LaidOutTable
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
-from strainwave.identification.reading.name_of_file import speed_in
+from strainwave.identification.reading.missing_units import other_units
+from strainwave.identification.reading.name_of_file import joint_in, speed_in
 from strainwave.identification.reading.names import Side, meaning
 from strainwave.identification.reading.sides import UndecidedError
-from strainwave.identification.reading.two_part_time import with_whole_time
+from strainwave.identification.reading.source import MeasurementFile, beside, measurement_file
 from strainwave.identification.reading.wraps import unwrapped
 from strainwave.messages import listed, one_line, quoted
 
@@ -51,6 +54,8 @@ class Recognised:
         joint: what it calls the joint whose recording it is; empty where it says nothing of it
         unused: what it calls the columns that are not used
         began: the stamp in the file from which the time is counted [s]
+        alternatives: other ways to read it that its names and numbers leave open; the fit may decide between them
+        question: what to ask if the fit does not decide; empty if this reading is the usual one
     """
 
     path: Path
@@ -67,13 +72,44 @@ class Recognised:
     joint: str = ""
     unused: tuple[str, ...] = ()
     began: float = 0.0
+    alternatives: tuple[Alternative, ...] = ()
+    question: str = ""
+
+    def at_ratio(self, ratio: float) -> Recognised:
+        """The same with motions of the motor counted at the input, if the file has them divided by the ratio."""
+        recording = self.recording
+        names = [name for name in REFLECTED if name in recording]
+        if not names:
+            return self
+        kept = {name: recording[name] for name in recording.names if name not in names}
+        moved = {REFLECTED[name]: ratio * recording[name] for name in names}
+        units = {REFLECTED.get(name, name): recording.unit(name) for name in recording.names}
+        return replace(self, recording=Recording(kept | moved, units, recording.title))
 
 
-def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognised:
+REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}  # divided by the ratio, and not
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another way to read a file.
+
+    Args:
+        mapping: with which `recognise` reads it so
+        reason: the difference, in words
+        options: the difference on the command line
+    """
+
+    mapping: FileMapping
+    reason: str
+    options: str
+
+
+def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = None) -> Recognised:
     """Reads a file of measurements, and tells what it seems to be.
 
     Args:
-        path: a file of any of the formats of `Recording.read`
+        file: of any of the formats of `Recording.read`; a `MeasurementFile` is opened once, however often it is read
         mapping: what a person says of it
 
     Raises:
@@ -90,24 +126,51 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
     its columns are Drehzahl and Reibmoment, 3 rows in no order of time: a table of steady friction
     it reaches 1200 1/min, so it was measured at the input
     """
+    source = measurement_file(file)
     said = mapping or FileMapping()
-    table = open_table(path)
+    try:
+        return _recognised(source, said)
+    except UndecidedError as undecided:
+        if not undecided.ways:
+            further = _further(source, said, undecided)
+            raise ValueError(one_line(f"{source.table.file}: {undecided}{further}")) from None
+        first, *others = (said.updated(way) for way in undecided.ways)
+        found = _recognised(source, first)
+        ways = [Alternative(other, f"measured at the {other.side}", f"--side {other.side}") for other in others]
+        of_others = [
+            Alternative(each.mapping, f"{way.reason}, {each.reason}", f"{way.options} {each.options}")
+            for way in ways
+            for each in _recognised(source, way.mapping).alternatives
+        ]
+        assumed = f"no name or number determines the side: {first.side} is taken; {ways[0].options} says another one"
+        return replace(
+            found,
+            alternatives=(*found.alternatives, *ways, *of_others),
+            question=one_line(str(undecided)),
+            remarks=(assumed, *found.remarks),
+        )
+
+
+def _recognised(source: MeasurementFile, said: FileMapping) -> Recognised:
+    table = source.table
     said, remarks = _with_single_numbers(table, said)
-    table = with_whole_time(table)
-    if not said.columns and len(joints := moving_joints(table, said)) == 1:
-        said = replace(said, joint=joints[0])
-        remarks.append(f"joint {joints[0]} alone moves, and is taken; --joint says another one")
-    columns, more = read(table, chosen(table, said), said)
+    said, told = _with_joint(source, said)
+    remarks += told
+    _check_named_effort(source, said)
+    columns, decided = chosen(table, said)
+    columns, more = read(table, columns, said)
     if said.joint is not None and not any(column.which for column in columns):
         remarks.append(f"its columns name no joint: they are taken for those of joint {said.joint}")
-    remarks += more
-    said, by_name = _with_speed_of_name(columns, said, Path(path))
+    remarks += [*decided, *more]
+    said, by_name = _with_speed_of_name(columns, said, source.path)
     try:
         found = kind_of([column for column in columns if column.own], said)
     except UndecidedError as undecided:
         left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns))))
-        raise ValueError(one_line(f"{table.file}: {undecided}{left}")) from None
+        is_complete = undecided.ways or undecided.options
+        raise UndecidedError(f"{undecided}{'' if is_complete else left}", undecided.ways, undecided.options) from None
     remarks += found.remarks
+    alternatives = _other_units(columns, found.columns, said)
     series = {name: said.sign.get(name, 1) * column.si for name, column in found.columns.items()}
     neighbours = _neighbours(columns) if found.kind == "log" else {}
     regressors = {f"regressor {column.name}": column for column in columns if column.regressor}
@@ -126,7 +189,7 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
             series = {"time": when.time} | {name: values[when.rows] for name, values in series.items() if name != "time"}
     unused = _unused(table, used.values())
     return Recognised(
-        Path(path),
+        source.path,
         found.kind,
         {name: column.name for name, column in found.columns.items()},
         {name: column.unit or "1" for name, column in found.columns.items()},
@@ -137,22 +200,103 @@ def recognise(path: str | Path, mapping: FileMapping | None = None) -> Recognise
         Recording(series, {name: _unit(name, used) for name in series}, table.title),
         {column.which: name for name, column in neighbours.items()},
         tuple(regressors),
-        found.columns["output_angle"].which if "output_angle" in found.columns else "",
+        _joint_of(found.columns, source.path),
         unused,
         began,
+        alternatives,
     )
 
 
-def joints_of(path: str | Path, mapping: FileMapping | None = None) -> tuple[str, ...]:
-    """The joints that move in a file, by what it calls them; none where it holds one alone.
+def joints_of(file: str | Path | MeasurementFile, mapping: FileMapping | None = None) -> tuple[str, ...]:
+    """The joints that move in a file, by what it calls them; the one in its name if its columns name none; else none.
 
     Args:
-        path, mapping: as of `recognise`
+        file, mapping: as of `recognise`
 
     Raises:
         ValueError: the file cannot be read
     """
-    return tuple(moving_joints(open_table(path), mapping or FileMapping()))
+    source, said = measurement_file(file), mapping or FileMapping()
+    moving = moving_joints(source.table, said)
+    named = joint_in(source.path)
+    if named and (named in moving or not moving):
+        return (named,)
+    return tuple(moving)
+
+
+def _joint_of(columns: Mapping[str, Column], path: Path) -> str:
+    """The joint by the name of its column, or by that of the file."""
+    angle = next((columns[name] for name in ("output_angle", "angle", "input_angle") if name in columns), None)
+    return (angle.which if angle is not None else "") or joint_in(path)
+
+
+def _with_joint(source: MeasurementFile, said: FileMapping) -> tuple[FileMapping, list[str]]:
+    """What is said of a file, with the joint that its name contains, or that alone moves; and what determines it."""
+    moving = moving_joints(source.table, said)
+    named = joint_in(source.path)
+    if named in moving and len(moving) > 1:
+        others = listed(joint for joint in moving if joint != named)
+        remark = f"joint {named} is taken, which its name contains, while {others} move too; --joint says another one"
+        return replace(said, joint=named), [remark]
+    if len(moving) == 1:
+        remark = f"joint {moving[0]} alone moves, and is taken; --joint says another one"
+        return replace(said, joint=moving[0]), [remark]
+    return said, []
+
+
+def _check_named_effort(source: MeasurementFile, said: FileMapping) -> None:
+    """Ask for the torque or current of columns without names, whose layout contains the motion alone.
+
+    Raises:
+        UndecidedError: no one named it; says how to
+    """
+    named = {CHANNELS[ALIASES.get(name, name)].quantity for name in said.columns}
+    if source.is_of_one_quantity and not source.parts and (others := beside(source.path)):
+        paths = " ".join(str(other) for other in (source.path, *others))
+        raise UndecidedError(f"it has one quantity of a recording; name its files together: {paths}")
+    if not isinstance(source.table, LaidOutTable) or named & {"torque", "current", "voltage"}:
+        return
+    layout, labels = source.table.layout, source.table.labels
+    blocks = listed(f"{name} = column{'s' * (len(places) > 1)} {_span(places)}" for name, places in layout.efforts.items())
+    if not blocks:
+        return
+    timed = layout.time is not None or "rate" in said.constants or any(label.name == "time" for label in labels)
+    options = layout.options(timed)
+    if layout.joints > 1 and said.joint is None:
+        options = f"--joint 1 (or --joint all) {options}"
+    raise UndecidedError(f"{source.table.remark}; name the torque or current among {blocks}, as with {options}", (), options)
+
+
+def _span(places: Sequence[int]) -> str:
+    return f"{places[0] + 1}" if len(places) == 1 else f"{places[0] + 1} to {places[-1] + 1}"
+
+
+def _further(source: MeasurementFile, said: FileMapping, undecided: UndecidedError) -> str:
+    """What to add besides an answer, if that leaves further questions."""
+    if undecided.answer is None:
+        return ""
+    answered = said.updated(undecided.answer)
+    try:
+        _recognised(source, answered)
+    except UndecidedError as next_one:
+        further = _further(source, answered, next_one)
+        return f"; and add {next_one.options}{further}" if next_one.options and not next_one.ways else further
+    except ValueError:
+        return ""
+    return ""
+
+
+def _other_units(columns: Sequence[Column], found: Mapping[str, Column], said: FileMapping) -> tuple[Alternative, ...]:
+    """Other units of the channels without one, if their numbers fit them as well."""
+    names = {column.position: name for name, column in found.items()}
+    own = [column for column in columns if column.own and column.position in names]
+    ways = []
+    for units in other_units(own):
+        by_name = {names[place]: unit for place, unit in units.items()}
+        options = " ".join(f"--unit {name}={unit}" for name, unit in by_name.items())
+        reason = "in " + listed(by_name.values())
+        ways.append(Alternative(said.updated(FileMapping(units=by_name)), reason, options))
+    return tuple(ways)
 
 
 def _neighbours(columns: Sequence[Column]) -> dict[str, Column]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.messages import as_option
 
@@ -21,7 +22,20 @@ OFTEN = 0.9  # of the time: a motor that is taken for one by its speed is slower
 
 
 class UndecidedError(ValueError):
-    """What a file is, or which side a channel sits on, cannot be told; says what settles it."""
+    """A question about a file that its names and numbers leave open.
+
+    Args:
+        message: the question, and how to answer it
+        ways: mappings of which each answers it, the usual one first, if a fit can decide between them; else none
+        options: what to add to the command line
+        answer: one that may be given, as far as it shows what is asked next
+    """
+
+    def __init__(
+        self, message: str, ways: Sequence[FileMapping] = (), options: str = "", answer: FileMapping | None = None
+    ) -> None:
+        super().__init__(message)
+        self.ways, self.options, self.answer = tuple(ways), options, answer
 
 
 def side_of_table(speed: Column, torque: Column, said: Side | None) -> tuple[Side, str]:
@@ -68,14 +82,16 @@ def side_of_motion(column: Column, beside: Sequence[Column], time: Column | None
             unit = {"angle": "deg", "speed": "deg/s"}[column.channel.quantity]
             joint = f"--side output {as_option('unit', column.name, unit)}"
             may_be = f"{column.name} has no unit: it may be that of a motor in {column.unit}, or that of a joint in {unit}"
-            raise UndecidedError(f"{may_be}; say it, with --side input, or with {joint}")
+            as_joint = FileMapping(side="output", units={column.name: unit})
+            raise UndecidedError(f"{may_be}; say it, with --side input, or with {joint}", [FileMapping(side="input"), as_joint])
         return "input", f"{column.name} reaches {_per_minute(fastest)}, so it is at the input"
     others = {other.channel.side or ("output" if other.robot else None) for other in beside} - {None}
     if others == {"output"}:
         return "output", f"{column.name} stands beside channels of a joint: it is taken to be at the output"
     ways = " or ".join(f"--column {side}_{column.channel.quantity}={column.name}" for side in ("input", "output"))
     unknown = f"whether {column.name} was measured at the motor or at the output cannot be told"
-    raise UndecidedError(f"{unknown}; say it with {ways}, or with --side for all")
+    sides = [FileMapping(side="output"), FileMapping(side="input")]
+    raise UndecidedError(f"{unknown}; say it with {ways}, or with --side for all", sides)
 
 
 def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple[Side, str]:
@@ -88,13 +104,16 @@ def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple
         return column.channel.side, ""
     if said is not None:
         return said, f"{column.name} was said to be at the {said}"
+    if " of " in (column.unit or ""):
+        return "input", f"{column.name} is a share of a rated torque, which drives state of the motor"
     if column.robot:
         return "output", f"{column.name} is what robots call the torque of a joint: it is counted at the output"
     if len(sides) == 1:
         (side,) = sides
         return side, f"{column.name} stands beside motion of the {side} only: it is taken to be counted there"
     ways = f"--column input_torque={column.name} or --column joint_torque={column.name}"
-    raise UndecidedError(f"whether {column.name} is counted at the motor or at the output cannot be told; say it with {ways}")
+    unknown = f"whether {column.name} is counted at the motor or at the output cannot be told"
+    raise UndecidedError(f"{unknown}; say it with {ways}", (), ways)
 
 
 def sides_of_angles(angles: Sequence[Column]) -> tuple[Column, Column, str]:

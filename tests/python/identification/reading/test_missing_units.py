@@ -59,9 +59,7 @@ def test_radians_are_taken_where_nothing_tells(tmp_path: Path) -> None:
 
 def test_counts_are_asked_for(tmp_path: Path) -> None:
     counts = np.round(ANGLE * 1e4) * 3.0 + 7.0
-    with pytest.raises(
-        ValueError, match=r'"theta_m" seems to hold counts of an encoder; say how many are a turn: --unit theta_m='
-    ):
+    with pytest.raises(ValueError, match=r"how many counts a revolution has in theta_m; add it, as with --unit theta_m="):
         log(tmp_path, "theta_m,i", counts, SPEED)
     found = recognise(tmp_path / "log.csv", FileMapping(units={"input_angle": "counts/65536"}))
     assert found.recording["input_angle"] == pytest.approx(counts / 65536 * 2.0 * np.pi)
@@ -69,7 +67,7 @@ def test_counts_are_asked_for(tmp_path: Path) -> None:
 
 def test_counts_without_those_of_a_revolution_are_asked_for(tmp_path: Path) -> None:
     header = "Position actual value [cnt],Velocity actual value [cnt/s],current [A]"
-    message = r'"Position actual value" cannot be the angle: unit "cnt" needs the counts of one revolution; write it like '
+    message = r"Position actual value, Velocity actual value; .*=counts/16384' .*Velocity actual value=counts/16384/s'"
     with pytest.raises(ValueError, match=message):
         log(tmp_path, header, ANGLE, SPEED, SPEED)
     units = {"Position actual value": "inc/4096", "Velocity actual value": "inc/4096/s"}

@@ -1,0 +1,191 @@
+"""Files of measurements, each opened once: of a recording that stands in several files, one for each quantity, all of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.array_table import ArrayTable, Grid, grid_table
+from strainwave.files.labels import Label, Source
+from strainwave.files.tables import OpenTable, open_table
+from strainwave.identification.reading.layout import is_slope, nameless, rises_evenly, with_layout
+from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS
+from strainwave.identification.reading.own_times import with_own_times
+from strainwave.identification.reading.two_part_time import with_whole_time
+from strainwave.messages import listed, one_line
+
+Array = NDArray[np.float64]
+
+BEHIND = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # what may stand behind a quantity in a name
+MAX_PARTS = 20  # files of one recording
+
+
+@dataclass(frozen=True, eq=False)
+class MeasurementFile:
+    """A file of measurements, whose table is opened at the first use and kept.
+
+    Args:
+        path: of the file; of several files of one recording the first
+        parts: all files of a recording that has one for each quantity; empty for a recording in one file
+    """
+
+    path: Path
+    parts: tuple[MeasurementFile, ...] = ()
+
+    @cached_property
+    def raw(self) -> OpenTable:
+        """The table with the names that the file has.
+
+        Raises:
+            ValueError: the file cannot be read
+        """
+        return _together(self.parts) if self.parts else open_table(self.path)
+
+    @cached_property
+    def table(self) -> OpenTable:
+        """The table with one time, and with the names of its layout if it has no others.
+
+        Raises:
+            ValueError: the file cannot be read
+        """
+        return with_layout(with_own_times(with_whole_time(self.raw)))
+
+    @property
+    def names(self) -> set[str]:
+        """Names of the columns. Empty if the file cannot be read; `recognise` then reports the error."""
+        try:
+            return {text for label in self.table.labels for text in (label.text, label.name)}
+        except (ValueError, OSError):
+            return set()
+
+    @property
+    def is_of_one_quantity(self) -> bool:
+        """True if its name contains a quantity, and its columns have no names but that of a time."""
+        if _quantity_in(self.path) is None or self.path.is_dir():
+            return False
+        try:
+            return nameless(self.raw)
+        except (ValueError, OSError):
+            return False
+
+
+def measurement_file(file: str | Path | MeasurementFile) -> MeasurementFile:
+    """Return a file of measurements, itself if it is one."""
+    return file if isinstance(file, MeasurementFile) else MeasurementFile(Path(file))
+
+
+def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
+    """Return the files, with those that are one recording together as one.
+
+    Files are of one recording if their columns have no names, and their names differ in the quantity alone, as `q_run_1.csv`
+    and `tau_run_1.csv`.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     for name in ("t", "q", "tau"):
+    ...         np.savetxt(Path(folder, f"{name}_run_1.csv"), np.arange(30.0))
+    ...     files = [MeasurementFile(path) for path in sorted(Path(folder).iterdir())]
+    ...     [[part.path.name for part in file.parts] for file in with_parts(files)]
+    [['q_run_1.csv', 't_run_1.csv', 'tau_run_1.csv']]
+    """
+    groups = dict[object, list[MeasurementFile]]()
+    for file in files:
+        key: object = file.path
+        if file.is_of_one_quantity:
+            key = (file.path.parent, _quantity_in(file.path)[1], file.path.suffix.lower())  # type: ignore[index]
+        groups.setdefault(key, []).append(file)
+    found = list[MeasurementFile]()
+    for group in groups.values():
+        quantities = [(_quantity_in(file.path) or ("",))[0] for file in group]
+        is_one = 1 < len(group) <= MAX_PARTS and len(set(quantities)) == len(group)
+        found += [replace(group[0], parts=tuple(group))] if is_one else group
+    return found
+
+
+def beside(path: Path) -> list[Path]:
+    """Files in the folder of a file that are of its recording, by their names."""
+    own = _quantity_in(path)
+    if own is None or not path.is_file():
+        return []
+    others = (other for other in path.parent.iterdir() if other.suffix.lower() == path.suffix.lower() and other != path)
+    return sorted(other for other in others if (found := _quantity_in(other)) and found[1] == own[1] and found[0] != own[0])
+
+
+def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
+    """The quantity that a name contains, as `q_d`, and the other words; None if it contains none."""
+    words = [word for word in re.split(r"[_\-. ]+", path.stem) if word]
+    for place, word in enumerate(words):
+        plain, number = re.fullmatch(r"(.*?)(\d*)", word.casefold()).groups()  # type: ignore[union-attr]
+        if plain in QUANTITY_OF or plain in SYMBOLS:
+            is_behind = place + 1 < len(words) and words[place + 1].casefold() in BEHIND
+            end = place + 1 + is_behind
+            return "_".join(words[place:end]), (*words[:place], f"*{number}", *words[end:])
+    return None
+
+
+def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
+    """The table of a recording with one file for each quantity.
+
+    Raises:
+        ValueError: the files have different numbers of rows and no time of their own
+    """
+    read = [_Part.of(part) for part in parts]
+    angle = next((part for part in read if part.name == "q"), None)
+    for place, part in enumerate(read):
+        if part.name == "q_d" and angle is not None and is_slope(part.series, angle.series):
+            read[place] = replace(part, name="dq")
+    own = [part for part in read if part.time is not None]
+    file = one_line(listed(part.path.name for part in parts))
+    if own and len(own) == len([part for part in read if part.series]):
+        grids = [Grid(part.time, part.columns) for part in own if part.time is not None]
+        first = grids[0]
+        same = [grid for grid in grids if len(grid.time) == len(first.time) and np.array_equal(grid.time, first.time)]
+        merged = Grid(first.time, {name: values for grid in same for name, values in grid.columns.items()})
+        return grid_table(file, "", [merged, *(grid for grid in grids if grid not in same)], {})
+    rows = {part.rows for part in read}
+    if len(rows) > 1:
+        counts = listed(f"{part.path.name} has {each.rows}" for part, each in zip(parts, read, strict=True))
+        raise ValueError(f"{file}: files of one recording need the same number of rows; {counts}")
+    columns = {name: values for part in read for name, values in part.all.items()}
+    return ArrayTable(file, "", [Label(name, name, None) for name in columns], list(columns.values()))
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """One file of a recording: the quantity in its name, its series, and its time if it has one."""
+
+    name: str
+    series: list[Array]
+    time: Array | None
+    all_time: bool = field(default=False)
+
+    @staticmethod
+    def of(file: MeasurementFile) -> _Part:
+        name = (_quantity_in(file.path) or ("",))[0]
+        table = file.raw
+        numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in range(len(table.labels))])
+        series = list(numbers.values())
+        if QUANTITY_OF.get(name.casefold()) == "time":
+            return _Part("time", series[:1], None, True)
+        time = series[0] if len(series) > 1 and rises_evenly(series[0]) else None
+        return _Part(name, series if time is None else series[1:], time)
+
+    @property
+    def rows(self) -> int:
+        return len(self.series[0])
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        if len(self.series) == 1:
+            return {self.name: self.series[0]}
+        return {f"{self.name}_{number}": values for number, values in enumerate(self.series, start=1)}
+
+    @property
+    def all(self) -> dict[str, Array]:
+        return self.columns if self.time is None else {"time": self.time, **self.columns}
