@@ -23,7 +23,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from strainwave.files.labels import Source
 from strainwave.files.tables import FORMATS, OpenTable, open_table
-from strainwave.identification.identify import files_of
+from strainwave.identification.reading.source import measurement_files
 
 from tests.fuzz.laws import Case, within_memory
 from tests.fuzz.mutation import mutated_bytes, picked
@@ -55,7 +55,7 @@ Columns = dict[str, NDArray[np.float64]]
 
 def _read(path: Path) -> list[tuple[OpenTable, Columns]]:
     """The tables of a file, or of the files of a folder, each with its first columns of numbers."""
-    tables = [open_table(each) for each in (files_of(path) if path.is_dir() else [path])]
+    tables = [file.table for file in measurement_files([path]).files] if path.is_dir() else [open_table(path)]
     return [(table, _columns(table)) for table in tables]
 
 

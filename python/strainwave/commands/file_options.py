@@ -14,6 +14,7 @@ from strainwave.number_texts import is_whole, number_in
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
+    from strainwave.identification.reading.source import MeasurementFile
 
 Gear = Annotated[str, typer.Argument(help="Where to start: a catalogue set, as hfuc-25-100, or a gear file.")]
 Mapping = Annotated[Path | None, typer.Option(help="TOML file that says what is in which column, for all files or for some.")]
@@ -67,43 +68,42 @@ def mapping_from_options(
     side: Any,
     joint: str | None,
     kind: Any = None,
-    paths: Sequence[Path] = (),
+    files: Sequence[MeasurementFile] = (),
 ) -> Callable[[Path], FileMapping]:
     """What the options say of a file: of columns that it has; over what the mapping file says.
 
     Raises:
-        ValueError: an option is not written as it must be, or names what is no channel and no column of any of the paths
+        ValueError: an option is not written as it must be, or names what is no channel and no column of any of the files
     """
     from strainwave.identification.reading.channels import ALIASES, CHANNELS
     from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
+    from strainwave.identification.reading.source import measurement_file
     from strainwave.messages import pairs
 
     known = {*CHANNELS, *ALIASES}
-    names = known.union(*map(names_in, paths)) if unit else known
+    names = known.union(*(file.names for file in files)) if unit else known
     columns, units = pairs("--column", column, known), pairs("--unit", unit, names)
     constants = {name: constant_of(name, value) for name, value in pairs("--constant", constant, set(CONSTANTS)).items()}
     from_file = MappingFile.read(mapping) if mapping is not None else None
+    opened = {file.path: file for file in files}
 
     def of(path: Path) -> FileMapping:
-        there = names_in(path) if columns or units else set()
-        own = {name: wanted for name, wanted in columns.items() if wanted in there or _are_there(wanted.split(","), there)}
-        of_it = {name: each for name, each in units.items() if name in known or name in there}
+        file = opened.get(path) or measurement_file(path)
+        own = {name: each for name, each in columns.items() if file.has(each) or _are_there(each.split(","), file)}
+        of_it = {name: each for name, each in units.items() if name in known or name in file.names}
         given = FileMapping(columns=own, units=of_it, constants=constants, side=side, joint=joint, kind=kind)
         return from_file.of(path).updated(given) if from_file is not None else given
 
     return of
 
 
-def _are_there(parts: Sequence[str], names: set[str]) -> bool:
+def _are_there(parts: Sequence[str], file: MeasurementFile) -> bool:
     """True if each part is a name, or may be the number of a column."""
-    return all(part in names or (part.isascii() and part.isdigit()) for part in map(str.strip, parts))
+    return all(file.has(part) or (part.isascii() and part.isdigit()) for part in map(str.strip, parts))
 
 
 def names_in(path: Path) -> set[str]:
-    """What a file calls its columns; nothing where it cannot be read, which is told when it is."""
-    from strainwave.files.tables import open_table
+    """Column names of a file. Empty if the file cannot be read; `recognise` then reports the error."""
+    from strainwave.identification.reading.source import measurement_file
 
-    try:
-        return {text for label in open_table(path).labels for text in (label.text, label.name)}
-    except (ValueError, OSError):
-        return set()
+    return measurement_file(path).names

@@ -14,6 +14,7 @@ from strainwave.commands.file_options import Columns, Constants, Gear, Joint, Ki
 if TYPE_CHECKING:
     from strainwave.identification.identify import Identified
     from strainwave.identification.reading.mapping import FileMapping
+    from strainwave.identification.reading.source import MeasurementFiles
     from strainwave.identification.results.file_result import FileResult
     from strainwave.report.provenance import Provenance
 
@@ -43,15 +44,16 @@ def identify(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     from strainwave.files.writing import write_folder
-    from strainwave.identification.identify import files_of
     from strainwave.identification.identify import identify as identified
     from strainwave.identification.joints import ALL
+    from strainwave.identification.reading.source import measurement_files
     from strainwave.report.provenance import Provenance
 
-    read = [file for path in paths for file in files_of(path)]
-    said = mapping_from_options(mapping, column, unit, constant, side, joint, kind, read)
+    opened = measurement_files(paths)
+    read = [part.path for file in opened.files for part in file.parts or (file,)]
+    said = mapping_from_options(mapping, column, unit, constant, side, joint, kind, opened.files)
     if joint == ALL:
-        _every_joint(gear, paths, read, said, accept, out)
+        _every_joint(gear, opened, read, said, accept, out)
         return
     columns = (SpinnerColumn(), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
@@ -63,7 +65,7 @@ def identify(
             done += 1
             bar.update(task, description=name, completed=min(done, len(read)))
 
-        found = identified(gear, paths, mapping=said, accept=accept, progress=turn)
+        found = identified(gear, opened, mapping=said, accept=accept, progress=turn)
         bar.update(task, description="report", completed=len(read))
         files = _files(found, Provenance.of_this_command(read))
         write_folder(out, files)
@@ -81,7 +83,7 @@ def _files(found: Identified, provenance: Provenance) -> dict[str, str]:
 
 
 def _every_joint(
-    gear: str, paths: list[Path], read: list[Path], said: Callable[[Path], FileMapping], accept: bool, out: Path
+    gear: str, opened: MeasurementFiles, read: list[Path], said: Callable[[Path], FileMapping], accept: bool, out: Path
 ) -> None:
     """All joints of an arm: a folder for each, and one page and one table of all."""
     from rich.console import Console
@@ -92,7 +94,7 @@ def _every_joint(
     from strainwave.report.provenance import Provenance
 
     with Console(stderr=True).status("reading") as status:
-        joints = identify_joints(gear, paths, mapping=said, accept=accept, progress=status.update)
+        joints = identify_joints(gear, opened, mapping=said, accept=accept, progress=status.update)
         status.update("report")
         provenance = Provenance.of_this_command(read)
         for name, found in joints.found.items():

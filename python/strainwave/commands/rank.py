@@ -36,15 +36,14 @@ def rank(
     from strainwave.identification.rank import table_of
     from strainwave.identification.reading.kind import KINDS
     from strainwave.identification.reading.recognise import recognise
+    from strainwave.identification.reading.source import measurement_files
 
-    said, start, told = (
-        mapping_from_options(mapping, column, unit, constant, side, joint, kind, paths),
-        GearSet.read(gear),
-        list[str](),
-    )
+    files = measurement_files(paths).files
+    said = mapping_from_options(mapping, column, unit, constant, side, joint, kind, files)
+    start, told = GearSet.read(gear), list[str]()
     with Console(stderr=True).status("reading") as status:
-        for path in paths:
-            status.update(path.name)
-            file = recognise(path, said(path))
-            told += [f"{path.name}: {KINDS[file.kind]}", *(f"  {line}" for line in table_of(ranked(start, file))), ""]
+        for each in files:
+            status.update(each.path.name)
+            file = recognise(each, said(each.path))
+            told += [f"{each.path.name}: {KINDS[file.kind]}", *(f"  {line}" for line in table_of(ranked(start, file))), ""]
     print("\n".join(told).rstrip())

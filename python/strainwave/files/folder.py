@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,12 +21,13 @@ class FolderFiles(NamedTuple):
     links: list[Path]
 
 
-def files_below(folder: Path, suffixes: Collection[str]) -> FolderFiles:
+def files_below(folder: Path, suffixes: Collection[str], accepts: Callable[[Path], bool] = lambda path: False) -> FolderFiles:
     """Return the regular files with given suffixes in a folder and in the folders below it.
 
     Args:
         folder: the folder, which may be a link itself
         suffixes: in small letters, as `.csv`
+        accepts: True for a file that is taken although it has none of these suffixes
 
     Raises:
         ValueError: the folder has more than 20 000 entries, or is nested more than 64 deep
@@ -46,7 +47,7 @@ def files_below(folder: Path, suffixes: Collection[str]) -> FolderFiles:
                     folders.append((Path(entry), depth + 1))
                 elif entry.is_symlink() and (Path(entry).suffix.lower() in suffixes or entry.is_dir()):
                     links.append(Path(entry))
-                elif entry.is_file(follow_symlinks=False) and Path(entry).suffix.lower() in suffixes:
+                elif entry.is_file(follow_symlinks=False) and (Path(entry).suffix.lower() in suffixes or accepts(Path(entry))):
                     files.append(Path(entry))
     return FolderFiles(sorted(files), sorted(links))
 

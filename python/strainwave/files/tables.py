@@ -101,14 +101,10 @@ INSTEAD = {  # what to do with other files that people have
 }
 
 
-def may_be_table(path: str | Path) -> bool:
-    """True if the suffix of a file is one of `FORMATS`, or is not known and the file begins with rows of numbers."""
-    suffix = Path(path).suffix.lower()
-    return suffix in FORMATS or (suffix not in INSTEAD and is_table_of_numbers(path))
-
-
 def is_table_of_numbers(path: str | Path) -> bool:
-    """True if a file begins with several rows of as many numbers, whatever its suffix."""
+    """True if a file whose suffix is not known begins with several rows of as many numbers."""
+    if Path(path).suffix.lower() in {*FORMATS, *INSTEAD}:
+        return False
     try:
         with open_regular(path) as file:
             rows = file.read(BEGIN_BYTES).decode("ascii").splitlines()[:-1]
@@ -138,7 +134,7 @@ def open_table(path: str | Path) -> OpenTable:
     if Path(path).is_dir() and Path(path, "metadata.yaml").is_file():  # a bag of the second version
         return open_bag(path)
     suffix = Path(path).suffix.lower()
-    if suffix not in FORMATS and suffix not in INSTEAD and is_table_of_numbers(path):
+    if is_table_of_numbers(path):
         return open_text(path)
     if suffix not in FORMATS:
         *others, last = FORMATS

@@ -9,7 +9,7 @@ from typing import Any
 
 from strainwave import kinematics
 from strainwave.files.entries import Entry
-from strainwave.files.folder import LINK_NOT_FOLLOWED, FolderFiles, files_below
+from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
 from strainwave.files.tables import FORMATS
 from strainwave.identification.kinds import constant_speed_runs
@@ -20,7 +20,8 @@ from strainwave.identification.reading.duplicates import same_as
 from strainwave.identification.reading.joined_recordings import joined
 from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
+from strainwave.identification.reading.source import BAG, MeasurementFile, MeasurementFiles, measurement_files
 from strainwave.identification.results.file_result import CombinedParameter, FileResult, combine
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
 from strainwave.messages import listed, shortened
@@ -30,8 +31,6 @@ from strainwave.messages import listed, shortened
 TURNS: dict[Kind, int] = {
     "friction": 0, "effort": 0, "torsion": 2, "encoders": 4, "log": 5, "presliding": 6, "breakaway": 7,
 }  # fmt: skip
-SETTINGS = {".json", ".jsonl"}  # of a folder these are seldom measurements, and are read where they are named
-BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 RUNS = 1  # records at constant speed, all together
 ALIKE = 1e-9  # relative: two ratios that are one
 
@@ -55,7 +54,7 @@ class Identified:
 
 def identify(
     start: GearSet | str | Path,
-    files: Sequence[str | Path],
+    files: Sequence[str | Path] | MeasurementFiles,
     *,
     mapping: Callable[[Path], FileMapping] | None = None,
     accept: bool = False,
@@ -90,10 +89,11 @@ def identify(
     ('friction', 0.05)
     """
     check_arguments(files, mapping)
-    folders = [measurements_of(Path(path)) for path in files]
-    each_read = {path: _recognised(path, mapping) for folder in folders for path in folder.files}
-    for link in (link for folder in folders for link in folder.links):
+    opened = measurement_files(files)
+    each_read = {file.path: _recognised(file, mapping) for file in opened.files}
+    for link in opened.links:
         each_read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
+    check_one_joint([each for each in each_read.values() if isinstance(each, Recognised)])
     recognised = joined([each for each in each_read.values() if isinstance(each, Recognised)])
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, FileResult)}
@@ -120,7 +120,8 @@ def identify(
 
 def check_arguments(files: object, mapping: object) -> None:
     """Refuses what are no files, and no function that says something of them."""
-    if not isinstance(files, list | tuple) or not all(isinstance(each, str | Path) for each in files):
+    is_opened = isinstance(files, MeasurementFiles)
+    if not is_opened and (not isinstance(files, list | tuple) or not all(isinstance(each, str | Path) for each in files)):
         raise TypeError(f"files must be a list of paths, not {shortened(files)}")
     if mapping is not None and not callable(mapping):
         raise TypeError(f"mapping must be a function that takes a path, not {shortened(mapping)}")
@@ -147,6 +148,7 @@ class _Found:
 
     def take(self, file: Recognised) -> None:
         """Fits a file; one that shows what another one shows tells its numbers, and changes nothing of the gear."""
+        file = file.at_ratio(_with_ratio(self.known, file).gear_set.gear.kinematics.ratio)
         side = self.said(file.path).side if self.said is not None else None
         before = replace(_with_ratio(self.known, file), side=side)
         try:
@@ -204,16 +206,18 @@ def _friction_inside(file: Recognised) -> bool:
     return file.kind == "torsion" and "input_angle" in file.recording
 
 
-def _recognised(path: Path, mapping: Callable[[Path], FileMapping] | None) -> Recognised | FileResult:
+def _recognised(file: MeasurementFile, mapping: Callable[[Path], FileMapping] | None) -> Recognised | FileResult:
+    path = file.path
     if path.is_dir() and not Path(path, BAG).is_file():
         known = listed(f"*{suffix}" for suffix in FORMATS)
         return FileResult(path.name, refused=f"the folder holds no file that may be a measurement, as {known}")
     if other := other_format(path):
         return FileResult(path.name, refused=other)
     try:
-        return recognise(path, mapping(path) if mapping is not None else None)
+        found = recognise(file, mapping(path) if mapping is not None else None)
     except (ValueError, OSError) as error:
         return FileResult(path.name, refused=_without_name(str(error), path))
+    return found if not found.question else FileResult(path.name, found, refused=_without_name(found.question, path))
 
 
 def _without_name(told: str, path: Path) -> str:
@@ -222,19 +226,6 @@ def _without_name(told: str, path: Path) -> str:
         for end in (": ", " "):
             told = told.removeprefix(name + end)
     return told
-
-
-def files_of(path: Path) -> list[Path]:
-    """A file; of a folder the files in it that may be measurements; the folder itself where there are none, or it is a bag."""
-    return measurements_of(path).files
-
-
-def measurements_of(path: Path) -> FolderFiles:
-    """The files that a path stands for, and the symbolic links in a folder, which are not followed."""
-    if not path.is_dir() or Path(path, BAG).is_file():
-        return FolderFiles([path], [])
-    files, links = files_below(path, FORMATS.keys() - SETTINGS)
-    return FolderFiles(files or ([] if links else [path]), links)
 
 
 # ---- The ratio ---------------------------------------------------------------------------------------------------------

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.identify import Identified, check_arguments, identify, measurements_of
+from strainwave.identification.identify import Identified, check_arguments, identify
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
+from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
 
 ALL = "all"  # in place of the name of a joint
 MAX_JOINTS = 100  # of all files: every file is read once for each; humanoids have 50
@@ -33,7 +34,7 @@ class Joints:
 
 def identify_joints(
     start: GearSet | str | Path,
-    files: Sequence[str | Path],
+    files: Sequence[str | Path] | MeasurementFiles,
     *,
     mapping: Callable[[Path], FileMapping] | None = None,
     accept: bool = False,
@@ -53,29 +54,31 @@ def identify_joints(
     """
     check_arguments(files, mapping)
     said = mapping or (lambda path: FileMapping())
-    by_joint, left_out = dict[str, list[Path]](), dict[str, str]()
-    folders = [measurements_of(Path(each)) for each in files]
-    left_out |= {link.name: LINK_NOT_FOLLOWED for folder in folders for link in folder.links}
-    for path in (file for folder in folders for file in folder.files):
+    by_joint, left_out = dict[str, list[MeasurementFile]](), dict[str, str]()
+    opened = measurement_files(files)
+    left_out |= {link.name: LINK_NOT_FOLLOWED for link in opened.links}
+    for file in opened.files:
         try:
-            joints = joints_of(path, replace(said(path), joint=None))
+            joints = joints_of(file, replace(said(file.path), joint=None))
         except ValueError as error:
-            left_out[path.name] = str(error)
+            left_out[file.path.name] = str(error)
             continue
         if not joints:
-            left_out[path.name] = "it has not the angles of several joints by their names, and one that moves; name its joint"
+            left_out[file.path.name] = (
+                "it has not the angles of several joints by their names, and one that moves; name its joint"
+            )
         for joint in joints:
-            by_joint.setdefault(joint, []).append(path)
+            by_joint.setdefault(joint, []).append(file)
     if not by_joint:
         why = "; ".join(f"{name}: {each}" for name, each in left_out.items())
         raise ValueError(f"no file tells several joints apart, leave --joint away or name one: {why}")
     if len(by_joint) > MAX_JOINTS:
         raise ValueError(f"the files have {len(by_joint)} joints that move; at most {MAX_JOINTS} are taken: name one of them")
     found, refused = dict[str, Identified](), dict[str, str]()
-    for joint, paths in by_joint.items():
+    for joint, own in by_joint.items():
         progress(f"joint {joint}")
         try:
-            found[joint] = identify(start, paths, mapping=_of_joint(said, joint), accept=accept)
+            found[joint] = identify(start, MeasurementFiles(own, []), mapping=_of_joint(said, joint), accept=accept)
         except ValueError as error:
             refused[joint] = str(error)
     if not found:

@@ -89,9 +89,9 @@ def test_a_unit_may_be_given_twice_but_not_contradict(tmp_path: Path) -> None:
 
 def test_a_unit_that_is_not_known_is_told_by_the_reader(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
-    path.write_text("n [turns/min]\n60\n")
+    path.write_text("n [furlongs/min]\n60\n")
     with pytest.raises(
-        ValueError, match=exactly(f'{path} column "n": unit "turns/min" is not known; write it like N.m, rad/s, deg')
+        ValueError, match=exactly(f'{path} column "n": unit "furlongs/min" is not known; write it like N.m, rad/s, deg')
     ):
         Recording.from_csv(path)
     assert Recording.from_csv(path, units={"n": "rpm"}) == Recording({"n": [60.0]}, {"n": "rpm"})

@@ -14,6 +14,7 @@ from strainwave.identification.reading.mapping import FileMapping
 
 Array = NDArray[np.float64]
 
+MIN_RATIO = 2.0  # of a gear
 SMALL = 0.05  # rad of the input: what moves to and fro by less has not slid far, and hardly twists the gear
 RESTING = 0.02  # of the fastest motion: what is slower rests
 LOADED = 0.1  # of the largest torque
@@ -27,8 +28,9 @@ def at_rest(columns: Sequence[Column], mapping: FileMapping) -> Kind | None:
     angle, effort = _one(columns, ("angle",), mapping), _one(columns, ("torque", "current"), mapping)
     if angle is None or effort is None:
         return None
-    output = angle.robot or angle.channel.side == "output" or mapping.side == "output"
-    known = angle.channel.side or mapping.side
+    geared = mapping.constants.get("ratio", np.inf) >= MIN_RATIO  # without a gear, motion of the output twists none
+    output = geared and (angle.robot or angle.channel.side == "output" or mapping.side == "output")
+    known = angle.channel.side or mapping.side or (None if geared else "output")
     if known is not None and not output and np.ptp(angle.si) <= SMALL and len(turning_points(angle.si)) >= 2:
         return "presliding"
     time = next((column for column in columns if column.channel.quantity == "time"), None)

@@ -60,7 +60,9 @@ def _whole(chain: Sequence[Recognised]) -> Recognised:
 def _goes_on(one: Recognised, other: Recognised) -> bool:
     """Whether a log goes on in another file."""
     before, after = one.recording, other.recording
-    if set(before.names) != set(after.names) or one.constants != other.constants or min(len(before), len(after)) < 2:
+    if (set(before.names), one.constants, one.joint) != (set(after.names), other.constants, other.joint):
+        return False
+    if min(len(before), len(after)) < 2:
         return False
     step = float(np.median(np.diff(before.time)))
     apart = (other.began + float(after.time[0])) - (one.began + float(before.time[-1]))

@@ -22,7 +22,7 @@ from strainwave.identification.reading.layout import LaidOutTable
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.missing_units import other_units
 from strainwave.identification.reading.name_of_file import joint_in, speed_in
-from strainwave.identification.reading.names import Side, meaning
+from strainwave.identification.reading.names import Side, meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.identification.reading.source import MeasurementFile, beside, measurement_file
 from strainwave.identification.reading.wraps import unwrapped
@@ -156,6 +156,8 @@ def _recognised(source: MeasurementFile, said: FileMapping) -> Recognised:
     said, remarks = _with_single_numbers(table, said)
     said, told = _with_joint(source, said)
     remarks += told
+    if source.parts:
+        remarks.insert(0, f"one recording in files of one quantity each: {listed(part.path.name for part in source.parts)}")
     _check_named_effort(source, said)
     columns, decided = chosen(table, said)
     columns, more = read(table, columns, said)
@@ -224,6 +226,21 @@ def joints_of(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
     return tuple(moving)
 
 
+def check_one_joint(files: Sequence[Recognised]) -> None:
+    """Refuse files of several joints, as each joint has a gear of its own.
+
+    Raises:
+        ValueError: the names of files or columns contain several numbers of joints
+    """
+    joints = dict[str, str]()
+    for file in files:
+        if file.joint.isdigit():
+            joints.setdefault(file.joint, file.path.name)
+    if len(joints) > 1:
+        which = listed(f"{name} of joint {joint}" for joint, name in joints.items())
+        raise ValueError(one_line(f"each joint has a gear of its own, but {which}: add --joint {min(joints)}, or --joint all"))
+
+
 def _joint_of(columns: Mapping[str, Column], path: Path) -> str:
     """The joint by the name of its column, or by that of the file."""
     angle = next((columns[name] for name in ("output_angle", "angle", "input_angle") if name in columns), None)
@@ -234,6 +251,8 @@ def _with_joint(source: MeasurementFile, said: FileMapping) -> tuple[FileMapping
     """What is said of a file, with the joint that its name contains, or that alone moves; and what determines it."""
     moving = moving_joints(source.table, said)
     named = joint_in(source.path)
+    if said.joint is not None and named and not _is_joint(said.joint, named) and not moving_joints(source.table, FileMapping()):
+        raise ValueError(one_line(f"{source.table.file}: by its name it is of joint {named}, and not of joint {said.joint}"))
     if named in moving and len(moving) > 1:
         others = listed(joint for joint in moving if joint != named)
         remark = f"joint {named} is taken, which its name contains, while {others} move too; --joint says another one"
@@ -242,6 +261,10 @@ def _with_joint(source: MeasurementFile, said: FileMapping) -> tuple[FileMapping
         remark = f"joint {moving[0]} alone moves, and is taken; --joint says another one"
         return replace(said, joint=moving[0]), [remark]
     return said, []
+
+
+def _is_joint(said: str, named: str) -> bool:
+    return (which_of(words_of(said)) or said) == named
 
 
 def _check_named_effort(source: MeasurementFile, said: FileMapping) -> None:

@@ -105,7 +105,7 @@ def side_of_torque(column: Column, sides: set[Side], said: Side | None) -> tuple
     if said is not None:
         return said, f"{column.name} was said to be at the {said}"
     if " of " in (column.unit or ""):
-        return "input", f"{column.name} is a share of a rated torque, which drives state of the motor"
+        return "input", f"{column.name} is a share of a rated torque, which is that of the motor"
     if column.robot:
         return "output", f"{column.name} is what robots call the torque of a joint: it is counted at the output"
     if len(sides) == 1:

@@ -1,19 +1,21 @@
-"""Files of measurements, each opened once: of a recording that stands in several files, one for each quantity, all of them."""
+"""Files of measurements, each opened once; a recording with one file for each quantity is one of them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.array_table import ArrayTable, Grid, grid_table
-from strainwave.files.labels import Label, Source
-from strainwave.files.tables import OpenTable, open_table
+from strainwave.files.folder import FolderFiles, files_below
+from strainwave.files.labels import Label, Source, places_of
+from strainwave.files.tables import FORMATS, OpenTable, is_table_of_numbers, open_table
 from strainwave.identification.reading.layout import is_slope, nameless, rises_evenly, with_layout
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS
 from strainwave.identification.reading.own_times import with_own_times
@@ -24,6 +26,8 @@ Array = NDArray[np.float64]
 
 BEHIND = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # what may stand behind a quantity in a name
 MAX_PARTS = 20  # files of one recording
+SETTINGS = {".json", ".jsonl"}  # of a folder these are seldom measurements, and are read where they are named
+BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +60,20 @@ class MeasurementFile:
         """
         return with_layout(with_own_times(with_whole_time(self.raw)))
 
-    @property
+    @cached_property
     def names(self) -> set[str]:
         """Names of the columns. Empty if the file cannot be read; `recognise` then reports the error."""
         try:
             return {text for label in self.table.labels for text in (label.text, label.name)}
         except (ValueError, OSError):
             return set()
+
+    def has(self, wanted: str) -> bool:
+        """True if the file has a column of this name or number, or several that begin so, one for each joint."""
+        if not self.names:
+            return False
+        stem = re.compile(rf"{re.escape(wanted)}[_.]?\d+")
+        return bool(places_of(self.table.labels, wanted)) or any(stem.fullmatch(name) for name in self.names)
 
     @property
     def is_of_one_quantity(self) -> bool:
@@ -73,6 +84,33 @@ class MeasurementFile:
             return nameless(self.raw)
         except (ValueError, OSError):
             return False
+
+
+class MeasurementFiles(NamedTuple):
+    """Files of measurements, and the symbolic links in folders, which are not followed."""
+
+    files: list[MeasurementFile]
+    links: list[Path]
+
+
+def measurement_files(paths: Sequence[str | Path] | MeasurementFiles) -> MeasurementFiles:
+    """Return the files that paths stand for: of a folder those that may be measurements, the folder itself if it has none.
+
+    Raises:
+        ValueError, OSError: as of `files_below`
+    """
+    if isinstance(paths, MeasurementFiles):
+        return paths
+    folders = [_below(Path(path)) for path in paths]
+    files = [MeasurementFile(path) for path in dict.fromkeys(file for folder in folders for file in folder.files)]
+    return MeasurementFiles(with_parts(files), [link for folder in folders for link in folder.links])
+
+
+def _below(path: Path) -> FolderFiles:
+    if not path.is_dir() or Path(path, BAG).is_file():
+        return FolderFiles([path], [])
+    files, links = files_below(path, FORMATS.keys() - SETTINGS, is_table_of_numbers)
+    return FolderFiles(files or ([] if links else [path]), links)
 
 
 def measurement_file(file: str | Path | MeasurementFile) -> MeasurementFile:
@@ -163,7 +201,6 @@ class _Part:
     name: str
     series: list[Array]
     time: Array | None
-    all_time: bool = field(default=False)
 
     @staticmethod
     def of(file: MeasurementFile) -> _Part:
@@ -172,7 +209,7 @@ class _Part:
         numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in range(len(table.labels))])
         series = list(numbers.values())
         if QUANTITY_OF.get(name.casefold()) == "time":
-            return _Part("time", series[:1], None, True)
+            return _Part("time", series[:1], None)
         time = series[0] if len(series) > 1 and rises_evenly(series[0]) else None
         return _Part(name, series if time is None else series[1:], time)
 
