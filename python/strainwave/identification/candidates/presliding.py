@@ -21,12 +21,12 @@ from strainwave.identification.fitting.estimate import ONE_SIGMA, Estimate, stud
 
 Array = NDArray[np.float64]
 
-ELEMENTS = 4  # Maxwell elements, at most
-GRID = 24  # reaches of elements that a start is chosen from
-WORTH = 0.98  # of the error: an element more that leaves more of it is the last tried
-PARTS = 4  # of the branches, each predicted once from the others
-WHOLE, PART = 40, 10  # steps that a fit to the whole loop may try, and one that starts from there
-RATES = 3  # different ramps that tell how breakaway depends on the rate
+MAX_ELEMENTS = 4  # Maxwell
+GRID_SIZE = 24  # reaches of elements that a start is chosen from
+MAX_SHARE_LEFT = 0.98  # of the error: an element more that leaves more of it is the last tried
+PARTS = 4  # of the branches, each predicted from the others
+WHOLE_TRIALS, PART_TRIALS = 40, 10  # steps of a fit to the whole loop, and of one that starts from there
+MIN_RATES = 3  # different ramps, that determine how breakaway depends on the rate
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,36 +62,31 @@ class PreslidingCandidate(ComparedByFields):
         """Torque at which it slides [N.m]."""
         return sum(each.value for each in self.estimates if "breakaway" in each.path)
 
-    def law(self, known: Any) -> Any:
-        """The law with what a loop does not tell from another: what it slides with, and its viscous part.
+    def law(self, known: Any, *, slid: bool = True) -> Any:
+        """Return the law; what a loop does not determine, sliding and the viscous part, comes from another one.
 
         Args:
             known: law of the same friction when it slides, as from a table
+            slid: False if the loop stayed below the torque of `known`, whose levels are then taken
         """
         sliding = {name: getattr(known, name, other) for name, other in (("stribeck_speed", 1.0), ("viscous", 0.0))}
-        coulomb = min(getattr(known, "coulomb", self.breakaway), self.breakaway)
+        breakaway = self.breakaway if slid else max(known.breakaway, known.coulomb)
+        coulomb = min(getattr(known, "coulomb", breakaway), breakaway)
+        levels = {"coulomb": coulomb, "breakaway": breakaway}
         with warnings.catch_warnings(action="ignore", category=PassivityWarning):
             if len(self.estimates) == 2:
                 damping = getattr(known, "bristle_damping", 0.0)
                 return dissipating(
-                    friction.LuGre(
-                        coulomb=coulomb,
-                        breakaway=self.breakaway,
-                        bristle_stiffness=self.stiffness,
-                        bristle_damping=damping,
-                        **sliding,
-                    )
+                    friction.LuGre(bristle_stiffness=self.stiffness, bristle_damping=damping, **levels, **sliding)
                 )
-            stiffness, levels = np.array([each.value for each in self.estimates]).reshape(2, -1).tolist()
-            attraction = getattr(known, "attraction", self.breakaway)
-            return friction.MaxwellSlipFriction(
-                stiffness=stiffness, share=levels, coulomb=coulomb, breakaway=self.breakaway, attraction=attraction, **sliding
-            )
+            stiffness, share = np.array([each.value for each in self.estimates]).reshape(2, -1).tolist()
+            attraction = getattr(known, "attraction", breakaway)
+            return friction.MaxwellSlipFriction(stiffness=stiffness, share=share, attraction=attraction, **levels, **sliding)
 
 
 @dataclass(frozen=True)
 class BreakawayTorque:
-    """What ramps of torque tell of breakaway.
+    """Breakaway torque from ramps, in both directions.
 
     Attributes:
         forward: torque that breaks away towards positive angles [N.m], None where no ramp went there
@@ -104,8 +99,8 @@ class BreakawayTorque:
     slope: Estimate | None
 
 
-def fit_presliding(loop: PreslidingLoop, elements: int = ELEMENTS) -> list[PreslidingCandidate]:
-    """Fits a bristle (LuGre, Dahl) and up to four Maxwell elements to a loop of slow motion.
+def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[PreslidingCandidate]:
+    """Fit a bristle (LuGre, Dahl) and up to four Maxwell elements to a loop of slow motion.
 
     The bristle follows its law in the limit of slowness, T = s F + (T0 - s F) exp(-k |x - x0| / F) since the last reversal; an
     element clips at its level. What comes before the first reversal is not compared, for nothing is known of the friction's
@@ -135,7 +130,7 @@ def fit_presliding(loop: PreslidingLoop, elements: int = ELEMENTS) -> list[Presl
     for count in range(1, elements + 1):
         name = f"{count} Maxwell element{'s' if count > 1 else ''}"
         tried.append(_candidate(name, _elements(loop), _elements_start(loop, begun, count), loop, begun, branch))
-        if count > 1 and tried[-1].error > WORTH * tried[-2].error:
+        if count > 1 and tried[-1].error > MAX_SHARE_LEFT * tried[-2].error:
             break
     best = min(tried, key=lambda candidate: candidate.error)
 
@@ -154,7 +149,7 @@ def fit_presliding(loop: PreslidingLoop, elements: int = ELEMENTS) -> list[Presl
 
 
 def breakaway_torque(ramps: Sequence[Breakaway]) -> BreakawayTorque:
-    """Breakaway torque of each direction, with its interval, and how it depends on the rate of the ramps.
+    """Return the breakaway torque of each direction, with its interval, and how it depends on the rate of the ramps.
 
     Raises:
         ValueError: no ramp
@@ -170,7 +165,7 @@ def breakaway_torque(ramps: Sequence[Breakaway]) -> BreakawayTorque:
             columns.append(column)
             names.append(name)
     spread = len(np.unique(rate.round(1)))
-    if spread >= RATES and len(ramps) > len(columns) + 1:
+    if spread >= MIN_RATES and len(ramps) > len(columns) + 1:
         columns.append(rate - rate.mean())
         names.append("breakaway per decade of the rate")
     jacobian = np.stack(columns, axis=1)
@@ -232,7 +227,7 @@ def _elements_start(loop: PreslidingLoop, begun: NDArray[np.bool_], count: int) 
     from scipy.optimize import nnls
 
     largest = 0.5 * float(np.max(np.abs(np.diff(loop.angle[[0, *loop.turns, -1]]))))
-    reach = np.geomspace(0.01, 1.0, GRID) * largest
+    reach = np.geomspace(0.01, 1.0, GRID_SIZE) * largest
     one = np.ones(len(loop.angle))
     bent = [np.asarray(hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[float(each)]).trace(loop.angle)) for each in reach]
     weights, _ = nnls(np.stack([*bent, one, -one], axis=1)[begun], loop.torque[begun])
@@ -256,13 +251,13 @@ def _candidate(
     name: str, predict: Predict, start: Array, loop: PreslidingLoop, begun: NDArray[np.bool_], branch: NDArray[np.int_]
 ) -> PreslidingCandidate:
     count = len(start) - (2 if name == "bristle" else 1)
-    found = _solved(predict, start, loop.torque, begun, count, WHOLE)
+    found = _solved(predict, start, loop.torque, begun, count, WHOLE_TRIALS)
     held_out = predict(found)
     parts, again = branch % PARTS, branch > branch[begun].min()  # the first branch tells how it began, and is never left out
     for part in np.unique(parts[again]):
         left_out = again & (parts == part)
         if (begun & ~left_out).sum() > len(found):
-            held_out[left_out] = predict(_solved(predict, found, loop.torque, begun & ~left_out, count, PART))[left_out]
+            held_out[left_out] = predict(_solved(predict, found, loop.torque, begun & ~left_out, count, PART_TRIALS))[left_out]
     predicted = predict(found)
     residual = (loop.torque - predicted)[begun]
     covariance, freedom = covariance_of(_slopes(predict, found)[begun], residual[np.newaxis])

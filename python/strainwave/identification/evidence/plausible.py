@@ -21,6 +21,7 @@ APART = 10.0  # gears of one kind differ by less: by a factor of three in fricti
 SPREAD = 1.3  # by which gears of one kind differ in stiffness, as makers say
 NEAR = 4.0  # a mistake explains a factor that it comes as near to as this
 MOVING = 0.5  # of what a table leaves unexplained: if acceleration explains more, the table is a log
+MIN_RATIO = 2.0  # of a gear: the friction of a joint without one is not compared with that of a gear
 FEWEST = 30  # rows of a log; tables of steady friction are shorter, or in no order that acceleration could follow
 ELASTIC = 0.2  # of the torque at the ends of a loop: a gear carries more of it by its spring
 
@@ -34,6 +35,8 @@ def doubts_of_table(recording: Recording, found: Fit, start: Gear, side: str | N
             "its torque follows the acceleration: this is a log of a moving drive, not a table of steady friction",
             "average the torque over stretches of constant speed, one row for each; or give the log as --log",
         )
+        return
+    if abs(start.kinematics.ratio) < MIN_RATIO:
         return
     speed = float(np.exp(np.mean(np.log(np.abs(table.speed)))))
     measured, known = found.gear.friction_input.steady(speed), start.friction_input.steady(speed)

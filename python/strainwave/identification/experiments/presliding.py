@@ -1,4 +1,4 @@
-"""Small motion at rest: torque over a few turns' hundredth parts to and fro, and ramps of torque until a shaft breaks away."""
+"""Small motion at rest: loops of a hundredth of a turn, and ramps of torque until a shaft breaks away."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from strainwave.identification.experiments.experiment import sensible
 
 Array = NDArray[np.float64]
 
-SURE = 6.0  # standard deviations of the angle's noise, that a shaft must leave its place by
-FEWEST = 8  # samples of a ramp
-TRIES = 50  # of the line that a shaft follows while it sticks
-LATER = 4.0  # times as far: the second mark by which the beginning of the motion is found
+MIN_MOTION_SIGMA = 6.0  # of the angle's noise: a smaller motion is none
+MIN_SAMPLES_OF_RAMP = 8
+FIRST_SHARE = 0.5  # of the largest torque of a ramp, below which a shaft is first taken to stick
+MAX_LINES = 50  # tried for what a shaft follows while it sticks
+SECOND_MARK = 4.0  # times as far: the second mark by which the beginning of the motion is found
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +69,7 @@ class PreslidingLoop(ComparedByFields):
 
 @dataclass(frozen=True)
 class Breakaway:
-    """One ramp of torque, and where it broke the shaft away.
+    """The point of a ramp of torque at which the shaft breaks away.
 
     Attributes:
         time: when [s]
@@ -84,16 +85,17 @@ class Breakaway:
 
 
 def breakaways(recording: Recording, *, motion: float | None = None) -> list[Breakaway]:
-    """Where ramps of torque break a shaft away.
+    """Return where ramps of torque break a shaft away.
 
     A ramp is a stretch over which the size of the torque rises from small values. The shaft has broken away where its angle
-    leaves the line that it followed along the ramp before; as it then accelerates from rest, the times t1 and t2 at which it is
-    off by `motion` and by four times as much tell when it began, 2 t1 - t2 (a parabola).
+    leaves the line that it followed along the ramp before, by more than it had bent elastically: bristles yield long before
+    they slide. As it then accelerates from rest, the times t1 and t2 at which it is off by so much and by four times as much
+    determine when it began, 2 t1 - t2 (a parabola).
 
     Args:
         recording: columns time, torque and angle; the angle may have any zero
-        motion: how far off counts as motion [rad]; six standard deviations of the angle's noise, or two of its steps, if not
-            given
+        motion: the least that counts as motion [rad]; six standard deviations of the angle's noise, or two of its steps, if
+            not given
 
     Returns:
         one entry for each ramp that broke the shaft away, in the order of time
@@ -114,7 +116,7 @@ def breakaways(recording: Recording, *, motion: float | None = None) -> list[Bre
 
 
 def one_way(path: Array, turns: list[int]) -> Array:
-    """The path with each branch between its turning points monotone, as near to it as can be (isotonic regression).
+    """Return the path with each branch between its turning points monotone, as near to it as can be (isotonic regression).
 
     The running extreme would run ahead of noise on every branch, and so make every reversal longer than it was.
 
@@ -135,11 +137,11 @@ def _resolution(angle: Array) -> float:
     steps = np.abs(np.diff(angle))
     smallest = float(steps[steps > 0.0].min(initial=np.inf))
     quantised = np.mean(steps == 0.0) > 0.2  # an encoder that stands still repeats itself
-    return max(SURE * noise(angle), 2.0 * smallest if quantised and np.isfinite(smallest) else 0.0, 1e-12)
+    return max(MIN_MOTION_SIGMA * noise(angle), 2.0 * smallest if quantised and np.isfinite(smallest) else 0.0, 1e-12)
 
 
 def _ramps(torque: Array) -> list[slice]:
-    """Stretches of one sign, each from where its size was least to its end."""
+    """Return stretches of one sign, each from where its size was least to its end."""
     size, level = np.abs(torque), 0.1 * float(np.abs(torque).max())
     high = np.concatenate([[False], size > level, [False]])
     edges = np.flatnonzero(np.diff(high.astype(int)))
@@ -148,7 +150,7 @@ def _ramps(torque: Array) -> list[slice]:
         before = first
         while before > 0 and size[before - 1] < size[before]:
             before -= 1
-        if last - before >= FEWEST:
+        if last - before >= MIN_SAMPLES_OF_RAMP:
             ramps.append(slice(before, last))
     return ramps
 
@@ -157,19 +159,21 @@ def _broken(time: Array, torque: Array, angle: Array, threshold: float) -> Break
     way = np.sign(torque[len(torque) // 2])
     off = way * (angle - angle[0])
     top = int(np.argmax(np.maximum.accumulate(way * torque)))
-    near = np.arange(len(off)) <= top
-    for _ in range(TRIES):  # the line that the shaft follows while it sticks, from what is not off it
-        if near.sum() < FEWEST // 2:
+    near = (np.arange(len(off)) <= top) & (way * torque <= FIRST_SHARE * way * torque[top])
+    for _ in range(MAX_LINES):  # the line that the shaft follows while it sticks, from what is not off it
+        if near.sum() < MIN_SAMPLES_OF_RAMP // 2:
             return None
         line = np.polynomial.Polynomial.fit(way * torque[near], off[near], 1, domain=[])
-        away = off - line(way * torque)
-        marks = [np.flatnonzero(_stays(away > k * threshold)) for k in (1.0, LATER)]
-        if len(marks[0]) == 0 or len(marks[1]) == 0:
+        away, bent = off - line(way * torque), line(way * torque) - line(way * torque[0])
+        least = np.maximum(threshold, bent)
+        gone = np.flatnonzero(_stays(away > least))
+        if len(gone) == 0:
             return None
-        before, near = near, near & (np.arange(len(off)) < marks[0][0])
+        before, near = near, near & (np.arange(len(off)) < gone[0])
         if np.array_equal(before, near):
             break
-    first, second = (float(time[mark[0]]) for mark in marks)
+    farther = np.flatnonzero(_stays(away > SECOND_MARK * least[gone[0]]))
+    first, second = float(time[gone[0]]), float(time[farther[0] if len(farther) else gone[0]])
     begun = max(2.0 * first - second, float(time[0]))
     rising = time <= first
     rate, level = np.polynomial.polynomial.polyfit(time[rising] - begun, way * torque[rising], 1)[::-1]

@@ -19,14 +19,13 @@ IRREGULARITY_SIGMA = 3.0  # of the speed over the middle of a stretch: a larger 
 MAX_CURVATURE = (
     0.8  # share of the variation of the speed that a parabola explains: more is an oscillation, not a constant speed
 )
-MAX_BACKWARD = 0.1  # of the way of a stretch: irregular motion does not go back by more
+MAX_BACKWARD = 0.1  # of the way: a record one way does not go back by more
 MIN_MOVING_SPEED = 0.05  # of the largest speed of a record: slower parts rest
 NOISE_SIGMA = 8.0  # of the angle: what moves by less over a part of the record rests
 PARTS = 50  # of a record, over each of which a mean speed is taken
 MIN_ROWS = 40  # of a record whose angle determines speeds
 MIN_ROWS_OF_STRETCH = 20
-MIN_SHARE_ONE_WAY = 0.5  # of the moving time, that stretches at constant speed fill in a record of one direction
-MIN_SHARE_BOTH_WAYS = 0.9  # the same of a record of both directions; below, it is a log
+MIN_STEADY_SHARE = 0.5  # of the moving time, that stretches at constant speed fill; a record that has less is a log
 MAX_ROWS_OF_LEVEL = 2_000  # of a stretch, of which its level is found; a longer one is thinned
 MIN_GRAVITY_ANGLE = 0.2  # rad: over less gravity is a constant
 ASYMMETRY = 0.1  # of friction: standard deviation of the relative difference between both directions (assumed)
@@ -87,10 +86,10 @@ def constant_speeds(time: Array, angle: Array) -> list[slice]:
     pieces = [slice(int(there[first]), int(there[last - 1]) + apart + 1) for first, last in pairwise(ends)]
     moved = sum(float(time[piece.stop - 1] - time[piece.start]) for piece in pieces)
     found = [part for piece in pieces if (part := _constant(time, angle, piece)) is not None]
-    one_way = len({float(np.sign(angle[part.stop - 1] - angle[part.start])) for part in found}) == 1
-    least = MIN_SHARE_ONE_WAY if one_way else MIN_SHARE_BOTH_WAYS
     steady = sum(float(time[part.stop - 1] - time[part.start]) for part in found)
-    return found if steady >= least * moved else []
+    turned = [float(angle[piece.stop - 1] - angle[piece.start]) for piece in pieces]
+    one_way = abs(sum(turned)) > (1.0 - MAX_BACKWARD) * sum(map(abs, turned))
+    return found if one_way and steady >= MIN_STEADY_SHARE * moved else []
 
 
 def _constant(time: Array, angle: Array, piece: slice) -> slice | None:
@@ -181,11 +180,11 @@ def _with_gravity(stretches: Sequence[tuple[Array, Array | None]], before: Array
     def left_by(found: Array) -> list[Array]:
         return np.split(torque - jacobian @ found, np.cumsum(counts)[:-1])
 
-    first = left_by(np.linalg.lstsq(jacobian, torque, rcond=None)[0])
+    first = left_by(np.asarray(np.linalg.lstsq(jacobian, torque, rcond=None)[0], float))
     alike = sum(float(each @ each) * max(correlation_length(each), 1.0) for each in first) / len(torque)
     scale = max(float(np.sqrt(alike)), 1e-300)  # of a row, so that rows that are alike do not outweigh what is assumed
     rows, values = np.concatenate((jacobian / scale, known)), np.concatenate((torque / scale, np.zeros(len(known))))
-    found = np.linalg.lstsq(rows, values, rcond=None)[0]
+    found = np.asarray(np.linalg.lstsq(rows, values, rcond=None)[0], float)
     residuals = left_by(found)
     covariance, _ = posterior_of(jacobian / scale, [each[np.newaxis] / scale for each in residuals], known)
     cosine, sine = found[many:].tolist()

@@ -16,9 +16,10 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, plain, with_torque
 
-CLEARLY = 3.0  # standard deviations
-HALF = 0.5  # of a value: a number whose standard deviation is larger is not told
+SIGNIFICANCE_SIGMA = 3.0  # beyond which two numbers differ
+MAX_RELATIVE_SIGMA = 0.5  # of an estimate that is determined
 SLIDING = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with bristles has, too
+BRISTLES = (friction.LuGre, friction.MaxwellSlipFriction)
 NO_RAMP = "no ramp went that way"
 
 
@@ -30,24 +31,32 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     """
     recording, uncertain = at_input(file, known)
     loop = PreslidingLoop.of(recording)
+    slides = _sliding_beyond(0.5 * float(np.ptp(loop.torque)), known)
     best, *_ = fit_presliding(loop)
-    told = tuple(_elements(best, uncertain))
+    slid = best.reach >= 1.0 and slides is None
+    told = tuple(_elements(best, uncertain, slid=slid))
     begun = np.arange(len(loop.angle)) >= loop.turns[0]
     error = best.error / float(np.std(loop.torque[begun]))
     remarks = [*file.remarks]
-    if best.reach < 1.0:
-        remarks.append(f"the shaft moved {best.reach:.2g} times as far as it must to slide: the torque is told only from below")
+    if slides is not None:
+        remarks.append(
+            f"its torque stays below the {slides:.3g} N·m at which the shaft slides by other files: it determines the "
+            "stiffness, and the torque from below"
+        )
+    elif not slid:
+        remarks.append(
+            f"the shaft moved {best.reach:.2g} times as far as it must to slide: it determines the torque from below only"
+        )
     sliding, after = known.sliding(), known
     if not isinstance(sliding, SLIDING):
-        remarks.append(
-            f"the gear keeps its friction law, {sliding.name}, which has no bristles; the numbers stand in the results"
-        )
-    elif best.reach >= 1.0:
-        law = best.law(sliding)
+        why = "which has bristles by an earlier file" if isinstance(sliding, BRISTLES) else "which has no bristles"
+        remarks.append(f"the gear keeps its friction law, {sliding.name}, {why}; the numbers stand in the results")
+    elif best.reach >= 1.0 or slides is not None:
+        law = best.law(sliding, slid=slid)
         if not isinstance(sliding, friction.Stribeck):
             remarks.append("a Stribeck speed of 1 rad/s is assumed in the gear, as no table tells it")
-        level = next(each for each in told if each.path.endswith(("breakaway", "share[0]")))
-        if sliding.coulomb - best.breakaway > CLEARLY * level.sigma and sliding.coulomb > 1.01 * best.breakaway:
+        level = next(each.sigma for each in told if each.path.endswith(("breakaway", "share[0]")))
+        if slid and sliding.coulomb - best.breakaway > SIGNIFICANCE_SIGMA * level and sliding.coulomb > 1.01 * best.breakaway:
             remarks.append(
                 f"it breaks away at {best.breakaway:.3g} N·m, below the {sliding.coulomb:.3g} N·m with which it slides: "
                 "the smaller one is taken in the gear"
@@ -60,13 +69,24 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     return FileResult(file.path.name, file, _in_words(best), told, error, tuple(remarks), curves=curves), after
 
 
+def _sliding_beyond(largest: float, known: GearSoFar) -> float | None:
+    """Return the torque at which the input slides by other files, if it exceeds the largest of a loop beyond doubt [N.m]."""
+    law = known.sliding()
+    if "friction_input" not in known.determined or not isinstance(law, (*SLIDING, friction.LuGre)):
+        return None
+    entries = [entry for path, entry in known.gear_set.sources.items() if plain(path) == "gear.friction_input.coulomb"]
+    sigma = max((entry.uncertainty or 0.0 for entry in entries), default=0.0)
+    level = max(law.coulomb, law.breakaway)
+    return level if level - SIGNIFICANCE_SIGMA * sigma > largest else None
+
+
 def _in_words(best: PreslidingCandidate) -> str:
     return "a bristle (LuGre)" if best.name == "bristle" else f"{best.name} (Maxwell slip)"
 
 
-def _elements(best: PreslidingCandidate, uncertain: float) -> Iterator[FileEstimate]:
-    """The numbers of a law with bristles, under the names that it has for them."""
-    short = "" if best.reach >= 1.0 else "the loop never slid, so that it tells the torque from below only"
+def _elements(best: PreslidingCandidate, uncertain: float, *, slid: bool) -> Iterator[FileEstimate]:
+    """Yield the numbers of a law with bristles, under the names that it has for them."""
+    short = "" if slid else "the loop never slid, so that it determines the torque from below only"
     if best.name == "bristle":
         names, law = {"stiffness": "bristle_stiffness", "breakaway": "breakaway"}, "lugre"
     else:
@@ -89,7 +109,7 @@ def breakaway(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar
     recording, uncertain = at_input(file, known)
     ramps = breakaways(recording)
     found = breakaway_torque(ramps)
-    remarks = [*file.remarks, f"{len(ramps)} ramps of torque break it away"]
+    remarks = [*file.remarks, f"{len(ramps)} {'ramp of torque breaks' if len(ramps) == 1 else 'ramps of torque break'} it away"]
     sides = [each for each in (found.forward, found.reverse) if each is not None]
     few = "one ramp tells no scatter" if len(ramps) <= len(sides) else ""
     both = _mean(sides)
@@ -121,7 +141,7 @@ def _mean(sides: list[Estimate]) -> Estimate:
     values, sigmas = np.array([each.value for each in sides]), np.array([each.sigma for each in sides])
     value, sigma = float(values.mean()), float(np.linalg.norm(sigmas)) / len(sides)
     half = 0.5 * float(np.ptp(values))
-    if 2.0 * half > CLEARLY * np.linalg.norm(sigmas):
+    if 2.0 * half > SIGNIFICANCE_SIGMA * np.linalg.norm(sigmas):
         sigma = float(np.hypot(sigma, half))
     return replace(sides[0], path="breakaway", value=value, sigma=sigma)
 
@@ -129,7 +149,7 @@ def _mean(sides: list[Estimate]) -> Estimate:
 def _told(each: Estimate, path: str, law: str, uncertain: float, short: str) -> FileEstimate:
     common = uncertain * abs(each.value)
     sigma = float(np.hypot(each.sigma, common))
-    why = short or ("its standard deviation exceeds half the value" if sigma > HALF * abs(each.value) else "")
+    why = short or ("its standard deviation exceeds half the value" if sigma > MAX_RELATIVE_SIGMA * abs(each.value) else "")
     return FileEstimate(path, each.unit, each.value, sigma, law, why, common)
 
 

@@ -206,3 +206,16 @@ if __name__ == "__main__":
     for off in (bristle_off, elements_off):
         table = np.array([off(seed) for seed in range(int(sys.argv[1]))])
         print(off.__name__, np.mean(np.abs(table) <= 2.0, axis=0).round(3), np.sqrt(np.mean(table**2, axis=0)).round(2))
+
+
+def test_bristles_that_yield_before_they_slide_break_away_where_they_slide() -> None:
+    """A shaft on a bristle bends without limit as the torque nears its breakaway; below, it has only yielded."""
+    level, stiffness, rate = 10.0, 1.0e5, 0.5
+    time = np.arange(0.0, 24.0, 0.015)
+    torque = rate * time
+    yielded = -level / stiffness * np.log1p(-np.minimum(torque, 0.999 * level) / level)
+    slid = 0.02 * np.maximum(time - level / rate, 0.0) ** 2
+    angle = np.round((yielded + slid) / 5e-6) * 5e-6
+    recording = sw.Recording({"time": time, "torque": torque, "angle": angle}, {"time": "s", "torque": "N.m", "angle": "rad"})
+    (found,) = breakaways(recording)
+    assert 0.8 * level < found.torque < 1.02 * level

@@ -133,7 +133,7 @@ def test_a_loop_that_never_slides_tells_stiffness_alone(tmp_path: Path) -> None:
         tmp_path / "tiny.csv", {"input_angle": angle, "input_torque": torque}, {"input_angle": "rad", "input_torque": "N.m"}
     )
     found = identify(START, [path])
-    assert "told only from below" in " ".join(found.files[0].remarks)
+    assert "the torque from below only" in " ".join(found.files[0].remarks)
     assert any(each.why for each in found.files[0].estimates)
     assert found.gear_set.gear.friction_input == sw.GearSet.read(START).gear.friction_input
 
@@ -275,3 +275,21 @@ def test_records_with_an_angle_are_averaged_over_whole_turns(tmp_path: Path) -> 
     found = identify(START, files)
     assert told(found, "coulomb")[0] == pytest.approx(COULOMB, rel=2e-3)
     assert len(found.files) == len(files) + 2  # the table, and friction over the angle
+
+
+def test_a_loop_inside_the_stiction_of_a_table_gives_the_stiffness_and_no_breakaway(tmp_path: Path) -> None:
+    """Its torque flattens below the torque that a table shows, so its plateau is no breakaway."""
+    law = sw.friction.LuGre(
+        coulomb=0.5 * COULOMB, breakaway=0.5 * COULOMB, bristle_stiffness=40.0, bristle_damping=0.01, stribeck_speed=1.0
+    )
+    angle = 5e-3 * np.interp(np.arange(0.0, len(TURNS) - 1, 0.02), np.arange(len(TURNS)), TURNS)
+    torque = law.quasistatic(angle) + 1e-4 * np.random.default_rng(1).standard_normal(len(angle))
+    units = {"input_angle": "rad", "input_torque": "N.m"}
+    small = write(tmp_path / "small.csv", {"input_angle": angle, "input_torque": torque}, units)
+    found = identify(START, [small, table(tmp_path / "table.csv")])
+    assert "stays below" in " ".join(found.files[0].remarks)
+    determined = [each.path for each in found.files[0].estimates if not each.why]
+    assert determined == ["gear.friction_input.bristle_stiffness"]
+    sliding: Any = found.gear_set.gear.friction_input
+    assert sliding.breakaway == pytest.approx(COULOMB, rel=0.05)
+    assert sliding.coulomb == pytest.approx(COULOMB, rel=0.05)
