@@ -95,7 +95,7 @@ def _logs(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
     found = log_of(file, GearSoFar(start))
     size = float(np.std(found.log.measured))
     unit = found.log.units[0]
-    return tuple(_of_motion(each, size, unit) for each in fit_motion({file.path.name: found.log}, found.drive))
+    return tuple(_of_motion(each, size, unit) for each in fit_motion([found.log], found.drive))
 
 
 def _at_rest(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
@@ -113,8 +113,8 @@ def _at_rest(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
 def _of_motion(each: MotionCandidate, size: float, unit: str) -> Ranked:
     together = max(correlation_length(part.residuals[0]) for part in each.fit.parts)
     nuisances = sum(len(part.experiment.nuisances) for part in each.fit.parts)
-    fitted = len(each.fit.estimates) - nuisances - len(each.tied)
-    return Ranked(each.name, fitted, each.error * size, np.nan, unit, together, np.nan)
+    fitted = len(each.fit.estimates) - nuisances - len(each.model.ties)
+    return Ranked(each.name, fitted, each.error, np.nan, unit, together, np.nan)
 
 
 def table_of(ranked: Sequence[Ranked]) -> list[str]:

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, hysteresis, kinematic_error, stiffness
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.motion import CLEARLY, training_blocks
+from strainwave.identification.candidates.motion import MAX_RELATIVE_ERROR
 from strainwave.identification.experiments.driven_log import DrivenLog
-from strainwave.identification.experiments.motion_log import FRICTIONLESS, InverseDynamics, MotionLog, inertia_of
+from strainwave.identification.experiments.motion_log import FRICTIONLESS, MotionLog, inertia_of, needed_torque
 from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.covariance import covariance_of
 from strainwave.identification.fitting.fit import Fit, Part, problem_of
@@ -31,6 +31,7 @@ from strainwave.identification.fitting.unknowns import plan
 
 Array = NDArray[np.float64]
 
+BLOCKS = 10  # of a log, every second of which is held out while models are compared
 STRETCH = 10.0  # s, of a log on which models are compared
 LONGEST = 40.0  # s, of a log that numbers are told from
 STEP = 1e-3  # s, of the simulation, at most
@@ -129,7 +130,7 @@ def _seen(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_err
     left = measured - columns / size @ weights
     covariance, _ = covariance_of(columns / size, left[np.newaxis])
     softness, sigma = weights[0] / size[0], float(np.sqrt(covariance[0, 0])) / size[0]
-    reach = float(np.abs(torque[motion.known]).max())
+    reach = float(np.abs(torque[motion.compared]).max())
     if not softness > SEEN * sigma:
         raise ValueError(
             f"up to {reach:.3g} N·m wind the gear up by {softness * reach:.2g} ± {sigma * reach:.2g} rad, where encoders and "
@@ -143,7 +144,7 @@ def _torque(log: MotionLog, drive: Drive) -> Array:
     ratio = drive.gear.kinematics.ratio
     gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
     still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=1e-12))
-    return np.asarray(ratio * InverseDynamics.of(still, log.motion, log.extra).torque)
+    return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
 def _compared(recording: Recording, drive: Drive) -> DrivenLog:
@@ -219,10 +220,10 @@ def _chosen(log: DrivenLog, start: Drive, law: Any, scale: str, reach: float) ->
         tried = {more: other for more in left if (other := _with(more, log, best, law, scale, reach)) is not None}
         every += tried.values()
         more = min(tried, key=lambda each: tried[each].error, default=None)
-        if more is None or tried[more].error > CLEARLY * best.error:
+        if more is None or tried[more].error > MAX_RELATIVE_ERROR * best.error:
             break
         best, left = tried[more], [each for each in left if each is not more]
-    return best, [each for each in every if each is not best and CLEARLY * each.error < best.error]
+    return best, [each for each in every if each is not best and MAX_RELATIVE_ERROR * each.error < best.error]
 
 
 def _apart(path: str, one: _Tried, other: _Tried) -> float:
@@ -250,11 +251,18 @@ def _with(
 
 
 def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _Tried:
-    free, training = tuple(_free(drive, scale, reach)), training_blocks(log.time)
+    free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     problem, x = _solved(log, drive, free, training, NEAR)
     ((predicted, _),) = problem.predict(x)
     error = float(np.sqrt(np.mean((log.measured - predicted)[0, ~training] ** 2)))
     return _Tried(_name(drive), free, problem.records[0].model(x), error)
+
+
+def _training_blocks(time: Array) -> NDArray[np.bool_]:
+    """Every second of some blocks of time, over instants [s], shape (n,)."""
+    block = np.minimum((BLOCKS * (time - time[0]) / (time[-1] - time[0])).astype(int), BLOCKS - 1)
+    training: NDArray[np.bool_] = block % 2 == 0
+    return training
 
 
 def _solved(

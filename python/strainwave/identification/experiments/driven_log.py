@@ -13,7 +13,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.experiment import Nuisance, sensible
 from strainwave.identification.experiments.motion import motion_of
-from strainwave.identification.experiments.motion_log import EFFORTS, STEP, per_torque
+from strainwave.identification.experiments.motion_log import DIFFERENCE, EFFORTS, per_torque
 from strainwave.messages import listed, quoted
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.motion import Motion
@@ -239,7 +239,7 @@ class DrivenLog(ComparedByFields):
         """By a number of the motor that was measured: no motion changes with it, and torque is smooth in it."""
         described = _core.parameters(model)
         values = [each[1] for each in described]
-        step = STEP * max(abs(values[number]), 1e-3)
+        step = DIFFERENCE * max(abs(values[number]), 1e-3)
         other = _core.with_numbers(model, [*values[:number], values[number] + step, *values[number + 1 :]])
         return (self._shown(other, name, torque) - self._shown(model, name, torque)) / step
 

@@ -27,6 +27,7 @@ EDGE = 5  # samples of the decimated series that the ends of the filters spoil, 
 GAP = 2.5  # intervals: a longer one is a gap, over which nothing is known
 CATMULL_ROM = np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]]) / 2  # of 1, u, u2, u3: of four samples
 SLOW = 0.5  # of the power of the acceleration: of a motion that is slower than vibrations (assumed)
+MAX_FULL_BAND_ROWS = 20_000  # that a fit in the full band compares
 FEWEST = 200  # samples that a motion is worked out from
 
 
@@ -38,8 +39,10 @@ class Motion(ComparedByFields):
         time: of the grid [s], shape (n,)
         angle, speed, acceleration: of the shaft, smoothed [rad, rad/s, rad/s2], shape (n,)
         known: where it moves, and is known: not at rest, in a gap or at the ends, shape (n,)
+        turning: so near to a reversal that friction turns over, shape (n,)
+        resting: where it does not move beyond the noise of the angle, shape (n,)
         every: one of so many samples of the grid is compared
-        cutoff: of the filter on the angle [Hz]; what is compared is compared up to 0.4 of it
+        cutoff: of the filter on the angle [Hz]; what is compared is compared up to 0.4 of it; infinite for the full band
     """
 
     time: Array
@@ -47,6 +50,8 @@ class Motion(ComparedByFields):
     speed: Array
     acceleration: Array
     known: NDArray[np.bool_]
+    turning: NDArray[np.bool_]
+    resting: NDArray[np.bool_]
     every: int
     cutoff: float
 
@@ -59,7 +64,19 @@ class Motion(ComparedByFields):
     def rows(self) -> NDArray[np.intp]:
         """The samples of the grid that are compared."""
         rows: NDArray[np.intp] = np.arange(0, len(self.time), self.every)
-        return rows[self.known[rows]]
+        return rows[self.compared[rows]]
+
+    @cached_property
+    def compared(self) -> NDArray[np.bool_]:
+        """Samples that take part in a comparison in the pass band, shape (n,)."""
+        compared: NDArray[np.bool_] = self.known & ~self.turning
+        return compared
+
+    @cached_property
+    def states(self) -> Array:
+        """Angle, speed, acceleration, and time since the sample before, as inverse dynamics takes them, shape (n, 4)."""
+        steps = np.diff(self.time, prepend=self.time[0])
+        return np.column_stack([self.angle, np.where(self.resting, 0.0, self.speed), self.acceleration, steps])
 
     @cached_property
     def _response(self) -> Array:
@@ -90,19 +107,37 @@ class Motion(ComparedByFields):
         known[: EDGE * every] = known[-EDGE * every :] = False
         left = replace(self, known=known, every=every, cutoff=cutoff)
         rows = len(left.rows)
-        if not rows or np.mean(left.filtered(self.acceleration) ** 2) < SLOW * np.mean(self.acceleration[known] ** 2):
+        if not rows or np.mean(left.filtered(self.acceleration) ** 2) < SLOW * np.mean(self.acceleration[left.compared] ** 2):
             raise ValueError(f"the shaft itself moves about as fast as a vibration of {frequency:.3g} Hz")
         return left
+
+    def at_speed(self, speed: Array) -> Motion:
+        """Return the same with a speed that was measured, and its rate as acceleration, shape (n,)."""
+        from scipy import signal
+
+        rate = 1.0 / self.step
+        smooth, quick = (
+            signal.sosfiltfilt(signal.butter(4, min(cutoff, 0.4 * rate), fs=rate, output="sos"), speed)
+            for cutoff in (self.cutoff, WIDER * self.cutoff)
+        )
+        return replace(self, speed=quick, acceleration=_rate(smooth, self.step))
+
+    def in_full_band(self) -> Motion:
+        """Return the same, compared in the full band, near reversals, too, at one of as many samples as a fit may take."""
+        every = -(-len(self.time) // MAX_FULL_BAND_ROWS)
+        return replace(self, turning=np.zeros_like(self.turning), every=every, cutoff=np.inf)
 
     def filtered(self, series: Array) -> Array:
         """Series on the grid in the pass band, at the samples compared: shape (…, n) becomes (…, rows).
 
         A filter of Butterworth, fourth order, forward and backward. Only one of `every` samples is wanted, so that its response
-        is summed up to where it has died down, in place of the recursion over all samples.
+        is summed up to where it has died down, in place of the recursion over all samples. In the full band all passes.
         """
+        if np.isinf(self.cutoff):
+            return np.asarray(series[..., self.rows])
         blocks = -(-len(self.time) // self.every)
         padded = np.zeros((*series.shape[:-1], blocks * self.every))
-        padded[..., : len(self.time)] = np.where(self.known, series, 0.0)
+        padded[..., : len(self.time)] = np.where(self.compared, series, 0.0)
         shares = (self._response @ padded.reshape(-1, self.every).T).reshape(-1, *series.shape[:-1], blocks)
         smooth = np.zeros((*series.shape[:-1], blocks + 2 * REACH))
         for distance, share in enumerate(shares):
@@ -158,9 +193,11 @@ def motion_of(
     smooth = signal.sosfiltfilt(signal.butter(4, cutoff, fs=1.0 / step, output="sos"), regular)
     quick = signal.sosfiltfilt(signal.butter(4, min(WIDER * cutoff, 0.4 / step), fs=1.0 / step, output="sos"), regular)
     speed, acceleration = _rate(quick, step), _second_rate(smooth, step)
-    known = ~near_rest(regular, every, noise) & ~_in_gap(time, grid, step, every) & ~_turning(regular, speed, slid)
+    stands = standing(regular, every, noise)
+    known = ~stands & ~_in_gap(time, grid, step, every)
     known[: EDGE * every] = known[-EDGE * every :] = False
-    return Motion(grid, smooth, speed, acceleration, known, every, cutoff)
+    turning = _turning(regular, speed, slid) | near_rest(regular, every, noise)
+    return Motion(grid, quick, speed, acceleration, known, turning, stands, every, cutoff)
 
 
 def _every(cutoff: float, step: float) -> int:
@@ -239,8 +276,18 @@ def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: flo
     return edge / PASS_BAND
 
 
+def standing(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:
+    """Samples of a shaft that stands still: within `reach` samples around one of them it moves by no more than the noise."""
+    from scipy import ndimage
+
+    width = 2 * reach + 1
+    moved = ndimage.maximum_filter1d(position, width) - ndimage.minimum_filter1d(position, width)
+    stands: NDArray[np.bool_] = ndimage.maximum_filter1d(moved <= 2.0 * REST * noise, width)
+    return stands
+
+
 def near_rest(position: Array, reach: int, noise: float) -> NDArray[np.bool_]:
-    """Samples at rest, and those so close to rest that the position filter mixes the two.
+    """Samples at rest or at a reversal, and those so close to one that the position filter mixes the two.
 
     A sample rests if the position `reach` samples earlier and later are equal within the noise. This finds the middle
     of each stop; widening it by `reach` restores the stop, and by as much again covers the response of the filter.

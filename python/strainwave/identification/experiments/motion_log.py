@@ -10,7 +10,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments, friction, loads
+from strainwave import Drive, _core, arguments, friction
+from strainwave._core import Gear
 from strainwave.analysis.branches import noise
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
@@ -21,31 +22,33 @@ from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
 Side = Literal["input", "output"]
-EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltage": "V"}  # what tells the torque, best first
-SLID = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
-OUTLYING = 6.0  # standard deviations
-CLIPPED = 20  # samples of one level at the end of the range
-FEWEST = 10  # samples of each direction, in the pass band (assumed)
-STEP = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
+EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltage": "V"}  # what shows the torque, best first
+REVERSAL = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
+MAX_OUTLIER_SIGMA = 6.0  # standard deviations of the noise
+MIN_CLIPPED = 20  # samples of one level at the end of the range
+MIN_SHARE_OF_A_DIRECTION = 0.02  # of the samples compared
+DIFFERENCE = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
+OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # numbers that scale the effort
 FRICTIONLESS = friction.Viscous(viscous=0.0)
-AT_INPUT = ("motor.inertia", "gear.input_inertia")
+INPUTS, LOAD, TEMPERATURE = 6, 2, 4  # of the inverse dynamics: how many, and the places of load torque and temperature
 
 
 @dataclass(frozen=True, eq=False)
 class MotionLog(ComparedByFields):
-    """What a drive needed to move as it did: its torque, current or voltage, along the motion that was measured.
+    """A log of the torque, current or voltage that a drive needed, compared along the motion that was measured.
 
     Nothing is simulated: command, controller and beginning need not be known, and an error of one moment is forgotten at the
     next. The drive is taken as rigid: gear and shafts turn together, so that the pass band must lie well below its first
-    elastic mode. Friction is that of steady sliding; moments near rest take no part.
+    elastic mode. A fit compares moments of sliding in the pass band; `residual` compares every sample, at rest, too.
 
     Args:
         motion: of the input
         effort: what was compared: `current`, `input_torque`, `joint_torque` (the motor's, counted at the output) or `voltage`
-        force: the effort on the grid of the motion, shape (m,)
+        force: the effort on the grid of the motion, without outliers, shape (m,)
+        recorded: the same with them, shape (m,)
         extra: torque of other bodies that hold the output back, on the grid of the motion [N.m]; zero if nothing is known
         regressors: series on the grid whose share in the torque of the output is an unknown, by name
-        delayed: whether a delay of the effort is an unknown
+        delayed: True if a delay of the effort behind the motion is an unknown
         samples: how many were measured
         starts: where a fit starts with each of the nuisances; with zero if not given
     """
@@ -53,6 +56,7 @@ class MotionLog(ComparedByFields):
     motion: Motion
     effort: str
     force: Array
+    recorded: Array
     extra: Array
     regressors: Mapping[str, Array] = field(default_factory=dict)
     delayed: bool = False
@@ -69,13 +73,13 @@ class MotionLog(ComparedByFields):
         cutoff: float | None = None,
         regressors: Sequence[str] = (),
     ) -> MotionLog:
-        """From columns time, an angle (input_angle, else output_angle), and what tells the torque.
+        """Return the experiment of a recording with columns time, an angle (input_angle, else output_angle), and an effort.
 
         A column `rigid_torque` [N.m at the output] is known torque of other bodies; `regressors` names columns whose share in
         the torque is unknown, as those of an arm that moves together with others.
 
         Raises:
-            ValueError: a column is missing, or the motion cannot be told from the angle
+            ValueError: a column is missing, or the angle does not determine the motion
         """
         check_recording("recording", recording)
         arguments.drive(drive)
@@ -84,9 +88,9 @@ class MotionLog(ComparedByFields):
         effort = _effort(recording, effort)
         time, angle = recording.time, _input_angle(recording, drive)
         if np.ptp(angle) == 0.0:
-            raise ValueError("the angle never changes: a log tells inertia and friction of a shaft that moves")
-        motion = motion_of(time, angle, cutoff, SLID)
-        _check_both_ways(motion)
+            raise ValueError("the angle never changes: only a shaft that moves shows inertia and friction")
+        motion = motion_of(time, angle, cutoff, REVERSAL)
+        _check_moves(motion)
 
         def on_grid(values: Array) -> Array:
             return np.interp(motion.time, time, values)
@@ -97,7 +101,7 @@ class MotionLog(ComparedByFields):
         motion = replace(motion, known=motion.known & (on_grid(sound.astype(float)) == 1.0))
         known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
-            motion, effort, force, known,
+            motion, effort, force, on_grid(values), known,
             {name: on_grid(recording[name]) for name in regressors}, samples=len(recording),
         )  # fmt: skip
 
@@ -116,193 +120,189 @@ class MotionLog(ComparedByFields):
 
     @property
     def time(self) -> Array:
-        """Of what is compared [s], shape (n,)."""
+        """Instants that are compared in the pass band [s], shape (n,)."""
         return self.motion.time[self.motion.rows]
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """The zero of the effort, its delay, and the shares of other bodies."""
-        described = [(f"{self.effort}_zero", EFFORTS[self.effort]), *([("delay", "s")] if self.delayed else [])]
+        """The zero of the effort, if the shaft moves both ways; its delay; and the shares of other bodies."""
+        described = [(f"{self.effort}_zero", EFFORTS[self.effort])] if self.both_ways else []
+        described += [("delay", "s")] if self.delayed else []
         described += [(f"share of {name}", "1") for name in self.regressors]
         starts = self.starts or (0.0,) * len(described)
         return tuple(Nuisance(name, unit, start) for (name, unit), start in zip(described, starts, strict=True))
 
+    def with_measured_speed(self, recording: Recording, ratio: float) -> MotionLog | None:
+        """Return the same along the speed that was recorded beside the angle; None if none was.
+
+        Args:
+            recording: of the log
+            ratio: speed of the input over that of the output
+        """
+        for name, factor in (("input_speed", 1.0), ("output_speed", ratio)):
+            if name in recording:
+                speed = np.interp(self.motion.time, recording.time, factor * recording.values(name, "rad/s"))
+                return replace(self, motion=self.motion.at_speed(speed))
+        return None
+
+    @cached_property
+    def both_ways(self) -> bool:
+        """True if the shaft moves both ways: only then Coulomb's friction differs from a constant torque."""
+        speed = self.motion.speed[self.motion.known]
+        forward, backward = (float(np.mean(way * speed > 0.0)) for way in (1.0, -1.0))
+        return min(forward, backward) >= MIN_SHARE_OF_A_DIRECTION
+
     def below(self, frequency: float) -> MotionLog:
-        """The same, compared far below a vibration of load and gear of this frequency [Hz]: above, the drive is not rigid.
+        """Return the same, compared far below a vibration of this frequency [Hz]: above, the drive is not rigid.
 
         Raises:
             ValueError: too little of the motion is left
         """
         motion = self.motion.below(frequency)
-        _check_both_ways(motion)
+        _check_moves(motion)
         return replace(self, motion=motion)
 
+    def in_full_band(self) -> MotionLog:
+        """Return the same, compared in the full band, near reversals, too."""
+        return replace(self, motion=self.motion.in_full_band())
+
     def with_delay(self) -> MotionLog:
-        """The same, with a delay of the effort behind the motion as an unknown."""
+        """Return the same, with a delay of the effort behind the motion as an unknown."""
         return replace(self, delayed=True, starts=())
 
-    def without_delay(self) -> MotionLog:
-        """The same, with an effort that belongs to its moment."""
-        return replace(self, delayed=False, starts=())
-
     def starting(self, nuisances: Sequence[float]) -> MotionLog:
-        """The same, from where a fit starts with the nuisances."""
+        """Return the same, from where a fit starts with the nuisances."""
         return replace(self, starts=tuple(nuisances))
 
     def predict(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
-        others = self._others(nuisances)
-        described = _core.parameters(model)
-        now = InverseDynamics.of(model, self.motion, others, [described[number][0] for number in numbers])
-        scale = per_torque(model, self.effort)
-        effort = scale * now.torque + self.induced(model)
-        slopes = [self._slope(model, number, described, now, effort) for number in numbers]
-        slopes += [scale * now.by_transmitted * series for series in self.regressors.values()]
-        series = np.stack([effort, *slopes])
-        by_delay = []
-        if self.delayed:
-            series, change = self.motion.late(series, float(nuisances[1]))
-            by_delay = [change]
-        in_band = self.motion.filtered(np.stack([*series, np.ones_like(effort), *by_delay]))
-        predicted, by_numbers, by_zeros = in_band[:1], in_band[1 : 1 + len(numbers)], in_band[1 + len(slopes) :]
-        slopes_of_all = np.concatenate([by_numbers, by_zeros, in_band[1 + len(numbers) : 1 + len(slopes)]])
-        return predicted + nuisances[0] * by_zeros[:1], slopes_of_all[:, np.newaxis]
+        effort, slopes = self._on_grid(model, numbers, nuisances)
+        in_band = self.motion.filtered(np.stack([effort, *slopes]))
+        return in_band[:1], in_band[1:, np.newaxis]
 
-    def _others(self, nuisances: Array) -> Array:
-        """Torque of other bodies at the output [N.m]."""
-        shares = nuisances[1 + self.delayed :]
-        found: Array = sum((share * each for share, each in zip(shares, self.regressors.values(), strict=True)), self.extra)
-        return found
+    def whole(self, model: Drive, nuisances: Array) -> Array:
+        """Return the effort that a model predicts at every instant of the grid, shape (m,)."""
+        return self._on_grid(model, [], nuisances)[0]
+
+    def residual(self, model: Drive, nuisances: Array) -> Array:
+        """Return measured less predicted effort at every instant of the grid, shape (m,).
+
+        At rest friction takes any value up to the one that breaks it away: the residual is what lies beyond.
+        """
+        left: Array = self.recorded - self.whole(model, nuisances)
+        hold = _hold(model) * abs(per_torque(model, self.effort))
+        held = np.sign(left) * np.maximum(np.abs(left) - hold, 0.0)
+        return np.where(self.motion.resting, held, left)
+
+    def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
+        """Effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
+        unknown = dict(zip([each.name for each in self.nuisances], nuisances.tolist(), strict=True))
+        zeros = [value for name, value in unknown.items() if name.endswith("_zero")]
+        shares = nuisances[len(nuisances) - len(self.regressors) :]
+        others: Array = sum((share * each for share, each in zip(shares, self.regressors.values(), strict=True)), self.extra)
+        described = _core.parameters(model)
+        paths = [described[number][0] for number in numbers]
+        scale = per_torque(model, self.effort)
+        torque, by_numbers = needed_torque(model, self.motion, others, paths)
+        effort = scale * torque + self.induced(model)
+        slopes = [
+            self._by_motor(model, number, others, effort) if path in OF_MOTOR else scale * by
+            for number, path, by in zip(numbers, paths, by_numbers, strict=True)
+        ]
+        by_load = scale * self._by_load(model, others, torque) if self.regressors else torque
+        of_shares = [by_load * each for each in self.regressors.values()]
+        series, by_delay = np.stack([effort, *slopes, *of_shares]), list[Array]()
+        if self.delayed:
+            series, change = self.motion.late(series, unknown["delay"])
+            by_delay = [change]
+        own, of_nuisances = series[1 : 1 + len(slopes)], series[1 + len(slopes) :]
+        by_zero = [np.ones_like(effort) for _ in zeros]
+        found = np.array([*own, *by_zero, *by_delay, *of_nuisances]).reshape(-1, len(effort))
+        return series[0] + sum(zeros), found
 
     def induced(self, model: Drive) -> Array:
-        """The part of the effort that makes no torque: the voltage that a motor induces as it turns [V]; 0 of all others."""
+        """Return the part of the effort that makes no torque: the voltage that a motor induces as it turns [V]; else 0."""
         constant = float(getattr(model.motor, "back_emf", 0.0)) if self.effort == "voltage" else 0.0
         return constant * self.motion.speed
 
-    def _slope(self, model: Drive, number: int, described: Sequence[Any], now: InverseDynamics, effort: Array) -> Array:
-        """By a number of the drive: of few by a difference, which is good to eight digits where torque is smooth in them."""
-        path, value, *_, high = described[number]
-        if path in now.slopes:
-            return per_torque(model, self.effort) * now.slopes[path]
-        step = STEP * max(abs(value), 1e-3)
+    def _by_motor(self, model: Drive, number: int, others: Array, effort: Array) -> Array:
+        """Derivative by a number of the motor, of a difference that is good to eight digits as the effort is smooth in it."""
+        described = _core.parameters(model)
+        _, value, *_, high = described[number]
+        step = DIFFERENCE * max(abs(value), 1e-3)
         end = value + step if value + step <= high else value - step
         values = [each[1] for each in described]
         other = _core.with_numbers(model, [*values[:number], end, *values[number + 1 :]])
-        there = InverseDynamics.of(other, self.motion, now.others)
-        moved = per_torque(other, self.effort) * there.torque + self.induced(other)
-        return np.asarray((moved - effort) / (end - value))
+        torque, _ = needed_torque(other, self.motion, others)
+        return np.asarray((per_torque(other, self.effort) * torque + self.induced(other) - effort) / (end - value))
+
+    def _by_load(self, model: Drive, others: Array, torque: Array) -> Array:
+        """Derivative of the torque at the input by one at the output, of which friction takes its share [1]."""
+        step = DIFFERENCE * max(
+            float(np.abs(others).max()), abs(model.gear.kinematics.ratio) * float(np.abs(torque).max()), 1e-6
+        )
+        there, _ = needed_torque(model, self.motion, others + step)
+        return np.asarray((there - torque) / step)
 
 
-@dataclass(frozen=True, eq=False)
-class InverseDynamics(ComparedByFields):
-    """Torque that a motor must give so that its rigid drive moves so, and of what it consists.
+def inertia_of(drive: Drive) -> float:
+    """Return the inertia of the load [kg.m2]; 0 for one that is moved from outside."""
+    return float(getattr(drive.load, "inertia", 0.0))
+
+
+def rigid_drive(drive: Drive) -> Drive:
+    """Return the drive with a rigid gear: ratio, input inertia and friction alone.
+
+    Along a measured motion stiffness, hysteresis and kinematic error move neither shaft; without them it takes less time.
+    """
+    gear = drive.gear
+    places = {place: getattr(gear, place) for place in ("friction_input", "friction_mesh", "friction_output")}
+    return drive.replace(gear=Gear(kinematics=gear.kinematics, input_inertia=gear.input_inertia, **places))
+
+
+def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[str] = ()) -> tuple[Array, Array]:
+    """Return the torque at the input [N.m] that a rigid drive needs along a motion, and its derivatives.
 
     .. math:: \\tau = (J_m + J_g) \\dot\\omega + F_{in}(\\omega, T / i) + [F_{mesh}(\\omega / i, T) + T] / i, \\qquad
               T = J_l \\dot\\omega / i + T_{load}(\\theta / i) + F_{out}(\\omega / i)
 
-    Attributes:
+    Args:
+        drive: with any load and friction; a bristle bends along the motion
+        motion: of the input
         others: torque of other bodies that hold the output back [N.m], shape (n,)
-        torque: at the input [N.m], shape (n,)
-        by_transmitted: derivative of the torque by that at the output, T [1], shape (n,)
-        slopes: derivatives of the torque by numbers of inertia, load and friction, by path, each of shape (n,)
+        paths: numbers of the drive that the torque is differentiated by
+
+    Returns:
+        torque, shape (n,); derivatives, shape (paths, n), 0 by numbers that a rigid drive lacks
     """
-
-    others: Array
-    torque: Array
-    by_transmitted: Array
-    slopes: Mapping[str, Array]
-
-    @classmethod
-    def of(cls, drive: Drive, motion: Motion, others: Array, paths: Sequence[str] = ()) -> InverseDynamics:
-        """Of a drive whose output other bodies hold back, too, with derivatives by numbers of these paths.
-
-        Raises:
-            ValueError: the load is none that a rigid drive is known with
-        """
-        ratio = drive.gear.kinematics.ratio
-        angle, speed, acceleration = motion.angle / ratio, motion.speed / ratio, motion.acceleration / ratio
-        at_output, by_output = _friction(drive, "friction_output", paths, speed, angle, np.zeros_like(speed))
-        transmitted = inertia_of(drive) * acceleration + load_torque(drive, angle) + others + at_output
-        step = STEP * float(np.abs(transmitted).max())
-        at_mesh, by_mesh = _friction(drive, "friction_mesh", paths, speed, angle, transmitted)
-        at_input, by_input = _friction(drive, "friction_input", paths, motion.speed, motion.angle, transmitted / ratio)
-        inertia = drive.motor.inertia + drive.gear.input_inertia
-        torque = inertia * motion.acceleration + at_input + (at_mesh + transmitted) / ratio
-        if step == 0.0:
-            return cls(others, torque, np.full_like(torque, 1.0 / ratio), {})
-        mesh_there, _ = _friction(drive, "friction_mesh", (), speed, angle, transmitted + step)
-        input_there, _ = _friction(drive, "friction_input", (), motion.speed, motion.angle, (transmitted + step) / ratio)
-        by_transmitted = (1.0 + (mesh_there - at_mesh) / step) / ratio + (input_there - at_input) / step
-        slopes = {path: motion.acceleration for path in paths if path in AT_INPUT}
-        slopes |= by_input | {path: slope / ratio for path, slope in by_mesh.items()}
-        of_output = by_output | {path: slope for path, slope in _by_load(drive, angle, acceleration).items() if path in paths}
-        slopes |= {path: by_transmitted * slope for path, slope in of_output.items()}
-        return cls(others, torque, by_transmitted, slopes)
+    rigid = rigid_drive(drive)
+    numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(rigid))}
+    inputs = np.zeros((len(motion.time), INPUTS))
+    inputs[:, LOAD], inputs[:, TEMPERATURE] = others, ROOM_TEMPERATURE
+    places = [place for place, path in enumerate(paths) if path in numbers]
+    torque, slopes = _core.inverse_dynamics(rigid, motion.states, inputs, [numbers[paths[place]] for place in places])
+    found = np.zeros((len(paths), len(torque)))
+    found[places] = slopes
+    return torque, found
 
 
-def _friction(
-    drive: Drive, place: str, paths: Sequence[str], speed: Array, angle: Array, load: Array
-) -> tuple[Array, dict[str, Array]]:
-    """Steady friction at a place of the gear [N.m], and its derivatives by those numbers of it that are among the paths."""
-    if getattr(drive.gear, place) == FRICTIONLESS and not any(path.startswith(f"gear.{place}.") for path in paths):
-        return np.zeros_like(speed), {}
-    alone = drive.gear.replace(friction_input=getattr(drive.gear, place))  # where `differentiate_steady` looks
-    numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(alone))}
-    asked = [path for path in paths if path.startswith(f"gear.{place}.")]
-    here = [numbers[path.replace(f"gear.{place}", "friction_input")] for path in asked]
-    room = np.full_like(speed, ROOM_TEMPERATURE)
-    torque, slopes = _core.differentiate_steady(alone, speed, angle, load, room, here)
-    return torque, dict(zip(asked, slopes, strict=True))
-
-
-def inertia_of(drive: Drive) -> float:
-    """Of the load [kg.m2]; none of one that is moved from outside."""
-    return float(getattr(drive.load, "inertia", 0.0))
-
-
-def load_torque(drive: Drive, angle: Array) -> Array:
-    """Torque with which the load holds the output back at an angle [N.m].
-
-    Raises:
-        ValueError: it depends on more than the angle
-    """
-    if isinstance(drive.load, loads.Pendulum):
-        torque: Array = drive.load.gravity_torque * np.sin(angle + drive.load.gravity_phase)
-        return torque
-    if isinstance(drive.load, loads.Inertia):
-        return np.zeros_like(angle)
-    raise ValueError(
-        f"a log cannot be compared along its motion with a load of kind {drive.load.name}; it can with inertia or pendulum, "
-        "and other torque as a column rigid_torque"
-    )
-
-
-def _by_load(drive: Drive, angle: Array, acceleration: Array) -> dict[str, Array]:
-    """Derivatives of the torque at the output by numbers of the load, by path, over its angle and acceleration."""
-    slopes = {"load.inertia": acceleration}
-    if isinstance(drive.load, loads.Pendulum):
-        turned = angle + drive.load.gravity_phase
-        slopes |= {"load.gravity_torque": np.sin(turned), "load.gravity_phase": drive.load.gravity_torque * np.cos(turned)}
-    return slopes
+def _hold(drive: Drive) -> float:
+    """Return the largest torque at the input that friction there balances at rest [N.m]; a bristle's is its breakaway."""
+    law: Any = drive.gear.friction_input
+    return float(law.hold(1.0)) if hasattr(law, "hold") else float(getattr(law, "breakaway", 0.0))
 
 
 def per_torque(drive: Drive, effort: str) -> float:
-    """Effort per torque at the input: of a motor whose torque constant is not known, a torque in A."""
+    """Return the effort per torque at the input: of a motor whose torque constant is not known, a torque in A."""
     constant = float(getattr(drive.motor, "torque_constant", 1.0))
     per = {"current": 1.0 / constant, "input_torque": 1.0, "joint_torque": drive.gear.kinematics.ratio}
     return per[effort] if effort in per else float(getattr(drive.motor, "resistance", 0.0)) / constant
 
 
-def _check_both_ways(motion: Motion) -> None:
-    forward, backward = (int(np.sum(way * motion.speed[motion.rows] > 0.0)) for way in (1.0, -1.0))
-    if forward + backward == 0:
+def _check_moves(motion: Motion) -> None:
+    if not np.any(motion.speed[motion.rows] != 0.0):
         raise ValueError(
             "the shaft hardly moves: all of the log is rest, reversals or gaps; record a larger motion, or, if it went to and "
-            "fro before it slid, say so with --kind presliding"
-        )
-    if min(forward, backward) < FEWEST:
-        raise ValueError(
-            f"the shaft moves forward in {forward} and backward in {backward} of the samples compared; {FEWEST} of each are "
-            "needed to tell Coulomb's friction from a constant torque: record motion both ways"
+            "fro before it slid, add --kind presliding"
         )
 
 
@@ -310,7 +310,7 @@ def spoilt(values: Array) -> NDArray[np.bool_]:
     """Samples that are outliers among their neighbours, or clipped at the end of the range.
 
     Outliers: farther off the median of seven than six standard deviations of the noise (Hampel 1974). The noise is that of
-    second differences: the median follows both noise and motion, so that what is off it would tell too little. Clipped: the
+    second differences: the median follows both noise and motion, so that what is off it would show too little. Clipped: the
     largest or smallest level that comes again and again, though an outlier may lie beyond.
     """
     from scipy import ndimage
@@ -318,7 +318,7 @@ def spoilt(values: Array) -> NDArray[np.bool_]:
     clipped = _clipped(values) | _clipped(-values)
     off = np.abs(values - ndimage.median_filter(values, 7, mode="nearest"))
     scale = noise(values[~clipped]) if np.median(off) > 0.0 else np.inf  # without noise extremes look like outliers
-    outliers = off > OUTLYING * scale
+    outliers = off > MAX_OUTLIER_SIGMA * scale
     spoilt_ones: NDArray[np.bool_] = outliers | clipped
     return spoilt_ones
 
@@ -331,7 +331,7 @@ def _clipped(values: Array) -> NDArray[np.bool_]:
         return np.zeros(len(values), bool)
     usual = float(np.median(counts))
     level = levels[upper][np.argmax(counts[upper])]
-    often = counts[upper].max() >= max(CLIPPED, 10.0 * usual)
+    often = counts[upper].max() >= max(MIN_CLIPPED, 10.0 * usual)
     end = often and np.mean(values > level) < 0.03
     return (values >= level) if end else np.zeros(len(values), bool)
 
@@ -341,7 +341,7 @@ def _effort(recording: Recording, wanted: str | None) -> str:
         arguments.one_of("effort", wanted, tuple(EFFORTS))
     present = [name for name in EFFORTS if name in recording and wanted in (None, name)]
     if not present:
-        raise ValueError(f"the log has none of {listed(EFFORTS)}, which tell the torque; it has {listed(recording.names)}")
+        raise ValueError(f"the log has none of {listed(EFFORTS)}, which show the torque; it has {listed(recording.names)}")
     return present[0]
 
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.identification.candidates.motion import MotionCandidate, fit_motion, regression
+from strainwave.identification.candidates.motion import MotionCandidate, bands, fit_motion, refit
+from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
@@ -52,7 +53,9 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
     log = taken.log
     priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
-    best, *_ = fit_motion({file.path.name: log}, drive, priors=priors)
+    variants = [log] if in_current else bands(log, drive)
+    best, *_ = fit_motion(variants, drive, priors=priors)
+    held_out = refit(best, drive, priors)
     told = list(_of_motion(best, taken))
     if not in_current:
         known = _with_friction(known, best, told, file.path.name)
@@ -71,7 +74,16 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed), _unlike_said(taken))))
     return (
         FileResult(
-            file.path.name, file, best.name, tuple(told), best.error, every, doubts, curves=curves, between=between.curves
+            file.path.name,
+            file,
+            best.name,
+            tuple(told),
+            held_out.relative,
+            every,
+            doubts,
+            curves=curves,
+            between=between.curves,
+            held_out=held_out,
         ),
         known,
     )
@@ -99,7 +111,7 @@ def _unlike_said(taken: PreparedLog) -> str | None:
     """Return the doubt that the given inertia contradicts the log; None if it agrees, or none was given."""
     if "load.inertia" not in taken.said:
         return None
-    drive, shown = taken.drive, regression(taken.log, taken.drive).inertia
+    drive, shown = taken.drive, fit_plain(taken.log, taken.drive).inertia
     given = drive.motor.inertia + drive.gear.input_inertia + taken.said["load.inertia"] / drive.gear.kinematics.ratio**2
     if abs(shown - given) <= UNLIKE * given:
         return None
@@ -119,7 +131,7 @@ def _of_motion(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstima
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     for estimate in best.fit.estimates:
-        if estimate.path in nuisances or estimate.path in best.tied or estimate.path in taken.said:
+        if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.said:
             continue
         law = encoder if estimate.path == "load.gravity_phase" else ""
         told = FileEstimate(estimate.path, estimate.unit, estimate.value, estimate.sigma, law)

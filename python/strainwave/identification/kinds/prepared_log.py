@@ -12,14 +12,14 @@ from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.motion import regression
+from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.dynamics.coupling import coupled
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, rotor_sigma
 from strainwave.messages import as_option, listed
 
-MIN_EXPLAINED_SHARE = 0.5  # of the variation of the torque: a log of which inertia and friction explain less determines neither
+MIN_SIGN_SIGMA = 3.0  # standard deviations by which friction must feed a motion, whose effort is then counted the other way
 NO_ROTOR = 1e-12  # kg.m2: something must turn at the input
 UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
 
@@ -68,22 +68,13 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     log = MotionLog.of(recording, drive, regressors=file.regressors)
     if np.ptp(recording[log.effort]) == 0.0:
         raise ValueError(f"{log.effort} never changes: a set value, a limit, or a channel that was not recorded")
-    before = regression(log, drive)
-    if before.reversed:
+    if fit_plain(log, drive).dissipated < -MIN_SIGN_SIGMA:
         remarks.append(f"{log.effort} is counted against the motion: its sign is turned round")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
-        before = regression(log, drive)
     if file.neighbours and not file.regressors:
         log, told = _with_neighbours(file, log, drive)
-        before = regression(log, drive)
         remarks += told
-    if not before.share > MIN_EXPLAINED_SHARE or before.inertia <= 0.0:
-        raise ValueError(
-            f"inertia, friction and gravity explain {100.0 * max(before.share, 0.0):.0f} % of the variation of {log.effort}: "
-            "the drive did more than one shaft does (give the torque of other joints as a column rigid_torque), or sides or "
-            "units are not what they are taken for"
-        )
     spoilt_rows = int(np.sum(spoilt(recording[log.effort])))
     if spoilt_rows:
         share = 100.0 * spoilt_rows / len(recording)

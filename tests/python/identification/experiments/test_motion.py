@@ -18,7 +18,7 @@ def moving(every: int, cutoff: float) -> Motion:
     known = ~((TIME > 3.0) & (TIME < 4.0))
     known[: 5 * every] = known[-5 * every :] = False
     nothing = np.zeros_like(TIME)
-    return Motion(TIME, nothing, nothing, nothing, known, every, cutoff)
+    return Motion(TIME, nothing, nothing, nothing, known, ~np.ones_like(known), ~known, every, cutoff)
 
 
 @pytest.mark.parametrize("cutoff", [5.0, 20.0, 50.0])
