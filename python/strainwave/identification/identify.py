@@ -16,6 +16,7 @@ from strainwave.identification.kinds import constant_speed_runs
 from strainwave.identification.kinds.constant_speed_runs import Run, run_of
 from strainwave.identification.kinds.fit_file import fitted
 from strainwave.identification.kinds.plausibility import other_format
+from strainwave.identification.reading.consistent import consistent
 from strainwave.identification.reading.duplicates import same_as
 from strainwave.identification.reading.joined_recordings import joined
 from strainwave.identification.reading.kind import Kind
@@ -91,10 +92,12 @@ def identify(
     check_arguments(files, mapping)
     opened = measurement_files(files)
     each_read = {file.path: _recognised(file, mapping) for file in opened.files}
+    in_one_reading = consistent(_only_read(each_read), {file.path: file for file in opened.files})
+    each_read |= {each.path: _unless_asked(each) for each in in_one_reading}
     for link in opened.links:
         each_read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
-    check_one_joint([each for each in each_read.values() if isinstance(each, Recognised)])
-    recognised = joined([each for each in each_read.values() if isinstance(each, Recognised)])
+    check_one_joint(_only_read(each_read))
+    recognised = joined(_only_read(each_read))
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, FileResult)}
     start = _with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
@@ -214,10 +217,20 @@ def _recognised(file: MeasurementFile, mapping: Callable[[Path], FileMapping] | 
     if other := other_format(path):
         return FileResult(path.name, refused=other)
     try:
-        found = recognise(file, mapping(path) if mapping is not None else None)
+        return recognise(file, mapping(path) if mapping is not None else None)
     except (ValueError, OSError) as error:
         return FileResult(path.name, refused=_without_name(str(error), path))
-    return found if not found.question else FileResult(path.name, found, refused=_without_name(found.question, path))
+
+
+def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised]:
+    return [each for each in files.values() if isinstance(each, Recognised)]
+
+
+def _unless_asked(file: Recognised) -> Recognised | FileResult:
+    """A file, or its question if nothing determines how to read it."""
+    if not file.question:
+        return file
+    return FileResult(file.path.name, file, refused=_without_name(file.question, file.path))
 
 
 def _without_name(told: str, path: Path) -> str:

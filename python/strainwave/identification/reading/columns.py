@@ -200,6 +200,10 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
     for name, wanted in each:
         channel = CHANNELS[ALIASES.get(name, name)]
         places = places_of(table.labels, wanted) or _of_joint(table, wanted, mapping.joint)
+        if len(places) > 1 and mapping.joint is None and (joints := _numbers_of_joints(table, places)):
+            which = f"it holds {len(joints)} joints ({listed(joints)}), as {table.labels[places[0]].name}"
+            told = f"{which}; say which with --joint {joints[0]} or --joint all"
+            raise UndecidedError(told, (), f"--joint {joints[0]}", FileMapping(joint=joints[0]))
         if len(places) != 1:
             fault = f"has {len(places)} columns" if places else "has no column"
             there = listed(label.name for label in table.labels)
@@ -214,6 +218,12 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
         kept = which if neighbour else ""
         found.append(Column(places[0], label, channel, kept, said=True, neighbour=neighbour, regressor=regressor, unit=unit))
     return found
+
+
+def _numbers_of_joints(table: OpenTable, places: Sequence[int]) -> list[str]:
+    """The numbers behind the names of columns that are one for each joint; empty if they are not."""
+    found = [match[0] if (match := re.search(r"\d+$", table.labels[place].name)) else "" for place in places]
+    return found if all(found) and len(set(found)) == len(found) else []
 
 
 def _of_joint(table: OpenTable, wanted: str, joint: str | None) -> list[int]:

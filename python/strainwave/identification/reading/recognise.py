@@ -16,6 +16,7 @@ from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints, read
+from strainwave.identification.reading.held import renewed_rows
 from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.layout import LaidOutTable
@@ -182,6 +183,8 @@ def _recognised(source: MeasurementFile, said: FileMapping) -> Recognised:
     began = 0.0
     if found.kind in ("log", "encoders", "effort", "breakaway"):
         try:
+            series, slower = _without_held(series, found.columns, found.kind)
+            remarks += slower
             when = _clock(series, said, found.kind)
         except ValueError as error:
             raise ValueError(one_line(f"{table.file}: {error}")) from None
@@ -382,6 +385,18 @@ def _unit(name: str, columns: Mapping[str, Column]) -> str:
         return "s"
     column = columns[name]
     return column.channel.unit if not (name == "command" and column.unit and column.unit.endswith("V")) else "V"
+
+
+def _without_held(series: dict[str, Array], columns: Mapping[str, Column], kind: Kind) -> tuple[dict[str, Array], list[str]]:
+    """The rows in which the angle was renewed, if it is held for several; and what was left out."""
+    names = [name for name in (*REFLECTED.values(), *REFLECTED, "output_angle") if name in series and name.endswith("angle")]
+    for name in names if kind in ("log", "encoders") and "time" in series else ():
+        if (found := renewed_rows(series[name])) is not None:
+            rows, held = found
+            rate = (len(rows) - 1) / max(float(series["time"][rows[-1]] - series["time"][rows[0]]), 1e-300)
+            said = f"{columns[name].name} holds each value for {held} rows: it was sampled at {rate:.3g} Hz"
+            return {each: values[rows] for each, values in series.items()}, [f"{said}, and the {len(rows)} rows are kept"]
+    return series, []
 
 
 def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock | None:
