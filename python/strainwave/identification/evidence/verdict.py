@@ -175,8 +175,11 @@ def _suspect(evidence: Evidence, index: int, estimate: Estimate, sources: Mappin
 def _combination(evidence: Evidence, index: int) -> str:
     """With which other unknown the data tell a parameter only together, and what they do tell of the two."""
     fit = evidence.fit
-    correlation = np.abs(fit.correlation[index])
+    correlation, free = np.abs(fit.correlation[index]), len(fit.plan.unknowns)
     correlation[index] = 0.0
+    correlation[free : free + len(fit.plan.tied)] = 0.0  # what follows another one is known as well
+    if free <= index < free + len(fit.plan.tied):
+        correlation[fit.plan.tied[index - free].unknown] = 0.0
     if not np.isfinite(correlation).any():
         return ""
     partner = int(np.nanargmax(correlation))

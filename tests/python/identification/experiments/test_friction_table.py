@@ -100,3 +100,15 @@ def test_a_gear_gets_the_loss_of_its_mesh_and_no_source_for_what_no_load_measure
     assert {getattr(mesh, name) for name in QUADRANTS} == {mesh.driving_reverse}
     identified = [name for name in QUADRANTS if "identified from" in sources[f"gear.friction_mesh.{name}"].source]
     assert identified == ["driving_reverse"]
+
+
+def test_losses_of_quadrants_that_follow_one_are_all_identified() -> None:
+    table, _ = with_load(dynamometer(np.linspace(-40.0, 40.0, 9)), RATIO)
+    file = Recognised(Path("dyno.csv"), "friction", {}, {}, "input", (), (), {}, table)
+    result, after = friction_of(file, table, 0.0, GearSoFar(GearSet.read("csg-20-100")))
+    determined = {each.path for each in result.estimates if not each.why}
+    assert determined == {"gear.friction_input.coulomb", "gear.friction_input.viscous"} | {
+        f"gear.friction_mesh.{name}" for name in QUADRANTS
+    }
+    for name in QUADRANTS:
+        assert after.gear_set.sources[f"gear.friction_mesh.{name}"].source.startswith("identified from")
