@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 
 Array = NDArray[np.float64]
@@ -23,7 +22,7 @@ RISING = 0.9  # correlation of a ramp with time
 ROWS = 500  # over which a motion is looked for
 
 
-def at_rest(columns: Sequence[Column], mapping: FileMapping) -> Kind | None:
+def at_rest(columns: Sequence[Column], mapping: FileMapping) -> str | None:
     """A kind of measurement at rest, if a torque or current beside one angle looks like one."""
     angle, effort = _one(columns, ("angle",), mapping), _one(columns, ("torque", "current"), mapping)
     if angle is None or effort is None:

@@ -16,7 +16,7 @@ from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channe
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.layout import nameless
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.missing_units import Assumed, missing_units, smallest_step
+from strainwave.identification.reading.missing_units import Assumed, missing_units
 from strainwave.identification.reading.names import QUANTITIES, UNITS, meaning, which_of, words_of
 from strainwave.identification.reading.sides import UndecidedError
 from strainwave.messages import as_option, listed, one_line, quoted
@@ -184,9 +184,8 @@ def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
     if len(angles) < 2:
         return []
     numbers, _ = table.measured([Source(place, which, which, "1") for which, place in angles.items()])
-    spans = {
-        which: float(np.nanmax(values) - np.nanmin(values)) for which, values in numbers.items() if np.isfinite(values).any()
-    }
+    finite = {which: values[np.isfinite(values)] for which, values in numbers.items()}
+    spans = {which: float(np.ptp(values)) for which, values in finite.items() if values.size}
     least = STILL * max(spans.values(), default=0.0)
     return [which for which, span in spans.items() if span > 0.0 and span >= least]
 
@@ -202,8 +201,8 @@ def _said(table: OpenTable, mapping: FileMapping) -> list[Column]:
         places = places_of(table.labels, wanted) or _of_joint(table, wanted, mapping.joint)
         if len(places) > 1 and mapping.joint is None and (joints := _numbers_of_joints(table, places)):
             which = f"it holds {len(joints)} joints ({listed(joints)}), as {table.labels[places[0]].name}"
-            told = f"{which}; say which with --joint {joints[0]} or --joint all"
-            raise UndecidedError(told, (), f"--joint {joints[0]}", FileMapping(joint=joints[0]))
+            question = f"{which}; say which with --joint {joints[0]} or --joint all"
+            raise UndecidedError(question, (), f"--joint {joints[0]}", FileMapping(joint=joints[0]))
         if len(places) != 1:
             fault = f"has {len(places)} columns" if places else "has no column"
             there = listed(label.name for label in table.labels)
@@ -378,7 +377,7 @@ def _incomplete_unit(column: Column, values: Array) -> str:
     there = values[np.isfinite(values)]
     is_whole = len(there) > 1 and bool((there == np.round(there)).all())
     if column.channel.quantity == "angle":
-        return "counts/16384" if is_whole and np.ptp(there) > MIN_COUNTS and smallest_step(there) else ""
+        return "counts/16384" if is_whole and np.ptp(there) > MIN_COUNTS else ""
     is_torque = column.channel.quantity == "torque" and column.channel.measured
     return share if is_torque and is_whole and len(there) > MIN_SAMPLES and np.ptp(there) >= MIN_STEPS else ""
 

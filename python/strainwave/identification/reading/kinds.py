@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
+from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.at_rest import at_rest
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.kind import KINDS, Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Quantity, Side
 from strainwave.identification.reading.sides import (
@@ -42,8 +42,8 @@ LOADED = 0.9  # correlation of torque and angle of a spring, which an alternatin
 
 
 @dataclass(frozen=True)
-class Found:
-    """What the columns are.
+class ColumnRoles:
+    """The kind of a set of columns, and the channel of each.
 
     Args:
         kind: of measurement
@@ -53,23 +53,26 @@ class Found:
         remarks: what was assumed
     """
 
-    kind: Kind
+    kind: str
     columns: dict[str, Column]
     side: Side | None
     why: tuple[str, ...]
     remarks: tuple[str, ...] = ()
 
 
-def kind_of(columns: Sequence[Column], mapping: FileMapping) -> Found:
+def kind_of(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     """What the columns are, and which channel each is.
 
     Raises:
         UndecidedError: it cannot be told, or they are no measurement
     """
-    return _READERS[mapping.kind or _kind(columns, mapping)](columns, mapping)
+    return kind_named(mapping.kind or _kind(columns, mapping)).roles(columns, mapping)
 
 
-def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
+def _kind(columns: Sequence[Column], mapping: FileMapping) -> str:
+    for name in KINDS:
+        if kind_named(name).recognises(columns, mapping):
+            return name
     has = {column.channel.quantity for column in columns if column.channel.measured}
     timed = "time" in has or "rate" in mapping.constants
     effort, motion = has & {"torque", "current"}, has & {"angle", "speed"}
@@ -97,7 +100,7 @@ def _kind(columns: Sequence[Column], mapping: FileMapping) -> Kind:
     )
 
 
-def _table_or_samples(columns: Sequence[Column]) -> Kind:
+def _table_or_samples(columns: Sequence[Column]) -> str:
     """Whether speeds and torques without time are a table, or samples at one speed."""
     speed = _measured(columns, "speed")[0].si
     if len(speed) > 20 and np.quantile(np.abs(speed - np.median(speed)), WITHIN) < STEADY * abs(np.median(speed)):
@@ -110,7 +113,7 @@ def _table_or_samples(columns: Sequence[Column]) -> Kind:
     return "friction"
 
 
-def _loop_or_turns(columns: Sequence[Column], mapping: FileMapping) -> Kind:
+def _loop_or_turns(columns: Sequence[Column], mapping: FileMapping) -> str:
     """Whether angles and torques without time are a torsion loop, or torque while the shaft turns on."""
     column = _measured(columns, "angle")[0]
     angle, torque = column.si, _measured(columns, "torque")[0].si
@@ -126,7 +129,7 @@ def _loop_or_turns(columns: Sequence[Column], mapping: FileMapping) -> Kind:
     return "torsion" if is_spring else "effort"
 
 
-def _to_and_fro_or_turns(columns: Sequence[Column]) -> Kind:
+def _to_and_fro_or_turns(columns: Sequence[Column]) -> str:
     """Whether currents beside angles without time are ripple while the shaft turns on; asked where it goes to and fro."""
     angle, current = _measured(columns, "angle")[0], _measured(columns, "current")[0]
     if not turning_points(angle.si):
@@ -137,22 +140,22 @@ def _to_and_fro_or_turns(columns: Sequence[Column]) -> Kind:
     )
 
 
-def _friction(columns: Sequence[Column], mapping: FileMapping) -> Found:
+def friction_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     speed = _needed(columns, "speed", "friction")
     columns, load, loaded = _with_load(columns, speed)
     effort: Quantity = "torque" if _measured(columns, "torque") else "current"
     torque = _needed(columns, effort, "friction")
     side, told = side_of_table(speed, torque, mapping.side)
     order = "in no order of time" if (np.diff(speed.si) < 0.0).any() else "in the order of speed"
-    why = f"its columns are {pair(speed, torque)}, {len(speed.si)} rows {order}: {KINDS['friction']}"
+    why = f"its columns are {pair(speed, torque)}, {len(speed.si)} rows {order}: {KINDS['friction'].title}"
     found = {"speed": speed, effort: torque, **load, **_temperature(columns)}
     if len(speed.si) <= SAMPLED:
-        return Found("friction", found, side, (why, told, *loaded))
+        return ColumnRoles("friction", found, side, (why, told, *loaded))
     parts = stretches(speed.si)
     rows = sum(part.stop - part.start for part in parts)
-    why = f"its columns are {pair(speed, torque)} at one speed after another: {KINDS['friction']}"
+    why = f"its columns are {pair(speed, torque)} at one speed after another: {KINDS['friction'].title}"
     said = f"{rows} of its {len(speed.si)} rows are steady; the means of {len(parts)} stretches at one speed are taken"
-    return Found("friction", averaged(found, parts), side, (why, told, *loaded), (said,))
+    return ColumnRoles("friction", averaged(found, parts), side, (why, told, *loaded), (said,))
 
 
 def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Column], dict[str, Column], tuple[str, ...]]:
@@ -184,7 +187,7 @@ def _drives(speed: Array, torque: Column, load: Column) -> bool:
     return bool(abs(driving) > abs(rubbing))
 
 
-def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
+def torsion_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     torque = _needed(columns, "torque", "torsion")
     twists = _measured(columns, "twist")
     angle = twists[0] if twists else _needed(columns, "angle", "torsion")
@@ -207,14 +210,14 @@ def _torsion(columns: Sequence[Column], mapping: FileMapping) -> Found:
     inside = "the friction of the input is in the loop"
     if side == "input":
         told = f"angle and torque are those of the input: the output was locked, and {inside}"
-        return Found("torsion", {"input_angle": angle, "input_torque": torque}, side, (why, told))
+        return ColumnRoles("torsion", {"input_angle": angle, "input_torque": torque}, side, (why, told))
     counted = f"{torque.name} is a torque of the motor, counted at the output: {inside}"
     remarks = (counted,) if "motor" in torque.name.casefold() else ()
     told = "twist and torque are those of the output"
-    return Found("torsion", {"twist": angle, "torque": torque}, side, (why, told, *by_stiffness), remarks)
+    return ColumnRoles("torsion", {"twist": angle, "torque": torque}, side, (why, told, *by_stiffness), remarks)
 
 
-def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
+def log_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     torques, currents, remarks = _efforts(columns)
     _check_voltage(columns, [*torques, *currents])
     found: dict[str, Column] = {}
@@ -229,8 +232,8 @@ def _log(columns: Sequence[Column], mapping: FileMapping) -> Found:
         for column in some:
             _put(found, name, column)
     sides, why = _put_sided(found, columns, torques, mapping)
-    first = f"it holds {_names(columns)}, {len(columns[0].si)} rows in time: {KINDS['log']}"
-    return Found("log", found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
+    first = f"it holds {_names(columns)}, {len(columns[0].si)} rows in time: {KINDS['log'].title}"
+    return ColumnRoles("log", found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
 
 
 def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
@@ -317,18 +320,35 @@ def _efforts(columns: Sequence[Column]) -> tuple[list[Column], list[Column], tup
     return torques, currents, tuple(remarks)
 
 
-def _encoders(columns: Sequence[Column], mapping: FileMapping) -> Found:
+def run_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
+    """Return the channels of a run of the whole drive: time, command and what was measured; an encoder is that of the motor."""
+    found: dict[str, Column] = {}
+    for name, some in (
+        ("time", _measured(columns, "time")),
+        ("command", _commanded(columns, "angle") or _commanded(columns, "voltage")),
+        ("current", _measured(columns, "current")),
+    ):
+        for column in some:
+            _put(found, name, column)
+    if "command" not in found:
+        raise UndecidedError(f"{KINDS['run'].title} needs its command; it holds {_names(columns)}")
+    _, why = _put_sided(found, columns, [], mapping if mapping.side else replace(mapping, side="input"))
+    first = f"it holds {_names(columns)}, {len(columns[0].si)} rows in time: {KINDS['run'].title}"
+    return ColumnRoles("run", found, None, (first, *why))
+
+
+def encoder_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     angles = _measured(columns, "angle")
     if len(angles) != 2:
         raise UndecidedError(f"a record of two encoders needs two angles; it holds {_names(columns)}")
     fast, slow, told = sides_of_angles(angles)
-    why = f"its columns are {pair(*angles)}, and no torque or current: {KINDS['encoders']}"
+    why = f"its columns are {pair(*angles)}, and no torque or current: {KINDS['encoders'].title}"
     times = {"time": column for column in _measured(columns, "time")[:1]}  # noqa: B035 - one or none
     found = {**times, "input_angle": fast, "output_angle": slow, **_temperature(columns)}
-    return Found("encoders", found, None, tuple(filter(None, (why, told))))
+    return ColumnRoles("encoders", found, None, tuple(filter(None, (why, told))))
 
 
-def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
+def effort_roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     found: dict[str, Column] = {}
     for column in columns:
         if column.channel.measured:
@@ -347,10 +367,10 @@ def _effort(columns: Sequence[Column], mapping: FileMapping) -> Found:
     else:
         why = f"it holds {effort} and nothing that moves: the output was locked, or the speed was constant and is not stated"
     told = (f"{robot} is what robots call a channel of a joint: it is taken to be at the output",) if robot else ()
-    return Found("effort", found, side, (why, *told))
+    return ColumnRoles("effort", found, side, (why, *told))
 
 
-def _at_rest(columns: Sequence[Column], mapping: FileMapping, kind: Kind) -> Found:
+def at_rest_roles(columns: Sequence[Column], mapping: FileMapping, kind: str) -> ColumnRoles:
     effort: Quantity = "torque" if _measured(columns, "torque") else "current"
     angle, force = _needed(columns, "angle", kind), _needed(columns, effort, kind)
     side = mapping.side or angle.channel.side or ("output" if angle.robot else "input")
@@ -358,21 +378,10 @@ def _at_rest(columns: Sequence[Column], mapping: FileMapping, kind: Kind) -> Fou
     moved = f"{angle.name} moves by {1e3 * np.ptp(angle.si):.3g} mrad in all"
     if kind == "presliding":
         turns = len(turning_points(angle.si))
-        return Found(kind, found, side, (f"{moved} and turns back {turns} times beside {force.name}: {KINDS[kind]}",))
+        return ColumnRoles(kind, found, side, (f"{moved} and turns back {turns} times beside {force.name}: {KINDS[kind].title}",))
     if times := _measured(columns, "time"):
         found["time"] = times[0]
-    return Found(kind, found, side, (f"{force.name} rises while {angle.name} rests, until it moves: {KINDS[kind]}",))
-
-
-_READERS: dict[Kind, Callable[[Sequence[Column], FileMapping], Found]] = {
-    "friction": _friction,
-    "torsion": _torsion,
-    "log": _log,
-    "encoders": _encoders,
-    "effort": _effort,
-    "presliding": lambda columns, mapping: _at_rest(columns, mapping, "presliding"),
-    "breakaway": lambda columns, mapping: _at_rest(columns, mapping, "breakaway"),
-}
+    return ColumnRoles(kind, found, side, (f"{force.name} rises while {angle.name} rests, until it moves: {KINDS[kind].title}",))
 
 
 def _measured(columns: Sequence[Column], quantity: Quantity) -> list[Column]:
@@ -383,7 +392,7 @@ def _commanded(columns: Sequence[Column], quantity: Quantity) -> list[Column]:
     return [column for column in columns if column.channel.quantity == quantity and column.channel.commanded]
 
 
-def _needed(columns: Sequence[Column], quantity: Quantity, kind: Kind) -> Column:
+def _needed(columns: Sequence[Column], quantity: Quantity, kind: str) -> Column:
     """The one column of a quantity, or the one that a person named."""
     found = _measured(columns, quantity)
     found = found if len(found) == 1 else [column for column in found if column.said] or found
@@ -391,7 +400,7 @@ def _needed(columns: Sequence[Column], quantity: Quantity, kind: Kind) -> Column
         return found[0]
     lack = f"each of {_names(found)} may be it" if found else f"it holds {_names(columns)}"
     raise UndecidedError(
-        f"{KINDS[kind]} needs one {quantity}: {lack}; say which, as with {as_option('column', quantity, 'NAME')}"
+        f"{KINDS[kind].title} needs one {quantity}: {lack}; say which, as with {as_option('column', quantity, 'NAME')}"
     )
 
 

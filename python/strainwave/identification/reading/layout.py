@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from strainwave.files.labels import Content, Label, Source
 from strainwave.files.tables import OpenTable
 from strainwave.identification.reading.names import QUANTITY_OF, meaning, words_of
+from strainwave.messages import listed
 
 Array = NDArray[np.float64]
 
@@ -103,10 +104,9 @@ class LaidOutTable:
     def remark(self) -> str:
         """What was determined, in words."""
         places = {name: str(place + 1) for place, name in enumerate(self.layout.names) if name}
-        angles = [places[name] for name in places if name == "q" or name.startswith("q_")]
-        speeds = [places[name] for name in places if name == "dq" or name.startswith("dq_")]
+        angles, speeds = ([each for name, each in places.items() if name.partition("_")[0] == stem] for stem in ("q", "dq"))
         time = "" if self.layout.time is None else f"column {self.layout.time + 1} is the time, "
-        return f"its columns have no names, but a layout: {time}{_run(angles)} the angles, {_run(speeds)} their speeds"
+        return f"its columns have no names, but a layout: {time}{_run(angles)} the angle of joints, {_run(speeds)} the speed"
 
 
 def with_layout(table: OpenTable) -> OpenTable:
@@ -141,7 +141,9 @@ def layout_of(table: OpenTable, timed: int | None = None) -> Layout | None:
     if len(places) < 3 or not nameless(table):
         return None
     numbers, _ = table.measured([Source(place, str(place), str(place), "1") for place in places[:MAX_COLUMNS]])
-    columns = {int(place): values[:MAX_ROWS] for place, values in numbers.items() if _may_be_measured(values[:MAX_ROWS])}
+    begins = {int(place): values[:MAX_ROWS] for place, values in numbers.items()}
+    finite = {place: np.where(np.isfinite(values), values, np.nan) for place, values in begins.items()}
+    columns = {place: values for place, values in finite.items() if _may_be_measured(values)}
     rows = len(next(iter(columns.values()), []))
     if rows < MIN_ROWS:
         return None
@@ -243,4 +245,7 @@ def _likeness(angle: Array, speed: Array, time: Array, apart: int) -> float:
 
 
 def _run(places: Sequence[str]) -> str:
-    return f"column {places[0]} is" if len(places) == 1 else f"columns {places[0]} to {places[-1]} are"
+    if len(places) == 1:
+        return f"column {places[0]} is"
+    is_run = int(places[-1]) - int(places[0]) == len(places) - 1
+    return f"columns {f'{places[0]} to {places[-1]}' if is_run else listed(places)} are"

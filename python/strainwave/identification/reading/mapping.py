@@ -28,8 +28,8 @@ from strainwave import arguments
 from strainwave.files.gear_file import at, document
 from strainwave.files.units import check as check_unit
 from strainwave.files.units import convert
+from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
-from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.names import Side
 from strainwave.messages import listed, one_line, quoted, shortened
 from strainwave.number_texts import is_number, number_in
@@ -84,7 +84,7 @@ class FileMapping:
     units: Mapping[str, str] = field(default_factory=dict)
     sign: Mapping[str, int] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)
-    kind: Kind | None = None
+    kind: str | None = None
     side: Side | None = None
     joint: str | None = None
 
@@ -104,7 +104,7 @@ class FileMapping:
         for name, sign in self.sign.items():
             if isinstance(sign, bool) or sign not in (1, -1):
                 raise ValueError(f"sign of {name} = {shortened(sign)} must be 1 or -1")
-        for name, value, choices in (("kind", self.kind, get_args(Kind)), ("side", self.side, get_args(Side))):
+        for name, value, choices in (("kind", self.kind, KINDS), ("side", self.side, get_args(Side))):
             if value is not None:
                 _check_known(f"{name} = {shortened(value)}", value, choices, f"{name}s")
 

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from strainwave.files.array_table import ArrayTable
 from strainwave.files.recording import Recording
 from strainwave.files.tables import OpenTable
+from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import Clock, clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import chosen, moving_joints, read
 from strainwave.identification.reading.held import renewed_rows
-from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.kinds import kind_of
 from strainwave.identification.reading.layout import LaidOutTable
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
@@ -60,7 +60,7 @@ class Recognised:
     """
 
     path: Path
-    kind: Kind
+    kind: str
     columns: Mapping[str, str]
     units: Mapping[str, str]
     side: Side | None
@@ -181,7 +181,7 @@ def _recognised(source: MeasurementFile, said: FileMapping) -> Recognised:
     used = {**found.columns, **neighbours, **regressors}
     remarks += _unwrap(table, series, used)
     began = 0.0
-    if found.kind in ("log", "encoders", "effort", "breakaway"):
+    if kind_named(found.kind).time != "none":
         try:
             series, slower = _without_held(series, found.columns, found.kind)
             remarks += slower
@@ -294,7 +294,8 @@ def _check_named_effort(source: MeasurementFile, said: FileMapping) -> None:
 
 
 def _span(places: Sequence[int]) -> str:
-    return f"{places[0] + 1}" if len(places) == 1 else f"{places[0] + 1} to {places[-1] + 1}"
+    is_run = places[-1] - places[0] == len(places) - 1 > 0
+    return f"{places[0] + 1} to {places[-1] + 1}" if is_run else listed(str(place + 1) for place in places)
 
 
 def _further(source: MeasurementFile, said: FileMapping, undecided: UndecidedError) -> str:
@@ -387,7 +388,7 @@ def _unit(name: str, columns: Mapping[str, Column]) -> str:
     return column.channel.unit if not (name == "command" and column.unit and column.unit.endswith("V")) else "V"
 
 
-def _without_held(series: dict[str, Array], columns: Mapping[str, Column], kind: Kind) -> tuple[dict[str, Array], list[str]]:
+def _without_held(series: dict[str, Array], columns: Mapping[str, Column], kind: str) -> tuple[dict[str, Array], list[str]]:
     """The rows in which the angle was renewed, if it is held for several; and what was left out."""
     names = [name for name in (*REFLECTED.values(), *REFLECTED, "output_angle") if name in series and name.endswith("angle")]
     for name in names if kind in ("log", "encoders") and "time" in series else ():
@@ -399,7 +400,7 @@ def _without_held(series: dict[str, Array], columns: Mapping[str, Column], kind:
     return series, []
 
 
-def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock | None:
+def _clock(series: Mapping[str, Array], said: FileMapping, kind: str) -> Clock | None:
     """The time of the rows; none where nothing tells it and nothing needs it."""
     count = len(next(iter(series.values())))
     if "time" in series:
@@ -410,7 +411,7 @@ def _clock(series: Mapping[str, Array], said: FileMapping, kind: Kind) -> Clock 
         return clock(series["time"], repeated, angle)
     if "rate" in said.constants:
         return regular(count, said.constants["rate"])
-    if kind in ("log", "breakaway"):
+    if kind_named(kind).time == "needed":
         raise ValueError("it has no time; give the rate of its rows, with --constant rate=HZ")
     return None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from strainwave.files.array_table import ArrayTable, Grid, grid_table
 from strainwave.files.folder import FolderFiles, files_below
 from strainwave.files.labels import Label, Source, places_of
+from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS, OpenTable, is_table_of_numbers, open_table
+from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import is_slope, nameless, rises_evenly, with_layout
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS
 from strainwave.identification.reading.own_times import with_own_times
@@ -37,10 +39,14 @@ class MeasurementFile:
     Args:
         path: of the file; of several files of one recording the first
         parts: all files of a recording that has one for each quantity; empty for a recording in one file
+        recording: in place of the file; then the path is the name by which results call it
+        kind: of measurement, if a person gave it
     """
 
     path: Path
     parts: tuple[MeasurementFile, ...] = ()
+    recording: Recording | None = None
+    kind: str | None = None
 
     @cached_property
     def raw(self) -> OpenTable:
@@ -49,6 +55,8 @@ class MeasurementFile:
         Raises:
             ValueError: the file cannot be read
         """
+        if self.recording is not None:
+            return _table_of(self.recording, str(self.path))
         return _together(self.parts) if self.parts else open_table(self.path)
 
     @cached_property
@@ -93,14 +101,21 @@ class MeasurementFiles(NamedTuple):
     links: list[Path]
 
 
-def measurement_files(paths: Sequence[str | Path] | MeasurementFiles) -> MeasurementFiles:
+Measurement = str | Path | Recording
+
+
+def measurement_files(paths: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles) -> MeasurementFiles:
     """Return the files that paths stand for: of a folder those that may be measurements, the folder itself if it has none.
+
+    A mapping has the path of a file or a recording by the kind of measurement; a recording is called as its title has it.
 
     Raises:
         ValueError, OSError: as of `files_below`
     """
     if isinstance(paths, MeasurementFiles):
         return paths
+    if isinstance(paths, Mapping):
+        return MeasurementFiles([_of_kind(kind, each) for kind, each in paths.items()], [])
     folders = [_below(Path(path)) for path in paths]
     files = [MeasurementFile(path) for path in dict.fromkeys(file for folder in folders for file in folder.files)]
     return MeasurementFiles(with_parts(files), [link for folder in folders for link in folder.links])
@@ -116,6 +131,19 @@ def _below(path: Path) -> FolderFiles:
 def measurement_file(file: str | Path | MeasurementFile) -> MeasurementFile:
     """Return a file of measurements, itself if it is one."""
     return file if isinstance(file, MeasurementFile) else MeasurementFile(Path(file))
+
+
+def _of_kind(kind: str, given: Measurement) -> MeasurementFile:
+    if not isinstance(given, Recording):
+        return MeasurementFile(Path(given), kind=kind)
+    name = given.title.replace("/", "_") or KINDS[kind].title.removeprefix("a ")
+    return MeasurementFile(Path(name), recording=given, kind=kind)
+
+
+def _table_of(recording: Recording, name: str) -> ArrayTable:
+    """Return a recording as the table of a file."""
+    labels = [Label(each, each, recording.unit(each)) for each in recording.names]
+    return ArrayTable(name, recording.title, labels, [recording[each] for each in recording.names])
 
 
 def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:

@@ -55,7 +55,9 @@ def test_one_joint_of_an_arm(
 
 def test_a_table_without_names_is_read_by_its_layout(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     arms.headerless(tmp_path / "log.csv", seen)
-    with pytest.raises(ValueError, match=r"column 1 is the time, columns 2 to 7 are the angles, columns 8 to 13 ") as refused:
+    with pytest.raises(
+        ValueError, match=r"column 1 is the time, columns 2 to 7 are the angle of joints, columns 8 to 13 "
+    ) as refused:
         recognise(tmp_path / "log.csv")
     assert "--joint 1 (or --joint all) --column joint_torque=block3, or --column current=block3 if it is" in str(refused.value)
     is_joint(recognise(tmp_path / "log.csv", FileMapping(joint="2", columns={"current": "block3"})), seen, 1, "current")
@@ -224,7 +226,7 @@ def test_a_matrix_without_time_says_which_columns_belong_together(tmp_path: Path
     alone = arms.Recorder(rate=200.0)(arms.run((JOINT,) * 3, arms.fourier(4.0, (1,), seed=1)))
     rows = [*alone["q"], *alone["dq"], *np.gradient(alone["dq"], 0.005, axis=1), *alone["motor_torque"]]
     np.savetxt(tmp_path / "a.txt", np.column_stack(rows))
-    with pytest.raises(ValueError, match="columns 1 to 3 are the angles, columns 4 to 6 are their speeds") as refused:
+    with pytest.raises(ValueError, match="columns 1 to 3 are the angle of joints, columns 4 to 6 are the speed") as refused:
         recognise(tmp_path / "a.txt")
     assert "block4 = columns 10 to 12, as with --column joint_torque=block4 --constant rate=HZ" in str(refused.value)
     told = FileMapping(columns={"joint_torque": "block4"}, constants={"rate": 200.0})

@@ -1,0 +1,34 @@
+"""Files whose name says that they are tables, but whose beginning shows another format."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+BEGINNINGS = {
+    b"\x89PNG": "a picture (PNG)", b"\xff\xd8\xff": "a picture (JPEG)", b"GIF8": "a picture (GIF)", b"BM": "a picture (BMP)",
+    b"%PDF": "a PDF document", b"PK\x03\x04": "a ZIP archive, as spreadsheets are", b"\x1f\x8b": "packed (gzip)",
+    b"\xd0\xcf\x11\xe0": "an old Excel or Word file", b"<!DOCTYPE": "a web page", b"<html": "a web page",
+}  # fmt: skip
+MAX_BYTES_READ = 2048  # of the beginning
+TEXTS = (".csv", ".txt", ".tsv", ".log", ".dat")
+
+
+def other_format(path: Path) -> str | None:
+    """Return what a file with the name of a table is by its first letters, and what to do; None if it may be a table."""
+    if path.suffix.lower() not in TEXTS or not path.is_file():
+        return None
+    with path.open("rb") as file:
+        begin = file.read(MAX_BYTES_READ)
+    if separator := _other_separator(begin):
+        return f'its columns are separated by "{separator}": separate them by commas, semicolons or tabs'
+    found = next((what for letters, what in BEGINNINGS.items() if begin.startswith(letters)), None)
+    what = f"its name says {path.suffix}, but it is {found}"
+    return None if found is None else f"{what}: export the measurement as CSV with one header line"
+
+
+def _other_separator(begin: bytes) -> str | None:
+    """Return a separator that tables are not read with, if two lines in a row have it equally often, and no other one."""
+    lines = [line for line in begin.decode("utf-8", "ignore").splitlines() if line.strip() and not line.startswith("#")][:2]
+    if len(lines) < 2 or any(each in line for line in lines for each in ",;\t"):
+        return None
+    return next((each for each in "|:^~" if lines[0].count(each) == lines[1].count(each) > 0), None)
