@@ -66,8 +66,8 @@ def torsion_scores(loop: TorsionLoop, spring: Any) -> list[Score]:
     secant = 0.5 * span / half
     spring = spring.replace(**{spring.fields[0]["name"]: 0.5 * secant})
     scores = [best_fit(name, spring, starts, loop, training) for name, starts in hysteresis_starts(half, span, secant).items()]
-    twin = fit_loop(loop, sw.Gear(), training)[0]
-    scores.append(Score(f"MaxwellSlip, chosen by the twin: {twin.name}", len(twin.fit.estimates), *errors(twin.fit)))
+    chosen = fit_loop(loop, sw.Gear(), training)[0]
+    scores.append(Score(f"MaxwellSlip, chosen by identify: {chosen.name}", len(chosen.fit.estimates), *errors(chosen.fit)))
     scores += [grid_score(loop, spring, rows, training) for rows in (4, 7, 10)]
     return [Score(s.model, s.numbers, s.fitted / span, s.held_out_blocks / span) for s in scores]
 

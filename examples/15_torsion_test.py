@@ -1,4 +1,4 @@
-"""A torsion test from plan to twin, on a virtual rig: masses on pans, photographs of two markers, loop, stiffness, model.
+"""A torsion test from plan to gear, on a virtual rig: masses on pans, photographs of two markers, loop, stiffness, model.
 
 A catalogue gear is loaded at its input, as on the rig of document T, its output held. Its own friction is in the loop, and
 that of the pulleys, which the file of the rig states, is taken out. Look at the loop: a table of friction, measured apart,
@@ -35,8 +35,8 @@ for each in found.stiffnesses:
 speed = np.geomspace(1.0, 300.0, 12)
 friction = {"speed": speed, "torque": gear.friction_input.steady(speed)}
 table = sw.Recording(friction, {"speed": "rad/s", "torque": "N.m"}, "friction, measured apart")
-twin = sw.twin("csg-25-100", friction=table, torsion=loop.recording())
-model = twin.gear_set.gear
+found_gear = sw.identify("csg-25-100", {"friction": table, "torsion": loop.recording()})
+model = found_gear.gear_set.gear
 assert isinstance(gear.hysteresis, sw.hysteresis.MaxwellSlip)
 assert isinstance(model.hysteresis, sw.hysteresis.MaxwellSlip)
 held = {"true": sum(gear.hysteresis.breakaway), "found": sum(model.hysteresis.breakaway)}

@@ -8,7 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from strainwave.demo import position_drive, torsion_rig
-from strainwave.report import figures
+from strainwave.report.identify_figures import overview
 from strainwave.report.page import write
 
-write(figures.overview(torsion_rig().evidence[0], position_drive().evidence[0]), Path(__file__).with_name("twin.svg"))
+(loop,), (table,) = torsion_rig().files[0].pictures, position_drive().files[0].pictures
+write(overview(loop, table), Path(__file__).with_name("twin.svg"))

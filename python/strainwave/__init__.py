@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from strainwave.identification.fitting.minima import Minima, minima
     from strainwave.identification.fitting.profile import Profile, profile
     from strainwave.identification.identify import Identified, identify
-    from strainwave.identification.twin import Twin, twin
+    from strainwave.identification.reading.mapping import FileMapping
     from strainwave.native.cache import KernelWarning
     from strainwave.native.compile import Compilation, compile
     from strainwave.orders.order_spectrum import BearingOrders, Orders, bearing_orders, order_amplitudes, order_spectrum
@@ -79,6 +79,7 @@ _LAZY = {
     "Entry": "files.entries",
     "EnsembleWarning": "simulation.ensemble",
     "ExperimentPlan": "identification.excitation.plan",
+    "FileMapping": "identification.reading.mapping",
     "Fit": "identification.fitting.fit",
     "FrequencyResponse": "analysis.response",
     "GearSet": "files.gear_set",
@@ -97,7 +98,6 @@ _LAZY = {
     "ScenarioFile": "simulation.scenario_file",
     "Seen": "simulation.controller",
     "TransmissionError": "orders.two_encoders",
-    "Twin": "identification.twin",
     "bearing_orders": "orders.order_spectrum",
     "bootstrap": "identification.fitting.bootstrap",
     "catalogue": "files.gear_set",
@@ -129,7 +129,6 @@ _LAZY = {
     "simulate_many": "simulation.ensemble",
     "simulate_to": "simulation.ensemble",
     "transmission_error": "orders.two_encoders",
-    "twin": "identification.twin",
 }
 
 __all__ = [
@@ -145,6 +144,7 @@ __all__ = [
     "EnsembleWarning",
     "Entry",
     "ExperimentPlan",
+    "FileMapping",
     "Fit",
     "FrequencyResponse",
     "Gear",
@@ -166,7 +166,6 @@ __all__ = [
     "Seen",
     "Sensors",
     "TransmissionError",
-    "Twin",
     "bearing_orders",
     "bootstrap",
     "catalogue",
@@ -212,7 +211,6 @@ __all__ = [
     "structure",
     "thermal",
     "transmission_error",
-    "twin",
     "variation",
 ]
 

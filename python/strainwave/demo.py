@@ -1,7 +1,7 @@
-"""The demonstration: twins from published measurements, and published experiments simulated with one of them.
+"""The demonstration: gears from published measurements, and published experiments simulated with one of them.
 
 The friction table and the drive are document P's, the torsion loop is document T's: two different gears of ratio 1:100, and so
-two twins. No publication known to us measures both on one gear.
+two results. No publication known to us measures both on one gear.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from strainwave import Drive, load
 from strainwave.files.recording import Recording
 from strainwave.friction import Coulomb
-from strainwave.identification.twin import Twin, twin
+from strainwave.identification.identify import Identified, identify
 from strainwave.report.experiment import Figure, SimulatedExperiment
 from strainwave.simulation import scenario
 from strainwave.simulation.run import simulate
@@ -43,25 +43,25 @@ def commands() -> dict[str, Scenario]:
     }
 
 
-def position_drive() -> Twin:
-    """Return the twin of document P's drive from its Table 2, read as all friction (E-P7)."""
-    return twin(
-        "position-drive",
-        friction=PUBLISHED / "position-control-friction.csv",
-        sources={"friction": "document P, Table 2 (measured), read as all friction; see E-P7 for its other readings"},
-    )
+def position_drive() -> Identified:
+    """Return the gear of document P's drive from its Table 2, read as all friction (E-P7 has its other readings)."""
+    title = "document P, Table 2 (measured), read as all friction; see E-P7 for its other readings"
+    return identify("position-drive", {"friction": _titled("position-control-friction.csv", title)}, accept=True)
 
 
-def torsion_rig() -> Twin:
-    """The twin of the gear on document T's rig from its torsion loop."""
-    return twin(
-        PUBLISHED / "torsional-stiffness.toml",
-        torsion=PUBLISHED / "torsional-stiffness-loop.csv",
-        sources={"torsion": "document T, Table 2, row 0° (points reconstructed, E-T4)"},
-    )
+def torsion_rig() -> Identified:
+    """Return the gear on document T's rig from its torsion loop."""
+    loop = _titled("torsional-stiffness-loop.csv", "document T, Table 2, row 0° (points reconstructed, E-T4)")
+    return identify(PUBLISHED / "torsional-stiffness.toml", {"torsion": loop}, accept=True)
 
 
-def experiments(found: Twin) -> list[SimulatedExperiment]:
+def _titled(name: str, title: str) -> Recording:
+    """Return a published table with the title by which results name it."""
+    read = Recording.read(PUBLISHED / name)
+    return Recording({each: read[each] for each in read.names}, read.units, title)
+
+
+def experiments(found: Identified) -> list[SimulatedExperiment]:
     """Return document P's experiments with each reading of its Table 2, and with document P's own drive."""
     printed, ways = found.start.drive, dict(zip(LABELS, table_2(found), strict=True))
     drives = {
@@ -76,12 +76,13 @@ def experiments(found: Twin) -> list[SimulatedExperiment]:
     return [_experiment(name, command, drives, published, remark) for (name, command), published in pairs]
 
 
-def table_2(found: Twin) -> tuple[Reading, ...]:
+def table_2(found: Identified) -> tuple[Reading, ...]:
     """Return the three readings of document P's Table 2 beside document P's average friction."""
     from strainwave.identification.candidates.position import readings
     from strainwave.identification.experiments.friction_table import FrictionTable
 
-    table = found.evidence[0].fit.experiment
+    fit = found.files[0].fit
+    table = None if fit is None else fit.experiment
     assert isinstance(table, FrictionTable)
     law = load("position-drive-full-friction").gear.friction_input.replace(cosine=[], sine=[])
     return readings(table, law, reduction=abs(float(found.start.drive.gear.kinematics.ratio)))

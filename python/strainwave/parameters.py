@@ -85,3 +85,12 @@ def replaced(model: Any, changes: Mapping[str, Any]) -> Any:
         elements[int(place)] = direct.pop(head)
         direct[name] = elements
     return model.replace(**direct)
+
+
+def gear_numbers(gear: Gear) -> dict[str, tuple[float, str]]:
+    """Return value and unit of each number of a gear, by its path in a gear set.
+
+    >>> gear_numbers(Gear())["gear.damping"]
+    (0.0, 'N.m.s/rad')
+    """
+    return {f"gear.{path}": (value, unit) for path, value, unit, *_ in _core.parameters(gear)}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.identification.reading.kind import KINDS
+from strainwave.identification.kinds import KINDS
 from strainwave.messages import quoted
 from strainwave.number_texts import is_whole, number_in
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.source import MeasurementFiles
     from strainwave.identification.results.file_result import FileResult
+    from strainwave.report.experiment import SimulatedExperiment
     from strainwave.report.provenance import Provenance
 
-MOST_REMARKS = 5  # of a file on the terminal; the report has all
+FAILED = 3  # exit code if a check fails: no gear is written
+MAX_REMARKS = 5  # of a file on the terminal; the report has all
 
 
 def identify(
@@ -31,14 +33,14 @@ def identify(
     side: Side = None,
     joint: Joint = None,
     kind: Kind = None,
-    accept: Annotated[bool, typer.Option("--accept", help="Use tables and loops although their sizes are doubted.")] = False,
+    accept: Annotated[bool, typer.Option("--accept", help="Use files and write the gear although a check fails.")] = False,
     out: Annotated[Path, typer.Option(help="Folder for report.html, the gear and the numbers.")] = Path("out/identify"),
 ) -> None:
-    """Find out what files of measurements are, and what gear they show.
+    """Determine the type of measurement files, and the gear that they show.
 
-    Tables of friction, torsion loops, logs of the drive in motion and records of two encoders, in any order: each file is told
-    what it seems to be and why, and fitted by itself. Of files that agree about a number the mean is taken; where files
-    contradict each other, both values are shown.
+    Tables of friction, torsion loops, logs of the drive in motion and records of two encoders, in any order: each file is
+    fitted by itself, with the reasons for its type. Of files that agree about a parameter the mean is taken. If a consistency
+    check fails, it is printed first, no gear is written, and the exit code is 3.
     """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -67,19 +69,31 @@ def identify(
 
         found = identified(gear, opened, mapping=said, accept=accept, progress=turn)
         bar.update(task, description="report", completed=len(read))
-        files = _files(found, Provenance.of_this_command(read))
+        files = files_to_write(found, Provenance.of_this_command(read), accept=accept)
         write_folder(out, files)
-    print("\n".join(_summary(found)))
+    print("\n".join(summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    if found.failed and not accept:
+        print("no gear is written while a check fails: settle it, or --accept writes it")
+        raise typer.Exit(FAILED)
 
 
-def _files(found: Identified, provenance: Provenance) -> dict[str, str]:
-    """What is written of one gear, by the names of the files."""
+def files_to_write(
+    found: Identified,
+    provenance: Provenance,
+    *,
+    accept: bool = False,
+    experiments: Sequence[SimulatedExperiment] = (),
+) -> dict[str, str]:
+    """Return what is written of one gear, by the names of the files; no gear if a check failed, unless it was accepted."""
     from strainwave.files import gear_file
-    from strainwave.report.identify import identify_files, identify_report
+    from strainwave.report.identify import identify_report
+    from strainwave.report.identify_files import identify_files
 
-    files = identify_files(found) | {"gear.toml": gear_file.text(found.gear_set)}
-    return files | {"report.html": identify_report(found, provenance)}
+    files = identify_files(found)
+    if accept or not found.failed:
+        files["gear.toml"] = gear_file.text(found.accepted)
+    return files | {"report.html": identify_report(found, provenance, experiments=experiments, accepted=accept)}
 
 
 def _every_joint(
@@ -98,48 +112,52 @@ def _every_joint(
         status.update("report")
         provenance = Provenance.of_this_command(read)
         for name, found in joints.found.items():
-            write_folder(out / folder_of(name), _files(found, provenance))
+            write_folder(out / folder_of(name), files_to_write(found, provenance, accept=accept))
         write_folder(out, {"joints.csv": joints_csv(joints), "report.html": joints_report(joints, provenance)})
     print("\n".join(joints_summary(joints)))
     folders = ", ".join(map(folder_of, joints.found))
     print(f"\nwrote {out / 'report.html'}, and beside it joints.csv and the results of each joint in {folders}")
+    if not accept and any(found.failed for found in joints.found.values()):
+        print("no gear is written of joints with a failed check: settle it, or --accept writes them")
+        raise typer.Exit(FAILED)
 
 
-def _summary(found: Identified) -> Iterator[str]:
-    from strainwave.identification.results.file_result import lines_of
+def summary(found: Identified) -> Iterator[str]:
+    """Yield the result in lines, failed checks first."""
+    from strainwave.identification.results.combined_parameter import lines_of
 
-    points = [finding for finding in found.files if finding.part_of]
-    for finding in found.files:
-        if not finding.part_of:
-            yield from _of_file(finding)
+    for check in found.failed:
+        yield f"FAILED: {check.source}: {check.message}"
+        yield f"  what to do: {check.remedy}"
+    points = [result for result in found.files if result.part_of]
+    for result in found.files:
+        if not result.part_of:
+            yield from _of_file(result)
     if points:
         yield f"{points[0].part_of}, {len(points)} files:"
-        width = max(len(finding.name) for finding in points)
-        yield from (f"  {finding.name:{width}}  {finding.model}" for finding in points)
-        yield from (f"  {remark}" for remark in dict.fromkeys(remark for finding in points for remark in finding.remarks))
+        width = max(len(result.name) for result in points)
+        yield from (f"  {result.name:{width}}  {result.model}" for result in points)
+        yield from (f"  {remark}" for remark in dict.fromkeys(remark for result in points for remark in result.remarks))
     yield ""
     yield from lines_of(found.parameters)
-    for number in found.parameters:
-        for other in number.contradicts:
-            best, value = number.of_file(number.source), number.others[other]
-            yield (
-                f"contradiction: {number.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} in "
-                f"{number.source}, {value.value:.4g} ± {value.sigma:.2g} in {other}"
-            )
+    for check in found.checks:
+        if check.name == "agreement of files":
+            yield f"contradiction: {check.message}"
 
 
-def _of_file(finding: FileResult) -> Iterator[str]:
-    from strainwave.identification.reading.kind import KINDS
+def _of_file(result: FileResult) -> Iterator[str]:
+    from strainwave.identification.kinds import KINDS
 
-    kind = finding.what or (KINDS[finding.recognised.kind] if finding.recognised is not None else "not read")
-    same = f", the same measurement as {finding.same_as}" if finding.same_as else ""
-    yield f"{finding.name}: {kind}{same}"
-    if finding.recognised is not None:
-        yield from (f"  since {why}" for why in finding.recognised.why)
-    if finding.refused:
-        yield f"  NOT USED: {finding.refused}"
+    kind = result.what or (KINDS[result.recognised.kind].title if result.recognised is not None else "not read")
+    same = f", the same measurement as {result.same_as}" if result.same_as else ""
+    yield f"{result.name}: {kind}{same}"
+    if result.recognised is not None:
+        yield from (f"  since {why}" for why in result.recognised.why)
+    if result.refused:
+        yield f"  NOT USED: {result.refused}"
         return
-    held_out = f"; error on data held out: {100.0 * finding.error:.2g} % of what varies" if math.isfinite(finding.error) else ""
-    yield f"  {finding.model}{held_out}"
-    yield from (f"  DOUBT: {doubt}" for doubt in finding.doubts)
-    yield from (f"  {remark}" for remark in finding.remarks[:MOST_REMARKS])
+    held_out = f"; error on data held out: {100.0 * result.error:.2g} % of what varies" if math.isfinite(result.error) else ""
+    yield f"  {result.model}{held_out}"
+    if result.failed:
+        yield f"  FAILED: {', '.join(check.name for check in result.failed)}; see above"
+    yield from (f"  {remark}" for remark in result.remarks[:MAX_REMARKS])

@@ -34,7 +34,7 @@ def rank(
     from strainwave.files.gear_set import GearSet
     from strainwave.identification.rank import rank as ranked
     from strainwave.identification.rank import table_of
-    from strainwave.identification.reading.kind import KINDS
+    from strainwave.identification.kinds import KINDS
     from strainwave.identification.reading.recognise import recognise
     from strainwave.identification.reading.source import measurement_files
 
@@ -45,5 +45,9 @@ def rank(
         for each in files:
             status.update(each.path.name)
             file = recognise(each, said(each.path))
-            told += [f"{each.path.name}: {KINDS[file.kind]}", *(f"  {line}" for line in table_of(ranked(start, file))), ""]
+            told += [
+                f"{each.path.name}: {KINDS[file.kind].title}",
+                *(f"  {line}" for line in table_of(ranked(start, file))),
+                "",
+            ]
     print("\n".join(told).rstrip())

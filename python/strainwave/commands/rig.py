@@ -200,10 +200,10 @@ def analyse(
 
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
-    from strainwave.identification.reading.measurement import COLUMNS
     from strainwave.messages import pairs
     from strainwave.report.rig import rig_report, summary
     from strainwave.report.rig_files import angle_files, loop_files, loop_names, results, results_json
+    from strainwave.rig.loop import COLUMNS
     from strainwave.rig.reading.reading import Given, evaluate_paths
 
     target = _target(paths, out)
@@ -215,8 +215,8 @@ def analyse(
             reference=reference,
             friction=friction,
             positions=None if positions is None else _numbers("--positions", positions),
-            columns=pairs("--column", column, set(COLUMNS["torsion"])),
-            units=pairs("--unit", unit, set(COLUMNS["torsion"])),
+            columns=pairs("--column", column, {name for pair in COLUMNS.values() for name in pair}),
+            units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
         )
         found, read = evaluate_paths(paths, given, status.update)
         status.update("report")
@@ -230,7 +230,7 @@ def analyse(
     if left := [each for each in there if each not in files]:
         print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")
     for each in loop_names(found.loops):
-        print(f"for a twin: strainwave twin --gear {gear or 'GEAR'} --torsion {target / each}.csv")
+        print(f"for a gear: strainwave identify {gear or 'GEAR'} {target / each}.csv")
 
 
 @rig.command()

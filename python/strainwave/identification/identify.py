@@ -1,224 +1,251 @@
-"""Any mixture of files in; what each of them is, what it tells, and the gear that they tell together out."""
+"""From any mixture of measurement files to one gear: the type of each file, its fit, and the combination of all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Any
 
-from strainwave import kinematics
 from strainwave.files.entries import Entry
 from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS
-from strainwave.identification.kinds import constant_speed_runs
-from strainwave.identification.kinds.constant_speed_runs import Run, run_of
-from strainwave.identification.kinds.fit_file import fitted
-from strainwave.identification.kinds.plausibility import other_format
+from strainwave.identification.checks.comparisons import between_files, with_start_set
+from strainwave.identification.kinds import KINDS, kind_named
+from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.consistent import consistent
 from strainwave.identification.reading.duplicates import same_as
 from strainwave.identification.reading.joined_recordings import joined
-from strainwave.identification.reading.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
-from strainwave.identification.reading.source import BAG, MeasurementFile, MeasurementFiles, measurement_files
-from strainwave.identification.results.file_result import CombinedParameter, FileResult, combine
+from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.identification.results.check import Check
+from strainwave.identification.results.combined_parameter import CombinedParameter, combine
+from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, plain
+from strainwave.identification.results.parameter_state import ParameterState, states_of
+from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, shortened
 
-# What is needed to understand a file comes before it: friction before a loop that has it inside, both before logs, and what
-# happens at rest after what tells friction that slides.
-TURNS: dict[Kind, int] = {
-    "friction": 0, "effort": 0, "torsion": 2, "encoders": 4, "log": 5, "presliding": 6, "breakaway": 7,
-}  # fmt: skip
-RUNS = 1  # records at constant speed, all together
-ALIKE = 1e-9  # relative: two ratios that are one
+Mapped = Callable[[Path], FileMapping] | FileMapping | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Identified:
-    """What files tell of a gear.
+    """Result of `identify`: the estimates of each file, their combination, and the checks of both.
 
     Attributes:
         start: the set it started from
-        files: each file with what it tells, in the order given; then what several files tell only together
-        parameters: every number determined: the mean of the files that agree about it
-        gear_set: the set with the laws of the files that tell them best, and their numbers
+        files: the result of each file, in the order given; then what several files determine only together
+        parameters: every parameter determined: the mean of the files that agree about it
+        gear_set: the set with the laws of the files that determine them best, and their numbers. A file with a failed check
+            changes nothing of it, unless it was accepted
+        checks: consistency checks of all files, and of files with each other and with the start set
     """
 
     start: GearSet
     files: tuple[FileResult, ...]
     parameters: tuple[CombinedParameter, ...]
     gear_set: GearSet
+    checks: tuple[Check, ...] = ()
+
+    @property
+    def failed(self) -> tuple[Check, ...]:
+        """The checks that failed: settle them before the gear is used."""
+        return tuple(check for check in self.checks if check.failed)
+
+    @property
+    def accepted(self) -> GearSet:
+        """The gear set with its failed checks in its note: accepted, if it is used all the same."""
+        if not self.failed:
+            return self.gear_set
+        failed = "; ".join(f"{check.source}: {check.message}" for check in self.failed)
+        note = f"{self.gear_set.note} " if self.gear_set.note else ""
+        return self.gear_set.replace(note=f"{note}Accepted in spite of failed checks: {failed}.")
+
+    @cached_property
+    def states(self) -> tuple[ParameterState, ...]:
+        """The state of every number of the gear."""
+        return tuple(states_of(self.start, self.gear_set, self.parameters, self.files))
 
 
 def identify(
     start: GearSet | str | Path,
-    files: Sequence[str | Path] | MeasurementFiles,
+    files: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
     *,
-    mapping: Callable[[Path], FileMapping] | None = None,
+    mapping: Mapped = None,
     accept: bool = False,
     progress: Callable[[str], None] = lambda stage: None,
 ) -> Identified:
-    """Finds out what files of measurements are, fits each, and puts together what they tell of one gear.
+    """Determine the type of each file of measurements, fit it, and combine the estimates of all to one gear.
 
     Args:
         start: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
         files: tables of friction, torsion loops, logs of the drive, records of two encoders, records at constant speed,
-            friction at rest, in any format and order; of a folder all files that may be such
-        mapping: what a person says of a file, where it says it not itself
-        accept: whether tables and loops are used in spite of doubts about their sizes
+            friction at rest, in any format and order; of a folder all files that may be such. Or a mapping from the kind of
+            each, as "friction" or "torsion", to a path or a recording
+        mapping: what a person states of all files, or a function that returns it for the path of each
+        accept: whether files are used although a check of them fails
         progress: called with the name of each file as its turn comes
 
     Returns:
-        what each file tells, and the gear
+        result of each file, and the gear; look at its `failed` checks before it is used
 
     Raises:
-        TypeError: `files` are no paths, or `mapping` is no function
-        ValueError: no file, or none of which anything can be found; a file alone that cannot be used is told in its finding
+        TypeError: `files` are no paths, or `mapping` is no mapping
+        ValueError: no file, or none of which anything can be determined; a file that cannot be used alone is refused in its
+            result
 
-    >>> import tempfile
     >>> import numpy as np
     >>> import strainwave as sw
     >>> speed = np.array([2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
     >>> columns = {"speed": speed, "torque": 0.05 + 3e-4 * speed + 1e-4 * np.array([1, -1, 0, 1, -1, 1, 0])}
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     sw.Recording(columns, {"speed": "rad/s", "torque": "N.m"}).to_csv(f"{folder}/table.csv")
-    ...     found = identify("hfuc-25-100", [f"{folder}/table.csv"])
-    >>> found.files[0].recognised.kind, round(found.gear_set.gear.friction_input.coulomb, 2)
-    ('friction', 0.05)
+    >>> found = identify("hfuc-25-100", {"friction": sw.Recording(columns, {"speed": "rad/s", "torque": "N.m"})})
+    >>> found.files[0].recognised.kind, round(found.gear_set.gear.friction_input.coulomb, 2), found.failed
+    ('friction', 0.05, ())
     """
     check_arguments(files, mapping)
     opened = measurement_files(files)
-    each_read = {file.path: _recognised(file, mapping) for file in opened.files}
-    in_one_reading = consistent(_only_read(each_read), {file.path: file for file in opened.files})
-    each_read |= {each.path: _unless_asked(each) for each in in_one_reading}
+    read = {file.path: _recognised(file, _mapping_of(mapping, file.path, file.kind)) for file in opened.files}
+    in_one_reading = consistent(_only_read(read), {file.path: file for file in opened.files})
+    read |= {each.path: _unless_asked(each) for each in in_one_reading}
     for link in opened.links:
-        each_read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
-    check_one_joint(_only_read(each_read))
-    recognised = joined(_only_read(each_read))
+        read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
+    check_one_joint(_only_read(read))
+    recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
-    read = {path: whole.get(path, each) for path, each in each_read.items() if path in whole or isinstance(each, FileResult)}
-    start = _with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
-    found = _Found(GearSoFar(start, accept=accept), same_as(recognised), mapping)
-    runs = list(found.runs(recognised))
-    steady = {run.file.path for run in runs}
-    for turn in range(max(TURNS.values()) + 1):
-        if turn == RUNS and runs:
-            progress(constant_speed_runs.JOINED)
-            found.take_runs(runs)
-        for file in sorted(recognised, key=_friction_inside):
-            if file.path not in steady and file.path not in found.findings and TURNS[file.kind] == turn:
-                progress(file.path.name)
-                found.take(file)
-    found.take_turns(runs)
-    own = [each if isinstance(each, FileResult) else found.findings[each.path] for each in read.values()]
-    findings = (*_named_apart(own, list(read), found.copies), *found.together)
-    numbers = combine(findings)
-    if not numbers:
-        raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, findings))}")
-    return Identified(start, findings, numbers, with_means(found.known, numbers))
+    read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
+    start = with_ratio_of_all(start if isinstance(start, GearSet) else GearSet.read(start), recognised)
+    fits = _Fits(GearSoFar(start, start), same_as(recognised), mapping, accept, progress)
+    fits.fit_all(recognised)
+    own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
+    results = (*_named_apart(own, list(read), fits.copies), *fits.together)
+    parameters = combine(results, accept=accept)
+    checks = [check for each in results for check in each.checks]
+    checks += [*with_start_set(start, parameters), *between_files(parameters)]
+    if not parameters and not any(check.failed for check in checks):
+        raise ValueError(f"no file tells anything of the gear: {'; '.join(map(_why_nothing, results))}")
+    return Identified(start, results, parameters, with_means(fits.known, parameters), tuple(checks))
 
 
 def check_arguments(files: object, mapping: object) -> None:
-    """Refuses what are no files, and no function that says something of them."""
-    is_opened = isinstance(files, MeasurementFiles)
-    if not is_opened and (not isinstance(files, list | tuple) or not all(isinstance(each, str | Path) for each in files)):
-        raise TypeError(f"files must be a list of paths, not {shortened(files)}")
-    if mapping is not None and not callable(mapping):
-        raise TypeError(f"mapping must be a function that takes a path, not {shortened(mapping)}")
+    """Raise an error for what are no files, and for what states nothing of them."""
+    if isinstance(files, Mapping):
+        if unknown := [kind for kind in files if kind not in KINDS]:
+            raise ValueError(f"{shortened(unknown[0])} is no kind of measurement; the kinds are {listed(KINDS)}")
+        if wrong := [each for each in files.values() if not isinstance(each, str | Path | Recording)]:
+            raise TypeError(f"a measurement must be a path or a Recording, not {shortened(wrong[0])}")
+    elif not isinstance(files, MeasurementFiles) and (
+        not isinstance(files, list | tuple) or not all(isinstance(each, str | Path) for each in files)
+    ):
+        raise TypeError(f"files must be a list of paths, or a mapping from kinds to them, not {shortened(files)}")
+    if mapping is not None and not callable(mapping) and not isinstance(mapping, FileMapping):
+        raise TypeError(f"mapping must be a FileMapping, or a function that takes a path, not {shortened(mapping)}")
     if not files:
         raise ValueError("identify needs at least one file of measurements")
 
 
-def _why_nothing(finding: FileResult) -> str:
-    """Why a file tells no number."""
-    if finding.refused or finding.part_of:
-        return f"{finding.name}: {finding.refused or f'a part of the {finding.part_of}'}"
-    whys = dict.fromkeys(told.why for told in finding.estimates if told.why)
-    fitted = f"{finding.model} was fitted, but {'; '.join(whys)}" if whys else "nothing was fitted"
-    return f"{finding.name}: {fitted}; see whether columns, units and sides are what they are taken for"
+def _why_nothing(result: FileResult) -> str:
+    """Return why a file determines no parameter."""
+    if result.refused or result.part_of:
+        return f"{result.name}: {result.refused or f'a part of the {result.part_of}'}"
+    whys = dict.fromkeys(estimate.why for estimate in result.estimates if estimate.why)
+    fitted = f"{result.model} was fitted, but {'; '.join(whys)}" if whys else "nothing was fitted"
+    return f"{result.name}: {fitted}; see whether columns, units and sides are what they are taken for"
 
 
-class _Found:
-    """What is found, file by file."""
+class _Fits:
+    """The fits of all files, one after the other in the order of their kinds."""
 
-    def __init__(self, known: GearSoFar, copies: Mapping[str, str], said: Callable[[Path], FileMapping] | None) -> None:
-        self.known, self.copies, self.said = known, copies, said
-        self.findings = dict[Path, FileResult]()
+    def __init__(
+        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, progress: Callable[[str], None]
+    ) -> None:
+        self.known, self.copies, self.mapping, self.accept, self.progress = known, copies, mapping, accept, progress
+        self.results = dict[Path, FileResult]()
         self.together = list[FileResult]()
 
-    def take(self, file: Recognised) -> None:
-        """Fits a file; one that shows what another one shows tells its numbers, and changes nothing of the gear."""
-        file = file.at_ratio(_with_ratio(self.known, file).gear_set.gear.kinematics.ratio)
-        side = self.said(file.path).side if self.said is not None else None
-        before = replace(_with_ratio(self.known, file), side=side)
+    def fit_all(self, files: Sequence[Recognised]) -> None:
+        """Fit each file in the turn of its kind, and what files of a kind determine together."""
+        kinds = [kind_named(name) for name in KINDS]
+        own = {file.path: next(kind for kind in kinds if kind.takes(file, self.known)) for file in files}
+        turns = {file.path: own[file.path].turn(file, {kind.name for kind in own.values()}) for file in files}
+        for kind in kinds:
+            mine = [file for file in files if turns[file.path][0] == kind.name]
+            for file in sorted(mine, key=lambda file: turns[file.path][1]):
+                self.progress(file.path.name)
+                self.fit(own[file.path], file)
+            self.fit_together(kind.fit_together, self._originals(kind, own, files))
+        for kind in kinds:
+            self.fit_together(kind.fit_last, self._originals(kind, own, files))
+
+    def _originals(self, kind: Kind, own: Mapping[Path, Kind], files: Sequence[Recognised]) -> list[Recognised]:
+        """Return the files of a kind that are no copies of others."""
+        return [file for file in files if own[file.path] is kind and str(file.path) not in self.copies]
+
+    def fit(self, kind: Kind, file: Recognised) -> None:
+        """Fit a file. One that contains the measurement of another one, or fails a check, changes nothing of the gear."""
+        before = replace(with_ratio(self.known, file), side=_side(self.mapping, file))
+        file = file.at_ratio(before.gear_set.gear.kinematics.ratio)
         try:
-            found, after = fitted(file, before)
+            result, after = kind.fit(file, before)
         except (ValueError, FloatingPointError) as error:
-            found, after = FileResult(file.path.name, file, refused=_without_name(str(error), file.path)), before
-        self.findings[file.path] = found
-        if str(file.path) not in self.copies:
-            self.known = _with_kinematics(after, self.known.gear_set)
+            result, after = FileResult(file.path.name, file, refused=_without_name(str(error), file.path)), before
+        self.results[file.path] = result
+        if str(file.path) not in self.copies and (self.accept or not result.failed):
+            self.known = with_kinematics(after, self.known.gear_set)
 
-    def runs(self, files: Sequence[Recognised]) -> Iterator[Run]:
-        """Those files that are records at constant speed; copies of others left out."""
-        for file in files:
-            if file.kind in ("effort", "log"):
-                try:
-                    run = run_of(file, _with_ratio(self.known, file))
-                except ValueError as error:
-                    self.findings[file.path] = FileResult(file.path.name, file, refused=str(error))
-                    continue
-                if run is not None:
-                    self.findings[file.path] = constant_speed_runs.of_run(run)
-                    if str(file.path) not in self.copies:
-                        yield run
-
-    def take_runs(self, runs: Sequence[Run]) -> None:
-        """The friction table that records at constant speed are together."""
-        try:
-            table, self.known = constant_speed_runs.joined(runs, self.known)
-        except (ValueError, FloatingPointError) as error:
-            table = FileResult(constant_speed_runs.JOINED, refused=str(error))
-        self.together.append(table)
-
-    def take_turns(self, runs: Sequence[Run]) -> None:
-        """Friction over the angle, where records at constant speed tell it."""
-        try:
-            if (found := constant_speed_runs.over_the_angle(runs, self.known)) is not None:
-                self.together.append(found[0])
-                self.known = found[1]
-        except (ValueError, FloatingPointError) as error:
-            self.together.append(FileResult("friction over the angle", refused=str(error)))
+    def fit_together(
+        self,
+        fit: Callable[[Sequence[Recognised], GearSoFar], tuple[tuple[FileResult, ...], GearSoFar]],
+        files: Sequence[Recognised],
+    ) -> None:
+        """Fit what files of a kind determine together."""
+        results, after = fit(files, self.known) if files else ((), self.known)
+        self.together += results
+        if self.accept or not any(result.failed for result in results):
+            self.known = after
 
 
-def _named_apart(findings: Sequence[FileResult], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[FileResult, ...]:
-    """The findings by the names of their files; with their folders, where names come twice."""
+def _mapping_of(mapping: Mapped, path: Path, kind: str | None) -> FileMapping | None:
+    """Return what a person states of a file, with its kind."""
+    found = mapping if isinstance(mapping, FileMapping) or mapping is None else mapping(path)
+    return found if kind is None else replace(found or FileMapping(), kind=kind)
+
+
+def _side(mapping: Mapped, file: Recognised) -> Side | None:
+    found = _mapping_of(mapping, file.path, None)
+    return None if found is None else found.side
+
+
+def _named_apart(results: Sequence[FileResult], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[FileResult, ...]:
+    """Return the results by the names of their files; with their folders, if names come twice."""
     names = [path.name if sum(path.name == each.name for each in paths) == 1 else str(path) for path in paths]
     by_path = dict(zip(map(str, paths), names, strict=True))
     return tuple(
         replace(each, name=name, same_as=by_path.get(copies.get(str(path), ""), ""))
-        for each, name, path in zip(findings, names, paths, strict=True)
+        for each, name, path in zip(results, names, paths, strict=True)
     )
 
 
-def _friction_inside(file: Recognised) -> bool:
-    """Whether it is a loop at the input: one at the output tells the hysteresis by itself, and goes first."""
-    return file.kind == "torsion" and "input_angle" in file.recording
+# ---- Files -----------------------------------------------------------------------------------------------------------
 
 
-def _recognised(file: MeasurementFile, mapping: Callable[[Path], FileMapping] | None) -> Recognised | FileResult:
+def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognised | FileResult:
     path = file.path
-    if path.is_dir() and not Path(path, BAG).is_file():
+    if file.recording is None and path.is_dir() and not Path(path, BAG).is_file():
         known = listed(f"*{suffix}" for suffix in FORMATS)
         return FileResult(path.name, refused=f"the folder holds no file that may be a measurement, as {known}")
-    if other := other_format(path):
+    if file.recording is None and (other := other_format(path)):
         return FileResult(path.name, refused=other)
     try:
-        return recognise(file, mapping(path) if mapping is not None else None)
+        return recognise(file, mapping)
     except (ValueError, OSError) as error:
+        if file.recording is not None:
+            raise
         return FileResult(path.name, refused=_without_name(str(error), path))
 
 
@@ -227,87 +254,37 @@ def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised
 
 
 def _unless_asked(file: Recognised) -> Recognised | FileResult:
-    """A file, or its question if nothing determines how to read it."""
+    """Return a file, or its question if nothing determines how to read it."""
     if not file.question:
         return file
     return FileResult(file.path.name, file, refused=_without_name(file.question, file.path))
 
 
-def _without_name(told: str, path: Path) -> str:
-    """What is told of a file, without its name before it, as the name is told beside it."""
+def _without_name(message: str, path: Path) -> str:
+    """Return a message about a file without its name, which stands before it."""
     for name in (str(path), path.name):
         for end in (": ", " "):
-            told = told.removeprefix(name + end)
-    return told
+            message = message.removeprefix(name + end)
+    return message
 
 
-# ---- The ratio ---------------------------------------------------------------------------------------------------------
+# ---- Means -----------------------------------------------------------------------------------------------------------
 
 
-def _with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
-    """The set with the ratio that a person gave with all files."""
-    ratios = {file.constants.get("ratio") for file in files}
-    if len(ratios) != 1 or (ratio := ratios.pop()) is None:
-        return start
-    gear = _geared(start.gear, ratio)
-    if gear is start.gear:
-        return start
-    sources = {path: entry for path, entry in start.sources.items() if not path.startswith("gear.kinematics.")}
-    numbers = [field["name"] for field in gear.kinematics.fields if field["kind"] != "choice"]
-    given = {f"gear.kinematics.{name}": Entry("ratio given with the files") for name in numbers}
-    return replace(start, gear=gear, sources=sources | given)
-
-
-def _with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
-    """What is known, with the ratio that a person gave with this file."""
-    if "ratio" not in file.constants:
-        return known
-    gear = _geared(known.gear_set.gear, file.constants["ratio"])
-    return known if gear is known.gear_set.gear else replace(known, gear_set=replace(known.gear_set, gear=gear))
-
-
-def _with_kinematics(known: GearSoFar, of: GearSet) -> GearSoFar:
-    if known.gear_set.gear.kinematics == of.gear.kinematics:
-        return known
-    gear = known.gear_set.gear.replace(kinematics=of.gear.kinematics)
-    return replace(known, gear_set=replace(known.gear_set, gear=gear))
-
-
-def _geared(gear: Any, ratio: float) -> Any:
-    """The gear with another ratio; its output turns the same way as before."""
-    if abs(abs(ratio) - abs(gear.kinematics.ratio)) < ALIKE * abs(ratio):
-        return gear
-    return gear.replace(kinematics=_kinematics(ratio, gear.kinematics.ratio < 0.0))
-
-
-def _kinematics(ratio: float, backwards: bool) -> Any:
-    """A strain wave gear of this ratio, where whole teeth give it; else what has the ratio alone."""
-    size = abs(ratio)
-    if abs(size - round(size)) > ALIKE * size or round(size) < 2:
-        return kinematics.PlainRatio(reduction=size)
-    turns = 2 * round(size)  # two teeth fewer on the flexspline
-    if backwards or ratio < 0.0:
-        return kinematics.StrainWave(flexspline_teeth=turns, circular_spline_teeth=turns + 2, fixed="circular_spline")
-    return kinematics.StrainWave(flexspline_teeth=turns - 2, circular_spline_teeth=turns, fixed="flexspline")
-
-
-# ---- Means -------------------------------------------------------------------------------------------------------------
-
-
-def with_means(known: GearSoFar, numbers: Sequence[CombinedParameter]) -> GearSet:
-    """The set with the means of files that agree, where it has the law that the number belongs to."""
+def with_means(known: GearSoFar, parameters: Sequence[CombinedParameter]) -> GearSet:
+    """Return the set with the means of files that agree, if it has the law that the parameter belongs to."""
     gear_set = known.gear_set
-    for number in numbers:
-        if len(number.mean_of) < 2 or not number.estimate.path.startswith("gear."):
+    for each in parameters:
+        if len(each.mean_of) < 2 or not each.estimate.path.startswith("gear."):
             continue
-        names = [Path(name).name for name in number.mean_of]
+        names = [Path(name).name for name in each.mean_of]
         for path, name in known.determined_by.items():
-            if plain(path) != number.estimate.path or "[" in path or name not in names:
+            if plain(path) != each.estimate.path or "[" in path or name not in names:
                 continue
             try:
-                gear = gear_set.gear.replace({path.removeprefix("gear."): number.estimate.value})
+                gear = gear_set.gear.replace({path.removeprefix("gear."): each.estimate.value})
             except ValueError:  # a mean that the law does not allow beside its other numbers
                 continue
-            source = Entry(source=f"identified from the {number.taken_from}", uncertainty=number.estimate.sigma)
+            source = Entry(source=f"identified from the {each.taken_from}", uncertainty=each.estimate.sigma)
             gear_set = replace(gear_set, gear=gear, sources={**gear_set.sources, path: source})
     return gear_set

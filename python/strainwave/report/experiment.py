@@ -43,7 +43,7 @@ class SimulatedExperiment:
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> run = sw.simulate(drive, sw.scenario.step(amplitude=5.0, duration=0.1))
-    >>> experiment = SimulatedExperiment("step", runs=(("twin", run),), figures=(Figure("largest speed", "rad/s", (0.3,)),))
+    >>> experiment = SimulatedExperiment("step", runs=(("gear", run),), figures=(Figure("largest speed", "rad/s", (0.3,)),))
     >>> experiment.figures[0].published is None
     True
     """

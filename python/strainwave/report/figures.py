@@ -17,11 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
-from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import envelope
-from strainwave.identification.experiments.drive_log import DriveLog
-from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.report import typeset
 from strainwave.report.experiment import SimulatedExperiment
 from strainwave.simulation.signals import outputs
@@ -30,9 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
-
-    from strainwave.identification.evidence.evidence import Evidence
-    from strainwave.identification.twin import Twin
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -96,77 +89,6 @@ STYLE = {
 # ---- What can be drawn -----------------------------------------------------------------------------------------------
 
 
-def friction_table(evidence: Evidence) -> str:
-    """Friction torque over speed, measured and modelled; how far each measurement lies from what the others predict."""
-
-    def draw(figure: Figure) -> None:
-        torque, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))
-        _friction_points(torque, evidence)
-        _friction_law(torque, evidence, evidence.fit.gear.friction_input, "model", color=LIGHT["model"])
-        residual_curve(residual, _table(evidence).speed, evidence.held_out[0], color=LIGHT["held-out"])
-        label_axes(torque, "friction torque", "N.m")
-        label_axes(residual, "measured − predicted from the others", "N.m", "input speed", "rad/s")
-        legend(figure, torque)
-
-    return inline(draw, (WIDTH, 3.7), "friction", f"Friction torque over input speed, {evidence.source}")
-
-
-def torsion_loop(evidence: Evidence) -> str:
-    """Torque over twist, measured and modelled; the residual along the loop."""
-
-    def draw(figure: Figure) -> None:
-        loop, residual = figure.subplots(2, 1, height_ratios=(2.8, 1.0))
-        point, held_out = np.arange(1.0, len(evidence.fit.training) + 1.0), ~evidence.fit.training
-        _loop(loop, evidence)
-        residual_curve(residual, point, evidence.fit.residuals[0], color=LIGHT["ink"])
-        shade(residual, point, held_out)
-        for gap in gaps(_torsion(evidence)):
-            residual.axvline(float(gap) + 0.5, color=LIGHT["muted"], linestyle=":", linewidth=0.8)
-        _label_loop(loop, evidence)
-        label_axes(residual, "measured − modelled", "N.m", "point compared, in the order measured", "1")
-        legend(figure, loop)
-
-    return inline(draw, (WIDTH, 4.8), "torsion", f"Torque over twist, {evidence.source}")
-
-
-def drive_log(evidence: Evidence, channel: int) -> str:
-    """One channel of a drive log over time, measured and modelled, and the residual."""
-    log, fit = evidence.fit.experiment, evidence.fit
-    assert isinstance(log, DriveLog)
-    name, unit = output_name(log.channels[channel]), log.units[channel]
-
-    def draw(figure: Figure) -> None:
-        values, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-        measured, predicted = log.measured[channel], fit.predicted[channel]
-        curve(values, log.time, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
-        curve(values, log.time, predicted, color=LIGHT["model"], linewidth=1.0, label="model")
-        residual_curve(residual, log.time, fit.residuals[channel], color=LIGHT["ink"])
-        for axes in (values, residual):
-            shade(axes, log.time, ~fit.training)
-        label_axes(values, name, unit)
-        label_axes(residual, "measured − modelled", unit, "time", "s")
-        legend(figure, values)
-
-    return inline(draw, (WIDTH, 3.6), f"log-{channel}", f"{name} over time, {evidence.source}")
-
-
-def two_friction_laws(twin: Twin, evidence: Evidence) -> str:
-    """The friction law of the initial model and the friction table that contradicts it: two data sets on one axis."""
-
-    def draw(figure: Figure) -> None:
-        axes = figure.subplots()
-        earlier, fitted = twin.start.gear.friction_input, evidence.fit.gear.friction_input
-        _friction_law(axes, evidence, earlier, "initial model", color=LIGHT["earlier"], linestyle="--", linewidth=2.0)
-        _friction_law(axes, evidence, fitted, "fitted to the table", color=LIGHT["model"])
-        _friction_points(axes, evidence)
-        axes.set_ylim(*_with_zero(axes.get_ylim()))
-        label_axes(axes, "friction torque", "N.m", "input speed", "rad/s")
-        legend(figure, axes)
-
-    title = f"Two data sets: the friction law of the initial model, and {evidence.source}"
-    return inline(draw, (WIDTH, 3.0), "two-laws", title)
-
-
 def experiment(simulated: SimulatedExperiment, name: str) -> str:
     """Command, response and, where both are of one unit, their difference over time."""
     first, comparable = simulated.runs[0][1], simulated.comparable
@@ -191,29 +113,6 @@ def experiment(simulated: SimulatedExperiment, name: str) -> str:
     return inline(draw, (WIDTH, 3.9), name, f"{simulated.name}: command and response over time")
 
 
-def overview(torsion: Evidence, friction: Evidence) -> str:
-    """A picture by itself: a torsion loop and a friction table, measured and modelled."""
-
-    def draw(figure: Figure) -> None:
-        left, right = figure.subplots(1, 2)
-        _loop(left, torsion)
-        _label_loop(left, torsion)
-        _friction_points(right, friction)
-        _friction_law(right, friction, friction.fit.gear.friction_input, "model", color=LIGHT["model"])
-        label_axes(right, "friction torque", "N.m", "input speed", "rad/s")
-        legend(figure, left)
-
-    title = "Torsion loop and friction of two strain wave gears, measured and modelled"
-    return _standalone(draw, (8.4, 3.2), "overview", title)
-
-
-def gaps(loop: TorsionLoop) -> list[int]:
-    """The points before which samples were left out: of a loop measured at the input, those just behind each reversal."""
-    if loop.input_ratio is None or loop.samples <= len(loop.twist):
-        return []
-    return [turn + int(np.argmax(loop.twist[turn:] != loop.twist[turn])) for turn in turning_points(loop.twist)]
-
-
 def output_name(column: str) -> str:
     """What a column of a simulation is called in words."""
     known = outputs(Drive())
@@ -221,20 +120,6 @@ def output_name(column: str) -> str:
 
 
 # ---- Parts of drawings -----------------------------------------------------------------------------------------------
-
-
-def _table(evidence: Evidence) -> FrictionTable:
-    table = evidence.fit.experiment
-    assert isinstance(table, FrictionTable)
-    return table
-
-
-def _friction_points(axes: Axes, evidence: Evidence) -> None:
-    table = _table(evidence)
-    order = np.argsort(table.speed, kind="stable")
-    speed, torque = envelope(table.speed[order], table.torque[order], MARKED)
-    axes.plot(speed, torque, "o", color=LIGHT["measured"], label="measured", zorder=3)
-    speed_axis(axes, speed)
 
 
 def speed_axis(axes: Axes, speed: Array) -> None:
@@ -246,54 +131,6 @@ def speed_axis(axes: Axes, speed: Array) -> None:
         decades = 10.0 ** np.arange(np.ceil(np.log10(slowest)), np.log10(fastest))
         axes.set_xscale("symlog", linthresh=slowest, linscale=0.3)
         axes.set_xticks([*-decades[::-1], 0.0, *decades])
-
-
-def _friction_law(axes: Axes, evidence: Evidence, law: Any, label: str, **style: Any) -> None:
-    """The law over the speeds measured, each direction by itself."""
-    speed = _table(evidence).speed
-    for side in (speed[speed < 0.0], speed[speed > 0.0]):
-        if side.size:
-            ends = np.abs(side).min(), np.abs(side).max()
-            swept = np.sign(side[0]) * np.union1d(np.linspace(*ends, 200), np.geomspace(*ends, 200))
-            axes.plot(swept, law.steady(swept), label=label, **style)
-            label = ""
-
-
-def _torsion(evidence: Evidence) -> TorsionLoop:
-    loop = evidence.fit.experiment
-    assert isinstance(loop, TorsionLoop)
-    return loop
-
-
-def _loop(axes: Axes, evidence: Evidence) -> None:
-    loop, training = _torsion(evidence), evidence.fit.training
-    everywhere = np.ones_like(training)
-    style: dict[str, Any] = {"linewidth": 3.6, "alpha": 0.55}
-    if len(loop.twist) <= MARKED:
-        style = {"linewidth": 0.9, "marker": "o", "markersize": 3.0}
-    model = "model" if loop.input_ratio is None else "model with friction"
-    drawn = (
-        (loop.torque, everywhere, {**style, "color": LIGHT["measured"], "label": "measured"}),
-        (loop.torque, ~training, {**style, "color": LIGHT["held-out"], "label": "held out"}),
-        (evidence.fit.predicted[0], everywhere, {"color": LIGHT["model"], "label": model, "linewidth": 1.0}),
-    )
-    for torque, chosen, look in drawn:
-        for stretch in _unbroken(loop, chosen):
-            curve(axes, loop.twist[stretch], torque[stretch], **look)
-            look["label"] = ""
-
-
-def _label_loop(axes: Axes, evidence: Evidence) -> None:
-    place = "at the output" if _torsion(evidence).input_ratio is None else "referred to the output"
-    label_axes(axes, f"torque {place}", "N.m", f"twist {place}", "rad")
-
-
-def _unbroken(loop: TorsionLoop, chosen: Mask) -> Iterator[slice]:
-    """The stretches of chosen neighbours, none of them across a gap."""
-    starts = gaps(loop)
-    branch = np.searchsorted(starts, np.arange(len(chosen)), side="right")
-    for number in range(len(starts) + 1):
-        yield from _blocks(chosen & (branch == number))
 
 
 def curve(axes: Axes, x: Array, y: Array, **style: Any) -> None:
@@ -325,10 +162,6 @@ def _blocks(chosen: Mask) -> Iterator[slice]:
     """The stretches of neighbours that are chosen."""
     edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
     return (slice(start, stop) for start, stop in edges.reshape(-1, 2).tolist())
-
-
-def _with_zero(ends: tuple[float, float]) -> tuple[float, float]:
-    return min(ends[0], 0.0), max(ends[1], 0.0)
 
 
 def label_axes(axes: Axes, y: str, y_unit: str, x: str = "", x_unit: str = "1") -> None:
@@ -366,7 +199,7 @@ def inline(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
     return svg
 
 
-def _standalone(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
+def standalone(draw: Draw, size: tuple[float, float], name: str, title: str) -> str:
     """SVG to stand in a file, with the colours of the light and of the dark scheme."""
     svg = _svg(draw, size, name, title)
     svg.set("xmlns", "http://www.w3.org/2000/svg")

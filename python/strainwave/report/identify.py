@@ -1,85 +1,84 @@
-"""The page of what files tell of a gear, and its numbers as files."""
+"""Report of an identification: verdict, failed checks, each file measured against predicted, and the parameters by effect."""
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
-from io import StringIO
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from strainwave import Drive
-from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.evidence import verdict
 from strainwave.identification.identify import Identified
-from strainwave.identification.reading.kind import KINDS
+from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.mapping import CONSTANTS
-from strainwave.identification.results.file_result import (
-    AGREE,
-    APART,
+from strainwave.identification.results.combined_parameter import (
+    MAX_DISTANCE,
+    MAX_DISTANCE_IN_MEAN,
     CombinedParameter,
-    FileEstimate,
-    FileResult,
     difference,
     distance,
 )
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.results.parameter_state import ParameterState
 from strainwave.report import figures
 from strainwave.report import identify_figures as plots
+from strainwave.report.experiment import SimulatedExperiment
 from strainwave.report.page import render
+from strainwave.report.parameter_names import EFFECTS, OTHER, effect_of, name_of
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_files import results_json
 from strainwave.report.typeset import fixed, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
 if TYPE_CHECKING:
     from markupsafe import Markup
 
-WIDER = 1.05  # times: a mean that is wider by less needs no word
-SPREAD = 4  # digits of a number beside the scatter of individual gears
-COLUMNS = (
-    "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
-    "not_told_because",
-)  # fmt: skip
+MIN_WIDENED = 1.05  # factor of the standard deviation of a mean, from which on it is stated
+DIGITS_BESIDE_SPREAD = 4  # of a number beside the scatter of individual gears
 
 
-def identify_report(found: Identified, provenance: Provenance | None = None) -> str:
-    """The page, as one HTML file that needs nothing else.
+def identify_report(
+    found: Identified,
+    provenance: Provenance | None = None,
+    *,
+    experiments: Sequence[SimulatedExperiment] = (),
+    accepted: bool = False,
+) -> str:
+    """Return the report of an identification, as one HTML file that needs nothing else.
 
     Args:
-        found: what files tell
+        found: the result
         provenance: how the page came to be, if that is to be shown
+        experiments: simulated with the gear
+        accepted: whether the gear is written in spite of failed checks
 
     Returns:
         HTML; the same for the same arguments
     """
-    anchors = {id(finding): f"file-{place}" for place, finding in enumerate(found.files)}
+    anchors = {id(file): f"file-{place}" for place, file in enumerate(found.files)}
     given = _given_with_all(found)
+    alone = [file for file in found.files if not file.part_of]
     return render(
         "identify.html.jinja",
         {
-            "start": found.start,
-            "counts": _counts(found),
-            "contradictions": [_contradiction(each, other) for each in found.parameters for other in each.contradicts],
-            "apart": number(APART),
-            "agree": number(AGREE),
-            "doubts": [(each.name, doubt) for each in found.files for doubt in each.doubts],
+            "name": found.start.name,
+            "maker": found.start.maker,
+            "verdict": _verdict(found, accepted),
+            "failed": found.failed,
             "refused": [(each.name, each.refused) for each in found.files if each.refused],
-            "given": [_constant(name, value) for name, value in given.items()],
-            "files": [_file(each, anchors[id(each)], given) for each in found.files if not each.part_of],
-            "points": [_file(each, "", given) for each in found.files if each.part_of],
-            "mapping_from_options_points": list(
-                dict.fromkeys(told for each in found.files if each.part_of for told in each.remarks)
-            ),
-            "numbers": [_number(each, found) for each in found.parameters],
+            "cards": [_card(each, anchors[id(each)]) for each in alone if not each.refused],
+            "contradictions": [_contradiction(each, other) for each in found.parameters for other in each.contradicts],
+            "max_distance": number(MAX_DISTANCE),
+            "max_distance_in_mean": number(MAX_DISTANCE_IN_MEAN),
+            "effects": list(_by_effect(found)),
             "comparisons": list(_comparisons(found)),
-            "untold": _untold(found),
+            "undetermined": _undetermined(found),
             "kept": _kept(found),
-            "absent": _absent(found),
-            "plates": list(_plates(found, anchors)),
+            "given": [_constant(name, value) for name, value in given.items()],
+            "files": [_file(each, anchors[id(each)], given) for each in alone],
+            "sections": list(_sections(found, given)),
+            "checks": [(each, number(each.value, 3), number(each.limit, 3)) for each in found.checks],
+            "experiments": list(_experiments(experiments)),
             "provenance": provenance or Provenance(),
             "version": metadata.version("strainwave"),
             "light": figures.variables(figures.LIGHT),
@@ -88,173 +87,120 @@ def identify_report(found: Identified, provenance: Provenance | None = None) -> 
     )
 
 
+# ---- First screen ----------------------------------------------------------------------------------------------------
+
+
+def _verdict(found: Identified, accepted: bool) -> str:
+    """Return in one sentence what came out."""
+    failed, checks = len(found.failed), len(found.checks)
+    if failed:
+        written = "the gear was written all the same, as accepted" if accepted else "no gear was written"
+        return f"{failed} of {checks} {'check' if checks == 1 else 'checks'} failed, and {written}. {_counts(found)}."
+    passed = {0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed")
+    return f"{_counts(found)}; {passed}."
+
+
 def _counts(found: Identified) -> str:
-    """How many files came to what: "5 files: 3 tell 17 numbers, 1 shows what another file shows too, 1 is refused"."""
+    """Return how many files determine how many parameters: "5 files: 3 determine 17 parameters, 1 is refused"."""
     refused = sum(bool(each.refused) for each in found.files)
     copies = sum(bool(each.same_as) and not each.refused for each in found.files)
     points = sum(bool(each.part_of) for each in found.files)
     given = [each for each in found.files if each.recognised is None or each.recognised.columns]  # no table of several files
-    telling = sum(_tells(each) and not each.same_as for each in given)
-    files, numbers = len(given), len(found.parameters)
-    parts = [f"{telling} {'tells' if telling == 1 else 'tell'} {numbers} {'number' if numbers == 1 else 'numbers'}"]
-    for count, one, several in (
-        (copies, "shows what another file shows too", "show what others show too"),
+    determining = sum(any(not estimate.why for estimate in each.estimates) and not each.same_as for each in given)
+    files, count = len(given), len(found.parameters)
+    verb = "determines" if determining == 1 else "determine"
+    parts = [f"{determining} {verb} {count} {'parameter' if count == 1 else 'parameters'}"]
+    for several, one, many in (
+        (copies, "contains the measurement of another", "contain the measurement of another"),
         (points, "is a point of a table of several files", "are points of a table of several files"),
-        (files - telling - copies - refused - points, "tells none", "tell none"),
+        (files - determining - copies - refused - points, "determines none", "determine none"),
         (refused, "is refused", "are refused"),
     ):
-        parts += [f"{count} {one if count == 1 else several}"] if count else []
+        parts += [f"{several} {one if several == 1 else many}"] if several else []
     return f"{files} {'file' if files == 1 else 'files'}: {', '.join(parts)}"
 
 
-def _tells(finding: FileResult) -> bool:
-    return any(not told.why for told in finding.estimates)
-
-
-def _contradiction(each: CombinedParameter, other: str) -> dict[str, str]:
-    best, told = each.of_file(each.source), each.others[other]
-    return {
-        "title": name_of(best),
-        "path": best.path,
-        "unit": unit(best.unit),
-        "taken": uncertain(best.value, best.sigma),
-        "source": each.source,
-        "value": uncertain(told.value, told.sigma),
-        "other": other,
-        "distance": _sigmas(distance(best, told)),
-    }
-
-
-def _sigmas(distance: float) -> str:
-    """Standard deviations, to a tenth where they are few."""
-    return fixed(distance, 1 if distance < 10.0 else 0) if np.isfinite(distance) else "∞"
-
-
-# ---- Files -----------------------------------------------------------------------------------------------------------
-
-
-def _given_with_all(found: Identified) -> Mapping[str, float]:
-    """The constants that a person gave with every file."""
-    given = [set(each.recognised.constants.items()) for each in found.files if each.recognised and each.recognised.columns]
-    return dict(sorted(set.intersection(*given))) if given else {}
-
-
-def _constant(name: str, value: float) -> str:
-    return f"{name.replace('_', ' ')} {quantity(value, CONSTANTS[name].unit)}"
-
-
-def _file(finding: FileResult, anchor: str, given: Mapping[str, float]) -> dict[str, Any]:
-    read = finding.recognised
-    return {
-        "name": finding.name,
-        "anchor": anchor if finding.curves is not None else "",
-        "kind": finding.what or (KINDS[read.kind] if read is not None else "not read"),
-        "why": read.why if read is not None else (),
-        "columns": list(_columns(finding, given)),
-        "model": finding.model,
-        "error": f"{number(100.0 * finding.error, 2)} %" if np.isfinite(finding.error) else "",
-        "told": sum(not each.why for each in finding.estimates),
-        "same_as": finding.same_as,
-        "refused": finding.refused,
-        "remarks": finding.remarks,
-    }
-
-
-def _columns(finding: FileResult, given: Mapping[str, float]) -> Iterator[str]:
-    """Each channel with its column and unit in the file, "speed: Drehzahl [1/min]", and constants given with it alone."""
-    read = finding.recognised
-    if read is None:
-        return
-    for channel, name in read.columns.items():
-        of = unit(read.units.get(channel, "1"))
-        yield f"{channel.replace('_', ' ')}: {name}" + (f" [{of}]" if of else "")
-    if read.side is not None:
-        yield f"side: {read.side}"
-    for name, value in read.constants.items():
-        if name not in given:
-            yield f"given: {_constant(name, value)}"
-
-
-def _plates(found: Identified, anchors: dict[int, str]) -> Iterator[dict[str, Any]]:
+def _card(result: FileResult, anchor: str) -> dict[str, Any]:
+    """Return what the first screen shows of a file: its error on data held out, and its first picture."""
     from markupsafe import Markup
 
-    for finding in found.files:
-        if finding.curves is not None:
-            anchor = anchors[id(finding)]
-            yield {
-                "name": finding.name,
-                "anchor": anchor,
-                "caption": _caption(finding),
-                "svg": Markup(plots.file_figure(finding, f"{anchor}-figure")),
-            }
-        if finding.between is not None:
-            shafts = replace(finding, curves=finding.between, model=finding.between.title)
-            anchor = f"{anchors[id(finding)]}-between"
-            yield {
-                "name": f"{finding.name}, between the shafts",
-                "anchor": anchor,
-                "caption": _caption(shafts),
-                "svg": Markup(plots.file_figure(shafts, f"{anchor}-figure")),
-            }
+    shown = [(picture, f"{anchor}-{place}" if place else anchor) for place, picture in enumerate(result.pictures)]
+    drawn = [
+        {
+            "title": picture.title,
+            "caption": _caption(result, picture),
+            "svg": Markup(plots.file_figure(result, picture, f"{at}-figure")),
+        }
+        for picture, at in shown
+    ]
+    return {
+        "name": result.name,
+        "anchor": anchor,
+        "kind": _what(result),
+        "model": result.model,
+        "failed": bool(result.failed),
+        "same_as": result.same_as,
+        "error": _error(result),
+        "first": drawn[:1],
+        "more": drawn[1:],
+    }
 
 
-def _caption(finding: FileResult) -> str:
-    curves = finding.curves
-    assert curves is not None
+def _error(result: FileResult) -> list[tuple[str, str]]:
+    """Return the error on data held out beside that of plain least squares and of predicting nothing, with labels."""
+    held_out = result.held_out
+    if held_out is None:
+        if not np.isfinite(result.error):
+            return []
+        return [("Error on data held out", f"{number(100.0 * result.error, 2)} % of what varies")]
+    share = f"{quantity(held_out.error, held_out.unit)}, {number(100.0 * held_out.relative, 2)} % of what varies"
+    rows = [(f"Error on data held out ({held_out.stretch})", share)]
+    if np.isfinite(held_out.plain):
+        rows.append(("Plain least squares there", quantity(held_out.plain, held_out.unit)))
+    return [*rows, (f"{held_out.channel.replace('_', ' ').capitalize()} varies by", quantity(held_out.zero, held_out.unit))]
+
+
+def _what(result: FileResult) -> str:
+    return result.what or (KINDS[result.recognised.kind].title if result.recognised is not None else "not read")
+
+
+def _caption(result: FileResult, picture: Picture) -> str:
+    curves = picture.curves
     error, of = float(np.sqrt(np.mean(plots.residual_of(curves) ** 2))), curves.unit(curves.names[1])
-    words = [f"Model: {finding.model}. Root mean square of what is left: {quantity(error, of)}."]
+    words = [f"Model: {picture.model or result.model}. Root mean square of what is left: {quantity(error, of)}."]
     if "residual" in curves:
         words.append("The slow part above is what load and lost motion add; it is taken out below, too.")
     if "held_out" in curves and curves["held_out"].any():
         words.append("Shaded: held out from the fit.")
-    if finding.refused:
-        words.append("This file is refused; its model is not used.")
     return " ".join(words)
 
 
-# ---- Numbers ---------------------------------------------------------------------------------------------------------
+# ---- Parameters ------------------------------------------------------------------------------------------------------
 
 
-def name_of(told: FileEstimate) -> str:
-    """What a number is, in words, as its law has it.
-
-    >>> name_of(FileEstimate("gear.friction_input.coulomb", "N.m", 0.05, 0.001, "")).lower()
-    'kinetic friction torque f_c'
-    >>> name_of(FileEstimate("gear.kinematic_error.amplitude of order 2", "rad", 6e-5, 1e-6, "fourier"))
-    'Amplitude A_h at the output, of order 2'
-    """
-    path, _, order = told.path.partition(" of order ")
-    path, _, place = path.removesuffix("]").partition("[")
-    *parts, last = path.split(".")
-    owners: list[Any] = [Drive]
-    for part in parts:
-        fields = [field for owner in owners for field in owner.fields if field["name"] == part and field["kind"] == "part"]
-        owners = list(dict.fromkeys(option for field in fields for option in _options(field)))
-    owners.sort(key=lambda owner: getattr(owner, "name", "") != told.law)  # the law that it belongs to comes first
-    docs = [field["doc"] for owner in owners for field in owner.fields if field["name"] == last]
-    words = docs[0] if docs else last.replace("_", " ").capitalize()
-    if place:
-        words += f", no. {int(place) + 1}"
-    return f"{words}, of order {order}" if order else words
+def _by_effect(found: Identified) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    """Yield each effect with its parameters."""
+    rows: dict[str, list[dict[str, Any]]] = {effect: [] for effect in (*EFFECTS, OTHER)}
+    for each in found.parameters:
+        rows[effect_of(each.estimate.path)].append(_parameter(each, found))
+    yield from ((effect, own) for effect, own in rows.items() if own)
 
 
-def _options(field: dict[str, Any]) -> list[Any]:
-    """The laws that a part may have; one that has no choice is what it is by default."""
-    return list(field["options"].values()) if field["options"] else [type(field["default"])]
-
-
-def _number(each: CombinedParameter, found: Identified) -> dict[str, Any]:
-    told, same_as = each.estimate, {finding.name: finding.same_as for finding in found.files}
+def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
+    taken, same_as = each.estimate, {file.name: file.same_as for file in found.files}
     files = [each.source, *each.others] if len(each.mean_of) > 1 else list(each.others)
+    half = plots.NINETY_FIVE * taken.sigma
     return {
-        "path": told.path,
-        "name": name_of(told),
-        "law": told.law if told.law.startswith(("in ", "of ", "at ")) else "",
-        "unit": unit(told.unit),
-        "value": uncertain(told.value, told.sigma),
-        "source": each.source if len(each.mean_of) < 2 else f"the mean of {len(each.mean_of)} files",
-        "widened": number(each.widened, 2) if each.widened > WIDER else "",
-        "start": _start(found.start, told),
+        "path": taken.path,
+        "name": name_of(taken),
+        "law": taken.law if taken.law.startswith(("in ", "of ", "at ")) else "",
+        "unit": unit(taken.unit),
+        "value": uncertain(taken.value, taken.sigma),
+        "interval": f"{number(taken.value - half, 3)} to {number(taken.value + half, 3)}",
+        "source": each.source if len(each.mean_of) < 2 else f"mean of {len(each.mean_of)} files",
+        "widened": number(each.widened, 2) if each.widened > MIN_WIDENED else "",
+        "shifts": ", ".join(f"{path} by {number(100.0 * by, 2)} %" for path, by in taken.shift_by_kept.items()),
+        "start": _start(found.start, taken),
         "others": [
             {
                 "file": name,
@@ -274,62 +220,135 @@ def _number(each: CombinedParameter, found: Identified) -> dict[str, Any]:
     }
 
 
-def _start(start: GearSet, told: FileEstimate) -> str:
-    """The number as the set had it that was started from; nothing where it had none, or one of another meaning."""
-    if "[" in told.path or told.law == "in A":  # elements of a sequence that was fitted anew, or torque without a constant
+def _start(start: GearSet, estimate: FileEstimate) -> str:
+    """Return the number in the start set; empty if it has none, or one of another meaning."""
+    if "[" in estimate.path or estimate.law == "in A":  # elements of a sequence fitted anew, or torque without a constant
         return ""
     try:
-        value = float(attrgetter(told.path)(start))
+        value = float(attrgetter(estimate.path)(start))
     except AttributeError:
         return ""
-    entry = start.sources.get(told.path)
+    entry = start.sources.get(estimate.path)
     if entry is None:
         return number(value)
     if entry.spread is not None:
-        return f"{number(value, SPREAD)} ± {number(100.0 * entry.spread, 2)} %"
+        return f"{number(value, DIGITS_BESIDE_SPREAD)} ± {number(100.0 * entry.spread, 2)} %"
     return number(value) if entry.uncertainty is None else uncertain(value, entry.uncertainty)
 
 
-def _untold(found: Identified) -> list[tuple[str, str, list[dict[str, str]]]]:
-    """What was fitted to a file, and is not told by it: the file, why, and the numbers."""
-    untold: dict[tuple[str, str], list[dict[str, str]]] = {}
-    for finding in found.files:
-        for told in finding.estimates:
-            if told.why or not np.isfinite(told.sigma):
-                why = told.why or "the file does not determine it"
-                value = uncertain_quantity(told.value, told.sigma, told.unit)
-                number_there = {"name": name_of(told), "path": told.path, "value": value}
-                untold.setdefault((finding.name, why), []).append(number_there)
-    return [(*place, numbers) for place, numbers in untold.items()]
+def _contradiction(each: CombinedParameter, other: str) -> dict[str, str]:
+    best, estimate = each.of_file(each.source), each.others[other]
+    return {
+        "title": name_of(best),
+        "path": best.path,
+        "unit": unit(best.unit),
+        "taken": uncertain(best.value, best.sigma),
+        "source": each.source,
+        "value": uncertain(estimate.value, estimate.sigma),
+        "other": other,
+        "distance": _sigmas(distance(best, estimate)),
+    }
+
+
+def _sigmas(distance: float) -> str:
+    """Return standard deviations, to a tenth if they are few."""
+    return fixed(distance, 1 if distance < 10.0 else 0) if np.isfinite(distance) else "∞"
+
+
+def _undetermined(found: Identified) -> list[tuple[str, str, str, list[dict[str, str]]]]:
+    """Return what was fitted to a file without being determined by it: file, state, reason, and the parameters."""
+    groups: dict[tuple[str, str, str], list[dict[str, str]]] = {}
+    for file in found.files:
+        for each in file.estimates:
+            if each.why or not np.isfinite(each.sigma):
+                why = each.why or "the file does not determine it"
+                state = each.state if each.why else "not identified"
+                row = {"name": name_of(each), "path": each.path, "value": uncertain_quantity(each.value, each.sigma, each.unit)}
+                groups.setdefault((file.name, state, why), []).append(row)
+    return [(*place, numbers) for place, numbers in groups.items()]
 
 
 def _kept(found: Identified) -> dict[str, list[str]]:
-    """The numbers of the gear of which no file tells anything, by where the set has them from."""
-    told = {each.estimate.path for each in found.parameters}
+    """Return the numbers of the gear that no file determines, by the reason."""
     kept: dict[str, list[str]] = {}
-    for path, (value, of) in verdict.numbers(found.gear_set.gear).items():
-        entry = found.start.sources.get(path)
-        unchanged = entry is not None and found.gear_set.sources.get(path) == entry
-        if entry is not None and unchanged and path not in told and entry.source != NOT_GIVEN:
-            kept.setdefault(entry.source, []).append(f"{path} = {number(value)} {unit(of)}".strip())
+    for each in found.states:
+        if each.state == "kept":
+            kept.setdefault(each.why or "as in the start set", []).append(_kept_number(each))
     return kept
 
 
-def _absent(found: Identified) -> str:
-    """What the model does without, as neither the set nor a file says anything of it."""
-    sources = found.gear_set.sources
-    parts = [path.rpartition(".")[0] for path, entry in sources.items() if entry.source == NOT_GIVEN]
-    return ", ".join(part.removeprefix("gear.").replace("_", " ") for part in dict.fromkeys(parts))
+def _kept_number(each: ParameterState) -> str:
+    return f"{each.path} = {number(each.value)} {unit(each.unit)}".strip()
 
 
-# ---- Files beside each other -----------------------------------------------------------------------------------------
+# ---- Files -----------------------------------------------------------------------------------------------------------
+
+
+def _given_with_all(found: Identified) -> Mapping[str, float]:
+    """Return the constants that a person gave with every file."""
+    given = [set(each.recognised.constants.items()) for each in found.files if each.recognised and each.recognised.columns]
+    return dict(sorted(set.intersection(*given))) if given else {}
+
+
+def _constant(name: str, value: float) -> str:
+    return f"{name.replace('_', ' ')} {quantity(value, CONSTANTS[name].unit)}"
+
+
+def _file(result: FileResult, anchor: str, given: Mapping[str, float]) -> dict[str, Any]:
+    read = result.recognised
+    of = "" if result.held_out is None else result.held_out.unit
+    return {
+        "name": result.name,
+        "anchor": anchor if result.pictures and not result.refused else "",
+        "kind": _what(result),
+        "why": read.why if read is not None else (),
+        "columns": list(_columns(result, given)),
+        "model": result.model,
+        "candidates": [(name, quantity(error, of) if of else number(error, 3)) for name, error in result.candidates],
+        "determined": sum(not each.why for each in result.estimates),
+        "same_as": result.same_as,
+        "refused": result.refused,
+        "failed": [check.name for check in result.failed],
+        "remarks": result.remarks,
+    }
+
+
+def _columns(result: FileResult, given: Mapping[str, float]) -> Iterator[str]:
+    """Yield each channel with its column and unit in the file, "speed: Drehzahl [1/min]", and constants given with it alone."""
+    read = result.recognised
+    if read is None:
+        return
+    for channel, name in read.columns.items():
+        of = unit(read.units.get(channel, "1"))
+        yield f"{channel.replace('_', ' ')}: {name}" + (f" [{of}]" if of else "")
+    if read.side is not None:
+        yield f"side: {read.side}"
+    for name, value in read.constants.items():
+        if name not in given:
+            yield f"given: {_constant(name, value)}"
+
+
+def _sections(found: Identified, given: Mapping[str, float]) -> Iterator[dict[str, Any]]:
+    """Yield a section for each table of which several files are points."""
+    for table in dict.fromkeys(each.part_of for each in found.files if each.part_of):
+        own = [each for each in found.files if each.part_of == table]
+        kinds = [kind_named(each.recognised.kind).section for each in own if each.recognised is not None]
+        yield {
+            "heading": next(filter(None, kinds), table.capitalize()),
+            "table": table,
+            "files": [_file(each, "", given) for each in own],
+            "remarks": list(dict.fromkeys(remark for each in own for remark in each.remarks)),
+        }
+
+
+# ---- Files beside each other, and experiments --------------------------------------------------------------------------
 
 
 def _comparisons(found: Identified) -> Iterator[tuple[str, Markup]]:
-    """A drawing for each part of the drive of which more than one file tells a number."""
+    """Yield a drawing for each part of the drive of which more than one file determines a parameter."""
     from markupsafe import Markup
 
-    copies = {finding.name for finding in found.files if finding.same_as}
+    copies = {file.name for file in found.files if file.same_as}
     parts: dict[str, list[CombinedParameter]] = {}
     for each in found.parameters:
         if each.others and (each.estimate.value != 0.0 or each.estimate.is_phase):
@@ -352,84 +371,17 @@ def _rows(each: CombinedParameter, copies: set[str]) -> Iterator[plots.Row]:
         yield plots.Row(name, 100.0 * difference(other, taken) / scale, 100.0 * other.sigma / scale, look)
 
 
-# ---- As files --------------------------------------------------------------------------------------------------------
+def _experiments(experiments: Sequence[SimulatedExperiment]) -> Iterator[dict[str, Any]]:
+    """Yield experiments with their figures; a remark that they share stands with the first."""
+    from markupsafe import Markup
 
-
-def identify_files(found: Identified) -> dict[str, str]:
-    """All that was found as JSON, and every number as every file tells it as CSV; in SI units, each beside its number."""
-    text = StringIO()
-    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(_csv_rows(found))
-    return {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
-
-
-def _results(found: Identified) -> dict[str, Any]:
-    return {
-        "made_by": f"strainwave {metadata.version('strainwave')}",
-        "start": found.start.name,
-        "files": [_file_results(each) for each in found.files],
-        "numbers": [
-            {
-                **_told_results(each.estimate),
-                "name": name_of(each.estimate),
-                "file": each.source,
-                "mean_of": each.mean_of if len(each.mean_of) > 1 else [],
-                "widened": each.widened,
-                "best": _told_results(each.of_file(each.source)),
-                "others": [
-                    {"file": name, **_told_results(other), "sigmas_apart": distance(each.of_file(each.source), other)}
-                    for name, other in each.others.items()
-                ],
-                "contradicts": each.contradicts,
-            }
-            for each in found.parameters
-        ],
-    }
-
-
-def _told_results(told: FileEstimate) -> dict[str, Any]:
-    return {"path": told.path, "law": told.law, "unit": told.unit, "value": told.value, "sigma": told.sigma}
-
-
-def _file_results(finding: FileResult) -> dict[str, Any]:
-    read = finding.recognised
-    return {
-        "name": finding.name,
-        "kind": None if read is None else read.kind,
-        "why": [] if read is None else read.why,
-        "columns": {} if read is None else read.columns,
-        "units": {} if read is None else read.units,
-        "side": None if read is None else read.side,
-        "constants": {} if read is None else read.constants,
-        "model": finding.model,
-        "error_on_data_held_out": finding.error,
-        "same_as": finding.same_as or None,
-        "part_of": finding.part_of or None,
-        "doubts": finding.doubts,
-        "refused": finding.refused or None,
-        "remarks": finding.remarks,
-        "told": [{**_told_results(each), "not_told_because": each.why or None} for each in finding.estimates],
-    }
-
-
-def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
-    """What each file says of each number, the best first, and their mean; then what files do not tell."""
-    copies = {finding.name for finding in found.files if finding.same_as}
-    for each in found.parameters:
-        best, mean = each.of_file(each.source), each.mean_of if len(each.mean_of) > 1 else ()
-        for name in (each.source, *each.others):
-            told = each.of_file(name)
-            yield _told_results(told) | {
-                "file": name,
-                "taken": "in the mean" if name in mean else "yes" if name == each.source else "no",
-                "same_measurement": "yes" if name in copies else "no",
-                "sigmas_apart": distance(best, told),
-                "contradicts": "yes" if name in each.contradicts else "no",
-            }
-        if mean:
-            yield _told_results(each.estimate) | {"file": each.taken_from, "taken": "yes"}
-    for finding in found.files:
-        for told in finding.estimates:
-            if told.why:
-                yield _told_results(told) | {"file": finding.name, "taken": "no", "not_told_because": told.why}
+    said = ""
+    for position, experiment in enumerate(experiments):
+        below = "how far it is from the command" if experiment.comparable else "the command"
+        yield {
+            "experiment": experiment,
+            "remark": "" if experiment.remark == said else experiment.remark,
+            "figure": Markup(figures.experiment(experiment, f"experiment-{position}")),
+            "caption": f"{figures.output_name(experiment.response)} over time, and {below}.",
+        }
+        said = experiment.remark

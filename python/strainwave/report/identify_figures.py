@@ -1,8 +1,8 @@
-"""Figures of what files tell: each number as each file has it, and each file measured against modelled."""
+"""Figures of an identification: the estimates of each file beside each other, and each file measured against modelled."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
-from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.results.file_result import FileResult, Look, Picture
 from strainwave.report import figures
 from strainwave.report.figures import LIGHT, WIDTH
 
@@ -24,7 +24,7 @@ POINTS = 600  # of a loop that are drawn, at most
 GAP = 2.5  # median intervals: over a longer one no line is drawn
 BLOCKS = 200  # of a band over time
 ROW = 0.19  # inches that a row of a comparison takes
-LOOPS = {"twist": "twist", "small_angle": "angle of the input"}  # what is drawn as a loop, and its name
+ABSCISSAE = {"twist": "twist", "small_angle": "angle of the input"}  # of loops, in words
 LONGEST = 22  # letters of a file's name that stand beside a drawing
 SEEN = 0.8  # of the intervals that are drawn whole; longer ones reach the edge
 LOOKS = {  # of a file in a comparison: mark, colour, whether filled
@@ -119,51 +119,48 @@ def _short(name: str) -> str:
 # ---- One file --------------------------------------------------------------------------------------------------------
 
 
-def file_figure(finding: FileResult, name: str) -> str:
-    """Measured against modelled, and below what is left, with two bands of 95 %: of the model, and of the residuals."""
-    curves = finding.curves
-    assert curves is not None
+def file_figure(result: FileResult, picture: Picture, name: str) -> str:
+    """Draw measured against modelled, and below what is left, with two bands of 95 %: of the model, and of the residuals."""
 
     def draw(figure: Figure) -> None:
-        over = curves.names[0]
-        whole, left = figure.subplots(2, 1, sharex=over not in LOOPS, height_ratios=(2.2, 1.0))
-        draw_file = {"speed": _table, "twist": _loop, "small_angle": _loop, "temperature": _warming}.get(over, _series)
-        draw_file(whole, left, curves, _words(finding))
+        whole, left = figure.subplots(2, 1, sharex=picture.look != "loop", height_ratios=(2.2, 1.0))
+        _DRAWN[picture.look](whole, left, picture.curves, _label(picture))
         figures.legend(figure, whole)
 
-    return figures.inline(draw, (WIDTH, 3.9), name, f"Measured against modelled, {finding.name}")
+    title = f", {picture.title}" if picture.title else ""
+    return figures.inline(draw, (WIDTH, 3.9), name, f"Measured against modelled, {result.name}{title}")
+
+
+def overview(loop: Picture, table: Picture) -> str:
+    """Draw a picture by itself: a torsion loop and a friction table, measured and modelled."""
+
+    def draw(figure: Figure) -> None:
+        left, right = figure.subplots(1, 2)
+        _loop_points(left, loop.curves)
+        _table_points(right, table.curves)
+        figures.label_axes(left, _label(loop), "N.m", "twist", "rad")
+        figures.label_axes(right, _label(table), "N.m", "input speed", "rad/s")
+        figures.legend(figure, left)
+
+    title = "Torsion loop and friction of two strain wave gears, measured and modelled"
+    return figures.standalone(draw, (8.4, 3.2), "overview", title)
 
 
 def residual_of(curves: Recording) -> Array:
-    """What is left of a file: measured less modelled, or what neither orders nor loads explain."""
+    """Return what is left of a file: measured less modelled, or what neither orders nor loads explain."""
     left: Array = curves["residual"] if "residual" in curves else curves[curves.names[1]] - curves["modelled"]
     return left
 
 
-def _words(finding: FileResult) -> str:
-    """What was measured in a file, in words."""
-    curves = finding.curves
-    assert curves is not None
-    over, channel = curves.names[:2]
-    if over == "speed":
-        return "friction torque, at the input"
-    if over == "twist":
-        at_input = finding.recognised is not None and "input_angle" in finding.recognised.recording
-        return "torque, referred to the output" if at_input else "torque at the output"
-    if over == "small_angle":
-        return "torque at the input"
-    return channel.replace("_", " ")
+def _label(picture: Picture) -> str:
+    """Return the name of what was measured."""
+    return picture.label or picture.curves.names[1].replace("_", " ")
 
 
 def _table(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
-    """Torque over speed; the band of the model is where it lies, as the law between the speeds."""
-    order = np.argsort(curves["speed"], kind="stable")
+    """Draw torque over speed."""
+    order = _table_points(whole, curves)
     speed, torque = curves["speed"][order], curves.names[1]
-    whole.plot(speed, curves[torque][order], "o", color=LIGHT["measured"], label="measured", zorder=3)
-    for side in (speed < 0.0, speed > 0.0):
-        rows = order[side]
-        whole.plot(speed[side], curves["modelled"][rows], color=LIGHT["model"], label="model" if side[-1] else "")
-    figures.speed_axis(whole, speed)
     residual = residual_of(curves)[order]
     figures.residual_curve(left, speed, residual, LIGHT["ink"])
     _bands(left, speed, residual, _sigma(curves, order))
@@ -171,23 +168,40 @@ def _table(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
     figures.label_axes(left, "measured − modelled", curves.unit(torque), "input speed", "rad/s")
 
 
-def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
-    """Torque over twist or angle, as points: samples are left out behind reversals. Below, in the order measured."""
+def _table_points(axes: Axes, curves: Recording) -> NDArray[np.intp]:
+    """Draw the rows of a table and the law, each direction by itself; return their order by speed."""
+    order = np.argsort(curves["speed"], kind="stable")
+    speed = curves["speed"][order]
+    axes.plot(speed, curves[curves.names[1]][order], "o", color=LIGHT["measured"], label="measured", zorder=3)
+    for side in (speed < 0.0, speed > 0.0):
+        axes.plot(speed[side], curves["modelled"][order[side]], color=LIGHT["model"], label="model" if side[-1] else "")
+    figures.speed_axis(axes, speed)
+    return order
+
+
+def _loop_points(axes: Axes, curves: Recording) -> None:
+    """Draw torque over twist or angle, as points: samples behind reversals are left out."""
     over, torque = curves.names[:2]
-    twist = curves[over]
-    rows = np.unique(np.linspace(0, len(twist) - 1, POINTS).astype(int))
-    whole.plot(twist[rows], curves[torque][rows], "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
-    whole.plot(twist[rows], curves["modelled"][rows], "o", color=LIGHT["model"], markersize=1.2, label="model")
-    point, residual = np.arange(1.0, len(twist) + 1.0), residual_of(curves)
+    rows = np.unique(np.linspace(0, len(curves) - 1, POINTS).astype(int))
+    x = curves[over][rows]
+    axes.plot(x, curves[torque][rows], "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
+    axes.plot(x, curves["modelled"][rows], "o", color=LIGHT["model"], markersize=1.2, label="model")
+
+
+def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+    """Draw a loop; below, what is left in the order measured."""
+    over, torque = curves.names[:2]
+    _loop_points(whole, curves)
+    point, residual = np.arange(1.0, len(curves) + 1.0), residual_of(curves)
     figures.residual_curve(left, point, residual, LIGHT["ink"])
     _bands(left, point, residual, _sigma(curves))
     _held_out((left,), point, curves)
     side = words.removeprefix("torque") if over == "twist" else ""
-    figures.label_axes(whole, words, curves.unit(torque), LOOPS[over] + side, "rad")
+    figures.label_axes(whole, words, curves.unit(torque), ABSCISSAE.get(over, over.replace("_", " ")) + side, "rad")
     figures.label_axes(left, "measured − modelled", curves.unit(torque), "point compared, in the order measured", "1")
 
 
-def _warming(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+def _means(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
     """Means of the friction over the temperature, and the line through all samples."""
     over, channel = curves.names[:2]
     celsius, residual = curves.values(over, "degC"), residual_of(curves)
@@ -213,6 +227,11 @@ def _series(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
     figures.label_axes(whole, words, unit)
     below = "left by orders and loads" if "residual" in curves else "measured − modelled"
     figures.label_axes(left, below, unit, over.replace("_", " "), curves.unit(over))
+
+
+_DRAWN: dict[Look, Callable[..., None]] = {
+    "table": _table, "loop": _loop, "means": _means, "series": _series,
+}  # fmt: skip
 
 
 def _broken(x: Array, *series: Array) -> tuple[Array, ...]:

@@ -12,10 +12,11 @@ from typing import Any
 
 from strainwave.identification.identify import Identified
 from strainwave.identification.joints import Joints
-from strainwave.identification.results.file_result import FileResult, lines_of
+from strainwave.identification.results.combined_parameter import lines_of
+from strainwave.identification.results.file_result import FileResult
 from strainwave.report import figures
-from strainwave.report.identify import name_of
 from strainwave.report.page import render
+from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
 from strainwave.report.typeset import number, uncertain, unit
 
@@ -49,10 +50,10 @@ def folder_of(joint: str) -> str:
 
 
 def joints_summary(joints: Joints) -> Iterator[str]:
-    """What each joint is told to be, in lines."""
+    """Yield what was identified of each joint, in lines."""
     for name, found in joints.found.items():
         yield f"joint {name}: {'; '.join(_of_files(found))}"
-        yield from (f"  DOUBT: {doubt}" for finding in found.files for doubt in finding.doubts)
+        yield from (f"  FAILED: {check.source}: {check.message}. What to do: {check.remedy}" for check in found.failed)
         yield from lines_of(found.parameters)
     yield from (f"joint {name}: NOT USED: {why}" for name, why in joints.refused.items())
     yield from (f"{name}: NOT USED: {why}" for name, why in joints.left_out.items())
@@ -86,12 +87,12 @@ def _joint(name: str, found: Identified) -> dict[str, Any]:
         "name": name,
         "report": f"{folder_of(name)}/report.html",
         "files": [{"name": each.name, "model": each.refused or each.model, "error": _error(each)} for each in found.files],
-        "doubts": [doubt for each in found.files for doubt in each.doubts],
+        "failed": [f"{check.source}: {check.message}. What to do: {check.remedy}" for check in found.failed],
     }
 
 
 def _rows(joints: Joints) -> Iterator[dict[str, Any]]:
-    """A row for each number that any joint tells, with its value of each joint; nothing where a joint does not tell it."""
+    """Yield a row for each parameter of any joint, with its value of each joint; empty if a joint does not determine it."""
     keys = dict.fromkeys(
         (each.estimate.path, each.estimate.unit) for found in joints.found.values() for each in found.parameters
     )

@@ -55,7 +55,7 @@ def _file_part(text: str) -> str:
 
 
 def loop_files(loops: Sequence[Loop]) -> dict[str, bytes]:
-    """Each loop as CSV and as Parquet, as `strainwave twin --torsion` reads them."""
+    """Each loop as CSV and as Parquet, as `strainwave identify` reads them."""
     made = {}
     with TemporaryDirectory() as folder:
         for name, loop in zip(loop_names(loops), loops, strict=True):

@@ -12,14 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strainwave.identification.identify import Identified, identify, with_means
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.results.file_result import (
-    CombinedParameter,
-    FileEstimate,
-    FileResult,
-    distance,
-    mean_of,
-    combine,
-)
+from strainwave.identification.results.combined_parameter import CombinedParameter, combine, distance, mean_of
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 
 from tests.python.identification.candidates.test_motion import RATIO, TRUTH, record
@@ -184,7 +178,7 @@ def test_phases_a_turn_apart_are_equal() -> None:
         (3, None, "files must be a list of paths"),
         ("table.csv", None, "files must be a list of paths"),
         ([3], None, "files must be a list of paths"),
-        (["table.csv"], 3, "mapping must be a function"),
+        (["table.csv"], 3, "mapping must be a FileMapping, or a function"),
     ],
 )
 def test_what_are_no_files_is_refused(files: Any, mapping: Any, said: str) -> None:

@@ -10,17 +10,18 @@ import numpy as np
 
 from strainwave.identification.candidates.motion import MotionCandidate, bands, fit_motion, refit
 from strainwave.identification.candidates.plain import fit_plain
+from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import Between, between_encoders
-from strainwave.identification.kinds.plausibility import too_fast, unlike_set
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.kinds.warm_up import warmed
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import curves_of
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
@@ -29,7 +30,7 @@ UNLIKE = 0.1  # relative: two inertias that differ by more are not one
 EXACTLY = 1e-6  # relative: a number that a person gives is fitted as nearly as that
 
 
-def log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+def fit_log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     """Return the estimates of a log along its motion, and over temperature if it warms up; and the gear with them."""
     warm, name = warmed(file), file.path.name
     try:
@@ -39,7 +40,7 @@ def log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
             raise
         unused = f"not used along its motion: {error}"
         finding, after = FileResult(name, file, "friction over the temperature", (), np.nan, (*file.remarks, unused)), known
-        finding = replace(finding, curves=warm.curves)
+        finding = replace(finding, pictures=(warm.picture,))
     if warm is None:
         return finding, after
     after, said = warm.known(after, name)
@@ -49,7 +50,7 @@ def log(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
 
 
 def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-    taken, before = log_of(file, known), known.gear_set.gear
+    taken, start = log_of(file, known), known.initial.gear
     drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
     log = taken.log
     priors = {path: (value, EXACTLY * value) for path, value in taken.said.items()}
@@ -70,23 +71,17 @@ def _along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearS
     remarks += _shares(best.fit, file.regressors)
     every, curves = (*file.remarks, *remarks), curves_of(best.fit)
     law = best.fit.parts[0].model.gear.friction_input
-    unlike = None if in_current else unlike_set(law, before.friction_input, log.motion.speed, log.effort)
-    doubts = tuple(filter(None, (unlike, too_fast(log.motion.speed), _unlike_said(taken))))
+    name, speed = file.path.name, log.motion.speed
+    level = () if in_current else friction_of_log(law, start.friction_input, speed, log.effort, name)
+    checks = (*level, input_speed(speed, name), *_given_inertia(taken, name))
+    pictures = (Picture(curves), *between.pictures)
     return (
         FileResult(
-            file.path.name,
-            file,
-            best.name,
-            tuple(told),
-            held_out.relative,
-            every,
-            doubts,
-            curves=curves,
-            between=between.curves,
-            held_out=held_out,
+            name, file, best.name, tuple(told), held_out.relative, every, checks, pictures=pictures, held_out=held_out,
+            fit=best.fit,
         ),
         known,
-    )
+    )  # fmt: skip
 
 
 def _shares(found: Fit, regressors: Sequence[str]) -> list[str]:
@@ -107,18 +102,19 @@ def _with_friction(known: GearSoFar, best: MotionCandidate, told: Sequence[FileE
     return known
 
 
-def _unlike_said(taken: PreparedLog) -> str | None:
-    """Return the doubt that the given inertia contradicts the log; None if it agrees, or none was given."""
+def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
+    """Yield the check that a given inertia of the load agrees with the log."""
     if "load.inertia" not in taken.said:
-        return None
+        return
     drive, shown = taken.drive, fit_plain(taken.log, taken.drive).inertia
     given = drive.motor.inertia + drive.gear.input_inertia + taken.said["load.inertia"] / drive.gear.kinematics.ratio**2
-    if abs(shown - given) <= UNLIKE * given:
-        return None
-    return (
+    off = abs(shown - given) / given
+    yield Check(
+        "given inertia of the load", name, off, UNLIKE, "1", off > UNLIKE,
         f"the log shows a total inertia of {shown:.3g} kg·m² at the input, but that of the load as it was given makes "
-        f"{given:.3g} with motor and gear: see whether load_inertia, motor_inertia, ratio and torque constant are right"
-    )
+        f"{given:.3g} with motor and gear",
+        "see whether load_inertia, motor_inertia, ratio and torque constant are right",
+    )  # fmt: skip
 
 
 def _of_motion(best: MotionCandidate, taken: PreparedLog) -> Iterator[FileEstimate]:

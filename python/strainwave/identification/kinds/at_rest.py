@@ -13,7 +13,7 @@ from strainwave.identification.candidates.presliding import PreslidingCandidate,
 from strainwave.identification.experiments.presliding import PreslidingLoop, breakaways
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, plain, with_torque
 
 SIGNIFICANCE_SIGMA = 3.0  # beyond which two numbers differ
@@ -66,7 +66,8 @@ def presliding(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFa
     compared = {"small_angle": loop.angle, "torque": loop.torque, "modelled": best.predicted}
     units = {"small_angle": "rad", "torque": "N.m", "modelled": "N.m"}
     curves = Recording({name: values[begun] for name, values in compared.items()}, units)
-    return FileResult(file.path.name, file, _in_words(best), told, error, tuple(remarks), curves=curves), after
+    picture = Picture(curves, "loop", "torque at the input")
+    return FileResult(file.path.name, file, _in_words(best), told, error, tuple(remarks), pictures=(picture,)), after
 
 
 def _sliding_beyond(largest: float, known: GearSoFar) -> float | None:

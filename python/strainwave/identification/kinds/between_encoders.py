@@ -14,15 +14,15 @@ from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
 from strainwave.identification.candidates.motion import MotionCandidate
-from strainwave.identification.evidence.verdict import numbers
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.noise import correlation_length
 from strainwave.identification.kinds.prepared_log import PreparedLog
 from strainwave.identification.results.curves import curves_of_shafts
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import FileEstimate, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, is_of
 from strainwave.orders.two_encoders import TransmissionError
+from strainwave.parameters import gear_numbers
 
 Array = NDArray[np.float64]
 
@@ -41,14 +41,14 @@ class Between:
     Attributes:
         estimates: its numbers; they take the place of those that the log has told of the same paths
         remarks: what to know of them
-        curves: the angle between the shafts as measured and as modelled; None where nothing was fitted
+        pictures: the angle between the shafts as measured and as modelled; none if nothing was fitted
         found: the model; None likewise
         parts: those of the gear that it tells in units of a gear; none but the kinematic error where torques are in A
     """
 
     estimates: tuple[FileEstimate, ...] = ()
     remarks: tuple[str, ...] = ()
-    curves: Recording | None = None
+    pictures: tuple[Picture, ...] = ()
     found: ElasticCandidate | None = None
     parts: tuple[str, ...] = ("stiffness", "hysteresis", "damping", "kinematic_error")
 
@@ -88,7 +88,8 @@ def between_encoders(taken: PreparedLog, best: MotionCandidate, errors: Transmis
         return Between(remarks=(f"stiffness and hysteresis are not told: {error}",))
     told = tuple(_told(found, scale, known, taken.in_current))
     remarks = tuple(_remarks(found, scale, estimates.get(INERTIA), taken))
-    between = Between(told, remarks, curves_of_shafts(found.fit, found.name), found)
+    picture = Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name)
+    between = Between(told, remarks, (picture,), found)
     return replace(between, parts=("kinematic_error",)) if taken.in_current else between
 
 
@@ -258,9 +259,9 @@ def _with_sources_kept(
     after: GearSoFar, known: GearSoFar, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str
 ) -> GearSoFar:
     """The same, where numbers of the spring that the log does not reach have the source that they had, or are assumed."""
-    before = {path: value for path, (value, _) in numbers(known.gear_set.gear).items()}
+    before = {path: value for path, (value, _) in gear_numbers(known.gear_set.gear).items()}
     sources = dict(after.gear_set.sources)
-    for path, (value, _) in numbers(after.gear_set.gear).items():
+    for path, (value, _) in gear_numbers(after.gear_set.gear).items():
         if path not in sigmas and is_of(path, {"stiffness"} & parts.keys()):
             kept = before.get(path) == value and path in known.gear_set.sources
             sources[path] = known.gear_set.sources[path] if kept else Entry(source=f"assumed beside what {name} tells")

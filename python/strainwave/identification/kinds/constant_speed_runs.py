@@ -14,13 +14,13 @@ from strainwave import friction
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.position import TURN, PositionFit, fit_position
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
-from strainwave.identification.kinds.fit_file import friction_of
+from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.sides import FAST
 from strainwave.identification.reading.steady import stretches
 from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.messages import listed
 
@@ -240,7 +240,7 @@ def joined(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, GearSoFar
         estimates, few = friction_at_speeds(speed, levels.torque, levels.covariance, side)
         estimates = tuple(each.resting_on(uncertain) for each in estimates)
         return FileResult(JOINED, file, AT_SPEEDS, (*estimates, *gravity), remarks=(*remarks, *few), what=TABLE), known
-    result, after = friction_of(file, file.recording, uncertain, known)
+    result, after = fit_table(file, file.recording, uncertain, known)
     return replace(result, name=JOINED, what=TABLE, estimates=(*result.estimates, *gravity)), after
 
 
@@ -296,7 +296,13 @@ def over_the_angle(runs: Sequence[Run], known: GearSoFar) -> tuple[FileResult, G
     )
     read = replace(file, path=Path(name), why=why, remarks=())
     return FileResult(
-        name, read, "a parabola and ten orders of the turn", estimates, remarks=tuple(remarks), what=WHAT, curves=curves
+        name,
+        read,
+        "a parabola and ten orders of the turn",
+        estimates,
+        remarks=tuple(remarks),
+        what=WHAT,
+        pictures=(Picture(curves),),
     ), after
 
 

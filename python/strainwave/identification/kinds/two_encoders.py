@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from strainwave.identification.kinds.kind import Kind
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.kinds import ColumnRoles, encoder_roles
+from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.curves import curves_of_orders
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 
 
-def encoders(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
-    """Return the orders of a record of two encoders, and the gear with them."""
-    found = transmission_error(file.recording)
-    told = tuple(orders_of(found))
-    remarks, curves = (*file.remarks, *found.remarks), curves_of_orders(found)
-    finding = FileResult(file.path.name, file, "orders of the input", told, np.nan, remarks, curves=curves)
-    return finding, with_error(known, found, file.path.name)
+class TwoEncoders(Kind):
+    """Angles of input and output, without torque or current."""
+
+    time = "used"
+
+    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
+        return encoder_roles(columns, mapping)
+
+    def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+        """Fit the orders of the kinematic error."""
+        found, name = transmission_error(file.recording), file.path.name
+        remarks, pictures = (*file.remarks, *found.remarks), (Picture(curves_of_orders(found)),)
+        result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), np.nan, remarks, pictures=pictures)
+        return result, with_error(known, found, name)
 
 
 def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoFar:
@@ -34,7 +45,7 @@ def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoF
 
 
 def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
-    """The orders of the kinematic error that stand out."""
+    """Yield the orders of the kinematic error that stand out."""
     for each in found.orders:
         if each.shaft == "input" and each.significant:
             yield FileEstimate(

@@ -12,7 +12,7 @@ from strainwave import friction
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.warming import SLOWEST, WARMER, Warming, friction_over_temperature
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import FileEstimate, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 
 Array = NDArray[np.float64]
@@ -32,14 +32,14 @@ class Warmed:
         effort: the channel that tells it
         estimates: its numbers
         remarks: the same in words
-        curves: means of the friction over the temperature beside the line
+        picture: means of the friction over the temperature, and the line
     """
 
     found: Warming
     effort: str
     estimates: tuple[FileEstimate, ...]
     remarks: tuple[str, ...]
-    curves: Recording
+    picture: Picture
 
     def known(self, known: GearSoFar, name: str) -> tuple[GearSoFar, tuple[str, ...]]:
         """What is known after it, and what was assumed for it."""
@@ -83,7 +83,7 @@ def warmed(file: Recognised) -> Warmed | None:
         "temperature is not told from what else changed in the same time, as wear-in or another task",
     )
     told = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
-    return Warmed(found, effort, told, remarks, _curves(series, effort, found))
+    return Warmed(found, effort, told, remarks, Picture(_curves(series, effort, found), "means"))
 
 
 def _celsius(temperature: float) -> str:

@@ -378,10 +378,14 @@ def at_rest_roles(columns: Sequence[Column], mapping: FileMapping, kind: str) ->
     moved = f"{angle.name} moves by {1e3 * np.ptp(angle.si):.3g} mrad in all"
     if kind == "presliding":
         turns = len(turning_points(angle.si))
-        return ColumnRoles(kind, found, side, (f"{moved} and turns back {turns} times beside {force.name}: {KINDS[kind].title}",))
+        return ColumnRoles(
+            kind, found, side, (f"{moved} and turns back {turns} times beside {force.name}: {KINDS[kind].title}",)
+        )
     if times := _measured(columns, "time"):
         found["time"] = times[0]
-    return ColumnRoles(kind, found, side, (f"{force.name} rises while {angle.name} rests, until it moves: {KINDS[kind].title}",))
+    return ColumnRoles(
+        kind, found, side, (f"{force.name} rises while {angle.name} rests, until it moves: {KINDS[kind].title}",)
+    )
 
 
 def _measured(columns: Sequence[Column], quantity: Quantity) -> list[Column]:

@@ -14,6 +14,7 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, Part
 from strainwave.identification.fitting.unknowns import AT
+from strainwave.identification.results.file_result import Picture
 from strainwave.orders.two_encoders import TransmissionError
 
 Array = NDArray[np.float64]
@@ -69,18 +70,35 @@ def curves_of_orders(found: TransmissionError) -> Recording:
     return Recording(columns, units)
 
 
-def curves_of_shafts(fit: Fit, model: str) -> Recording:
+def curves_of_shafts(fit: Fit) -> Recording:
     """What a model says of the angle between the shafts in a log along the motion of its input, whose output is compared.
 
     Returns:
-        time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`; titled with the model
+        time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`
     """
     part = fit.parts[0]
     log: Any = part.experiment
     turned = log.angle / part.model.gear.kinematics.ratio
     error, modelled = turned - log.measured[0], turned - part.predicted[0]
     columns = {"time": log.time, "transmission_error": error - error.mean(), "modelled": modelled - error.mean()}
-    return Recording(columns, dict.fromkeys(columns, "rad") | {"time": "s"}, model)
+    return Recording(columns, dict.fromkeys(columns, "rad") | {"time": "s"})
+
+
+def pictures_of_channels(fit: Fit) -> tuple[Picture, ...]:
+    """Return a picture over time of each channel of a run."""
+    part = fit.parts[0]
+    log: Any = part.experiment
+    held_out = (~part.training).astype(float)
+    return tuple(
+        Picture(
+            Recording(
+                {"time": log.time, channel: measured, "modelled": modelled, "held_out": held_out},
+                {"time": "s", channel: unit, "modelled": unit, "held_out": "1"},
+            ),
+            title=channel.replace("_", " "),
+        )
+        for channel, unit, measured, modelled in zip(log.channels, log.units, log.measured, part.predicted, strict=True)
+    )
 
 
 def _abscissa(experiment: Experiment) -> tuple[str, str, Array]:

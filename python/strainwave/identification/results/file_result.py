@@ -1,35 +1,38 @@
-"""What each file tells of a gear or its drive, and what all files tell together."""
+"""Result of one file: its estimates, its checks, and what is drawn of it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.messages import listed
 
-Array = NDArray[np.float64]
-APART = 3.0  # standard deviations: two files contradict each other
-AGREE = 2.0  # standard deviations: of files that are not further apart the mean is taken
+State = Literal["identified", "identified in combination", "not identified", "kept"]
+Look = Literal["table", "loop", "series", "means"]
 
 
 @dataclass(frozen=True)
 class FileEstimate:
-    """A number as one file tells it.
+    """Estimate of a parameter by one file.
 
     Attributes:
-        path: where it stands in a gear set
+        path: of the parameter in a gear set
         unit: its unit
         value: in SI units
         sigma: its standard deviation
-        law: the law that it belongs to; numbers of different laws are not compared
-        why: what speaks against it; empty where the file tells it
+        law: the law that it belongs to; parameters of different laws are not compared
+        why: the reason why the file does not determine it; empty if it does
         common: the part of `sigma` that files share: of the torque constant, and of the inertia of the rotor
+        in_combination: True if the file determines it only together with another parameter, as `why` says
+        shift_by_kept: relative change by one standard deviation of each kept parameter that matters, by its path [1]
     """
 
     path: str
@@ -39,6 +42,13 @@ class FileEstimate:
     law: str
     why: str = ""
     common: float = 0.0
+    in_combination: bool = False
+    shift_by_kept: Mapping[str, float] = field(default_factory=dict, hash=False)
+
+    @property
+    def state(self) -> State:
+        """Whether the file determines it."""
+        return "identified" if not self.why else "identified in combination" if self.in_combination else "not identified"
 
     @property
     def own(self) -> float:
@@ -46,7 +56,7 @@ class FileEstimate:
         return float(np.sqrt(max(self.sigma**2 - self.common**2, 0.0)))
 
     def resting_on(self, relative: float, beside: float = 0.0) -> FileEstimate:
-        """The same, as uncertain as the torque constant that it rests on, besides; what is no torque rests on none.
+        """Return the same with the uncertainty of the torque constant that it rests on; what is no torque rests on none.
 
         Args:
             relative: standard deviation of the torque constant over its value [1]
@@ -56,7 +66,7 @@ class FileEstimate:
         return self.sharing(relative * (abs(self.value) + beside)) if self.is_of_torque else self
 
     def sharing(self, common: float) -> FileEstimate:
-        """The same, with more of its standard deviation in common with other files."""
+        """Return the same with more of its standard deviation in common with other files."""
         return replace(self, sigma=float(np.hypot(self.sigma, common)), common=float(np.hypot(self.common, common)))
 
     def in_current(self) -> FileEstimate:
@@ -77,29 +87,49 @@ class FileEstimate:
 
     @property
     def is_phase(self) -> bool:
-        """Whether it is an angle that begins anew with each turn, so that its size means nothing."""
+        """True for an angle that begins anew with each turn, so that its size means nothing."""
         return ".phase" in self.path or self.path.endswith("_phase")
 
 
-@dataclass(frozen=True)
-class FileResult:
-    """One file, and what became of it.
+@dataclass(frozen=True, eq=False)
+class Picture(ComparedByFields):
+    """Measured against modelled, to be drawn.
+
+    Attributes:
+        curves: what it is drawn over, the channel measured, and `modelled`, as the functions of `results.curves` return them
+        look: how it is drawn
+        label: of the channel in words; its name if not given
+        title: what is drawn, where a file has several pictures
+        model: in words, where it is not that of the file
+    """
+
+    curves: Recording
+    look: Look = "series"
+    label: str = ""
+    title: str = ""
+    model: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class FileResult(ComparedByFields):
+    """Result of one file.
 
     Attributes:
         name: of the file
-        recognised: what it is, and why; None where it could not be read
-        model: the model that was chosen, in words
+        recognised: its kind and channels, with the reasons; None if it could not be read
+        model: the model chosen, in words
         estimates: of its parameters
-        error: rms on data held out over the rms of what varied [1]; not a number where nothing was held out
-        remarks: what to know of it, in short sentences
-        doubts: what speaks against the file as it was taken, though it is used
-        refused: why nothing was found; empty where something was
-        same_as: the file that shows the same measurement; empty where none does
-        what: what it is, where the kind of the file does not say it
-        part_of: the table that it is one point of, with others; empty where it stands for itself
-        curves: measured beside modelled, as `curves` of this package makes them; None where nothing was fitted
-        between: the same of the angle between the shafts, with its model as the title; None where it was not fitted
-        held_out: the error on data that took no part in the fit; None where nothing was held out
+        error: rms on data held out over the rms of what varied [1]; not a number if nothing was held out
+        remarks: assumptions and limits, in short sentences
+        checks: consistency checks of the file
+        refused: why the file cannot be used; empty if it can
+        same_as: the file that contains the same measurement; empty if none does
+        what: what the file is, if its kind does not say it
+        part_of: the table that it is a point of, together with others; empty if it stands by itself
+        pictures: measured against modelled
+        held_out: error on data that took no part in the fit; None if nothing was held out
+        candidates: name of each model tried and its error on data held out, in the unit of the fit, best first
+        fit: the fit of the model, with the covariance of its estimates; None if nothing was fitted
     """
 
     name: str
@@ -108,141 +138,17 @@ class FileResult:
     estimates: tuple[FileEstimate, ...] = ()
     error: float = np.nan
     remarks: tuple[str, ...] = ()
-    doubts: tuple[str, ...] = ()
+    checks: tuple[Check, ...] = ()
     refused: str = ""
     same_as: str = ""
     what: str = ""
     part_of: str = ""
-    curves: Recording | None = None
-    between: Recording | None = None
+    pictures: tuple[Picture, ...] = ()
     held_out: HeldOut | None = None
-
-
-@dataclass(frozen=True)
-class CombinedParameter:
-    """A number of the gear or its drive as all files tell it.
-
-    Attributes:
-        estimate: the value taken: the mean of the files that agree, or as the one file has it that tells it best
-        source: the name of the file that tells it best
-        others: what other files say of it, by name
-        contradicts: names of files that say something else, beyond three standard deviations of both
-        best: as the file has it that tells it best
-        mean_of: names of the files that the mean is taken of, the best first; one where there is no mean
-        widened: by what the standard deviation of the mean is multiplied, as files scatter more than they should [1]
-    """
-
-    estimate: FileEstimate
-    source: str
-    others: Mapping[str, FileEstimate] = field(default_factory=dict)
-    contradicts: tuple[str, ...] = ()
-    best: FileEstimate | None = None
-    mean_of: tuple[str, ...] = ()
-    widened: float = 1.0
+    candidates: tuple[tuple[str, float], ...] = ()
+    fit: Fit | None = None
 
     @property
-    def taken_from(self) -> str:
-        """The files that it rests on, in words."""
-        if len(self.mean_of) < 2:
-            return self.source
-        return f"mean of {listed(self.mean_of)}"
-
-    def of_file(self, name: str) -> FileEstimate:
-        """As one file tells it."""
-        return (self.best or self.estimate) if name == self.source else self.others[name]
-
-
-def lines_of(numbers: Sequence[CombinedParameter]) -> Iterator[str]:
-    """A line for each number, to print."""
-    width = max((len(each.estimate.label) for each in numbers), default=0)
-    for each in numbers:
-        told = each.estimate
-        yield f"  {told.label:{width}}  {told.value:11.5g} ± {told.sigma:<8.2g} {told.unit:12} {each.taken_from}"
-
-
-def combine(findings: Sequence[FileResult]) -> tuple[CombinedParameter, ...]:
-    """Every number told: the mean of the files that agree about it; files that show one measurement count once.
-
-    Files that lie further from the best one than two standard deviations take no part in the mean: one of them, or the model,
-    is wrong. Numbers of the gear come first, then those of what the drive carried, run by run.
-    """
-    by_path: dict[tuple[str, str, str], dict[str, FileEstimate]] = {}
-    for finding in findings:
-        for told in finding.estimates:
-            if not told.why and np.isfinite(told.sigma):
-                # what a drive carries may differ from one run to another, and is no number of the gear
-                run = (finding.same_as or finding.name) if told.path.startswith("load.") else ""
-                by_path.setdefault((told.path, told.law, run), {})[finding.name] = told
-    copies = {finding.name for finding in findings if finding.same_as}
-    runs = list(dict.fromkeys(run for _, _, run in by_path))
-    in_order = sorted(by_path, key=lambda key: runs.index(key[2]) if key[2] else -1)
-    return tuple(_number(by_path[key], copies) for key in in_order)
-
-
-def _number(told: Mapping[str, FileEstimate], copies: set[str]) -> CombinedParameter:
-    own = {name: each for name, each in told.items() if name not in copies} or told
-    best = min(own, key=lambda name: own[name].sigma)
-    others = {name: each for name, each in told.items() if name != best}
-    apart = [name for name, each in others.items() if name not in copies and distance(each, told[best]) > APART]
-    agree = [name for name in others if name not in copies and distance(others[name], told[best]) <= AGREE]
-    agree = [] if best in copies else agree  # all of them show one measurement
-    taken, widened = mean_of([told[best], *(others[name] for name in agree)])
-    return CombinedParameter(taken, best, others, tuple(apart), told[best], (best, *agree), widened)
-
-
-def mean_of(told: Sequence[FileEstimate]) -> tuple[FileEstimate, float]:
-    """The weighted mean of a number as several files tell it, the best first, and by what its deviation was widened.
-
-    It is the linear mean of least variance (Aitken1935): what is uncertain of the torque constant is common to all files that
-    rest on it, and does not become smaller with their number. No file counts less than nothing. Where files scatter more than
-    their standard deviations say, that of the mean is larger by the root of chi squared over its degrees of freedom
-    (Birge1932).
-
-    >>> one, other = (FileEstimate("load.inertia", "kg.m2", value, 0.05, "", common=0.04) for value in (1.0, 1.03))
-    >>> mean, widened = mean_of([one, other])
-    >>> round(mean.value, 3), round(mean.sigma, 4), widened
-    (1.015, 0.0453, 1.0)
-    """
-    first, own = told[0], np.array([each.own for each in told])
-    if len(told) == 1 or own.min() <= 0.0:
-        return first, 1.0
-    off, common = np.array([difference(each, first) for each in told]), np.array([each.common for each in told])
-    weight = _weights(own, common)
-    mean = float(weight @ off)
-    left = np.linalg.solve(_covariance(own, common), off - mean)
-    widened = max(1.0, float(np.sqrt((off - mean) @ left / (len(told) - 1))))
-    alone, shared = widened * float(np.linalg.norm(weight * own)), float(weight @ common)
-    return replace(first, value=first.value + mean, sigma=float(np.hypot(alone, shared)), common=shared), widened
-
-
-def _weights(own: Array, common: Array) -> Array:
-    """Weights of least variance that are not negative, of numbers with parts of their own and a part in common."""
-    counted = np.ones(len(own), bool)
-    while True:
-        found = np.linalg.solve(_covariance(own[counted], common[counted]), np.ones(counted.sum()))
-        if (found > 0.0).all():
-            break
-        counted[np.flatnonzero(counted)[found <= 0.0]] = False
-    weight = np.zeros(len(own))
-    weight[counted] = found / found.sum()
-    return weight
-
-
-def _covariance(own: Array, common: Array) -> Array:
-    """Of numbers with parts of their own and a part in common, shape (n, n)."""
-    return np.diag(own**2) + np.outer(common, common)
-
-
-def distance(one: FileEstimate, other: FileEstimate) -> float:
-    """How far two files are apart in a number, in standard deviations of their difference; what they share is no difference."""
-    off = difference(one, other)
-    sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
-    return abs(off) / sigma if sigma > 0.0 else (0.0 if off == 0.0 else np.inf)
-
-
-def difference(one: FileEstimate, other: FileEstimate) -> float:
-    """The difference of two values; of phases the shorter way round."""
-    off = one.value - other.value
-    if one.is_phase:
-        off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
-    return off
+    def failed(self) -> tuple[Check, ...]:
+        """The checks that failed."""
+        return tuple(check for check in self.checks if check.failed)

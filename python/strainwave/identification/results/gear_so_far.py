@@ -1,4 +1,4 @@
-"""What is known of a gear before a file is fitted, and how it grows with each."""
+"""The gear as far as earlier files have determined it, and how it changes with each file."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.evidence.verdict import numbers
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate
+from strainwave.parameters import gear_numbers
 
 ROTOR = 0.05  # relative standard deviation of an inertia of which a data sheet says none (assumed)
 MODULATING = ("cyclic", "thermal")  # laws that vary another one
@@ -22,40 +22,76 @@ MODULATING = ("cyclic", "thermal")  # laws that vary another one
 
 @dataclass(frozen=True)
 class GearSoFar:
-    """What is known before a file is fitted.
+    """The gear before a file is fitted.
 
     Attributes:
-        gear_set: the set, with what earlier files have told of it
-        friction: the recording of a friction table, if one was given
+        gear_set: the set, with what earlier files have determined
+        start: the set that all began with; `gear_set` if not given
         determined: parts of the gear that earlier files determine
-        side: what a person says of the side of the file that is fitted next; None where nothing
-        accept: whether files are used in spite of doubts about their sizes
-        sigmas: standard deviation of the first number of friction and spring, as the file has it that tells the part
-        determined_by: the file that told each number, by its path in the gear set
+        side: the side of the file that is fitted next, if a person gave it
+        sigmas: standard deviation of the first number of friction and spring, by the file that determines the part
+        determined_by: the file that determines each number, by its path in the gear set
     """
 
     gear_set: GearSet
-    friction: Recording | None = None
+    start: GearSet | None = None
     determined: frozenset[str] = frozenset()
     side: Side | None = None
-    accept: bool = False
     sigmas: Mapping[str, float] = field(default_factory=dict)
     determined_by: Mapping[str, str] = field(default_factory=dict)
 
-    def knows_better(self, part: str, told: Sequence[FileEstimate]) -> bool:
-        """Whether an earlier file tells a part of the gear better than this one."""
-        return part in self.determined and self.sigmas.get(part, np.inf) <= _first_sigma(part, told)
+    @property
+    def initial(self) -> GearSet:
+        """The set that all began with."""
+        return self.gear_set if self.start is None else self.start
 
-    def judged(self, part: str, told: Sequence[FileEstimate]) -> GearSoFar:
-        """The same, with how well a file tells a part."""
-        return replace(self, sigmas={**self.sigmas, part: _first_sigma(part, told)})
+    def knows_better(self, part: str, estimates: Sequence[FileEstimate]) -> bool:
+        """True if an earlier file determines a part of the gear better than this one."""
+        return part in self.determined and self.sigmas.get(part, np.inf) <= _first_sigma(part, estimates)
+
+    def judged(self, part: str, estimates: Sequence[FileEstimate]) -> GearSoFar:
+        """Return the same with how well a file determines a part."""
+        return replace(self, sigmas={**self.sigmas, part: _first_sigma(part, estimates)})
+
+    def with_fit(self, gear: Any, parts: Collection[str], estimates: Sequence[FileEstimate], name: str) -> GearSoFar:
+        """Return the same with parts of a fitted gear, each number with its source.
+
+        A number that a fit changed without estimating it follows from others: breakaway is then as uncertain as the Coulomb
+        torque that it follows.
+
+        Args:
+            gear: the fitted one
+            parts: to take from it
+            estimates: of the fit
+            name: of the file
+        """
+        fitted, before = {each.path: each for each in estimates}, gear_numbers(self.gear_set.gear)
+        changed = {part: getattr(gear, part) for part in parts}
+        sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
+        for path, (value, _) in gear_numbers(self.gear_set.gear.replace(**changed)).items():
+            if not is_of(path, parts):
+                continue
+            if path in fitted:
+                sources[path] = _source(fitted[path], name)
+            elif path in before and value == before[path][0] and path in self.gear_set.sources:
+                sources[path] = self.gear_set.sources[path]
+            else:
+                leads = fitted.get(path.replace(".breakaway", ".coulomb")) if path.endswith(".breakaway") else None
+                why = "follows from the parameters fitted beside it" if path in before else "set by the method of the fit"
+                sigma = leads.sigma if leads is not None and np.isfinite(leads.sigma) else None
+                sources[path] = Entry(source=f"assumed: {why}; no file determines it", uncertainty=sigma)
+        determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
+        determined_by |= {each.path: name for each in estimates if is_of(each.path, parts) and not each.why}
+        gear_set = replace(self.gear_set, gear=self.gear_set.gear.replace(**changed), sources=sources)
+        own = {part for part in parts if any(is_of(path, {part}) for path in determined_by)}
+        return replace(self, gear_set=gear_set, determined=self.determined | own, determined_by=determined_by)
 
     def with_parts(self, parts: Mapping[str, Any], sigmas: Mapping[str, float], name: str) -> GearSoFar:
-        """The same, with parts of the gear that a file of this name tells."""
+        """Return the same with parts of the gear that a file of this name determines."""
         gear = self.gear_set.gear.replace(**parts)
         sources = {path: entry for path, entry in self.gear_set.sources.items() if not is_of(path, parts)}
         determined_by = {path: file for path, file in self.determined_by.items() if not is_of(path, parts)}
-        for path in (path for path in numbers(gear) if is_of(path, parts)):
+        for path in (path for path in gear_numbers(gear) if is_of(path, parts)):
             told = path in sigmas and np.isfinite(sigmas[path])
             sources[path] = Entry(source=f"identified from {name}", uncertainty=sigmas[path] if told else None)
             determined_by |= {path: name} if told else {}
@@ -63,18 +99,18 @@ class GearSoFar:
         return replace(self, gear_set=gear_set, determined=self.determined | set(parts), determined_by=determined_by)
 
     def sliding(self) -> Any:
-        """The friction of the input as it slides, without what modulates it over angle and temperature."""
+        """Return the friction of the input as it slides, without what modulates it over angle and temperature."""
         law: Any = self.gear_set.gear.friction_input
         while law.name in MODULATING:
             law = law.law
         return law
 
     def with_sliding(self, law: Any, sigmas: Mapping[str, float], name: str) -> GearSoFar:
-        """The same, with another law of sliding inside what modulates it.
+        """Return the same with another law of sliding inside what modulates it.
 
         Args:
             law: the new one
-            sigmas: standard deviations of the numbers of the law that the file tells, by name
+            sigmas: standard deviations of the numbers of the law that the file determines, by name
             name: of the file
         """
         outer: Any = self.gear_set.gear.friction_input
@@ -89,18 +125,18 @@ class GearSoFar:
         )
 
     def with_law(self, law: Any, sigmas: Mapping[str, float], name: str) -> GearSoFar:
-        """The same, with another law of the input's friction; numbers that it takes over keep their source.
+        """Return the same with another law of the input's friction; numbers that it takes over keep their source.
 
         Args:
             law: the new one
-            sigmas: standard deviations of the numbers that the file tells, by path
+            sigmas: standard deviations of the numbers that the file determines, by path
             name: of the file
         """
-        before, values = self.gear_set.sources, {path: value for path, (value, _) in numbers(self.gear_set.gear).items()}
+        before, values = self.gear_set.sources, {path: value for path, (value, _) in gear_numbers(self.gear_set.gear).items()}
         known = {plain(each): each for each in before}
         after = self.with_parts({"friction_input": law}, sigmas, name)
         sources, determined_by = dict(after.gear_set.sources), dict(after.determined_by)
-        for path, (value, _) in numbers(after.gear_set.gear).items():
+        for path, (value, _) in gear_numbers(after.gear_set.gear).items():
             if path.startswith("gear.friction_input.") and path not in sigmas:
                 old = known.get(plain(path), "")
                 kept = old and values.get(old) == value
@@ -110,7 +146,7 @@ class GearSoFar:
 
 
 def is_of(path: str, parts: Collection[str]) -> bool:
-    """Whether a number of a gear set belongs to one of these parts of its gear.
+    """True if a number of a gear set belongs to one of these parts of its gear.
 
     >>> is_of("gear.stiffness.k1", {"stiffness"}), is_of("gear.damping", {"damping"}), is_of("motor.inertia", {"inertia"})
     (True, True, False)
@@ -119,7 +155,7 @@ def is_of(path: str, parts: Collection[str]) -> bool:
 
 
 def plain(path: str) -> str:
-    """The path of a number without the laws that it stands inside.
+    """Return the path of a number without the laws that it stands inside.
 
     >>> plain("gear.friction_input.law.law.coulomb")
     'gear.friction_input.coulomb'
@@ -127,15 +163,22 @@ def plain(path: str) -> str:
     return ".".join(part for part in path.split(".") if part != "law")
 
 
-def _first_sigma(part: str, told: Sequence[FileEstimate]) -> float:
-    """Standard deviation of the first number of a part; infinite where the file does not tell it."""
-    own = [each.sigma for each in told if each.path.startswith(f"gear.{part}.") and not each.why]
+def _source(estimate: FileEstimate, name: str) -> Entry:
+    """Return the source of an estimated number."""
+    words = {"identified": "identified from {name}", "identified in combination": "identified in combination: {why}"}
+    said = words.get(estimate.state, "fitted but not identified: {why}").format(name=name, why=estimate.why)
+    return Entry(source=said, uncertainty=estimate.sigma if np.isfinite(estimate.sigma) else None)
+
+
+def _first_sigma(part: str, estimates: Sequence[FileEstimate]) -> float:
+    """Return the standard deviation of the first number of a part; infinite if the file does not determine it."""
+    own = [each.sigma for each in estimates if each.path.startswith(f"gear.{part}.") and not each.why]
     return own[0] if own else np.inf
 
 
 @dataclass(frozen=True)
 class TorqueConstant:
-    """The torque constant of the motor, which is common to all files that tell torque by a current.
+    """The torque constant of the motor, which is common to all files with a current in place of a torque.
 
     Attributes:
         value: [N.m/A]
@@ -147,7 +190,7 @@ class TorqueConstant:
 
     @classmethod
     def of(cls, file: Recognised, gear_set: GearSet) -> TorqueConstant | None:
-        """As a person gave it with the file, which is exact; else as the set has it; None if neither does."""
+        """Return it as given with the file, which is exact; else as the set has it; None if neither does."""
         if "torque_constant" in file.constants:
             return cls(file.constants["torque_constant"], 0.0)
         value = getattr(gear_set.motor, "torque_constant", None)
@@ -159,7 +202,7 @@ class TorqueConstant:
 
 
 def rotor_sigma(file: Recognised, gear_set: GearSet) -> float:
-    """Standard deviation of the inertia that turns at the input [kg.m2]: what a log tells of a load is what is left beside it.
+    """Return the standard deviation of the inertia that turns at the input [kg.m2], which a log does not separate from a load.
 
     That of a motor is exact where a person gave it with the file.
     """
@@ -176,7 +219,7 @@ def _sigma(gear_set: GearSet, path: str, value: float) -> float:
 
 
 def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
-    """A recording with a torque, where only the current of the motor was measured; and what is uncertain of all of it [1].
+    """Return a recording with a torque, from the current of the motor if need be, and its relative uncertainty [1].
 
     Beside the speed or angle of the output the torque of the motor is counted there, by the ratio.
 
@@ -187,7 +230,7 @@ def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
         return file.recording, 0.0
     constant = TorqueConstant.of(file, gear_set)
     if constant is None:
-        raise ValueError("it tells the current alone; give the torque constant of the motor, with --constant torque_constant=…")
+        raise ValueError("it has the current alone; give the torque constant of the motor, with --constant torque_constant=…")
     counted = abs(gear_set.gear.kinematics.ratio) if file.side == "output" else 1.0
     torque = counted * constant.value * file.recording["current"]
     return file.recording.with_column("torque", torque, "N.m"), constant.relative

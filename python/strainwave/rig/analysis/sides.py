@@ -114,7 +114,7 @@ def friction_at_rest(table: Recording, gear: Gear) -> Value:
         gear: the gear whose law is fitted
 
     Raises:
-        ValueError: as `strainwave.twin` for a friction table
+        ValueError: as `strainwave.identify` for a friction table
 
     >>> import strainwave as sw
     >>> speed = [1.0, 2.0, 5.0, 10.0, 20.0]

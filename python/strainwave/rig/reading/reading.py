@@ -9,7 +9,8 @@ from pathlib import Path
 
 from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.reading.measurement import read_measurement
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import recognise
 from strainwave.rig.analysis.sides import friction_at_rest, without_friction
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.loop import Loop
@@ -121,5 +122,5 @@ def _deviations(tests: Sequence[TorsionTest]) -> list[str] | None:
 
 
 def _without_friction(loops: Sequence[Loop], table: Path, gear: Gear) -> list[Loop]:
-    friction = friction_at_rest(read_measurement("friction", table), gear)
+    friction = friction_at_rest(recognise(table, FileMapping(kind="friction")).recording, gear)
     return [without_friction(loop, friction) for loop in loops]

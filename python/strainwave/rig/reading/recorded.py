@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
-from strainwave.identification.reading.measurement import read_measurement
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import recognise
 from strainwave.messages import listed, one_line
 from strainwave.rig.loop import COLUMNS, Loop, Side
 
@@ -28,8 +30,9 @@ def read_loop(
     """Reads a loop from columns of angle and torque in a CSV or Parquet file.
 
     Args:
-        path: the file; the columns are called as `sw.twin` wants them, input_angle and input_torque or twist and torque
-        side: which of the two, where the file has both
+        path: the file; the columns are found by their names and sizes, or called input_angle and input_torque, or twist and
+            torque
+        side: which of the two, if the file has both, or if neither names nor sizes determine it
         columns: for each name wanted the name in the file, where it differs
         units: units of columns whose header has none
         position, unit: of the loop
@@ -44,11 +47,23 @@ def read_loop(
     ...     read_loop(path).torque.tolist()
     [0.3, 0.0, -0.3]
     """
-    with_name = read_measurement("torsion", path, columns, units)
+    recording, remarks = _recording(path, side, columns, units)
     try:
-        return loop_of(with_name, side=side, name=with_name.title or Path(path).stem, position=position, unit=unit)
+        loop = loop_of(recording, side=side, name=recording.title or Path(path).stem, position=position, unit=unit)
     except ValueError as error:
         raise ValueError(one_line(f"{path}: {error}")) from None
+    return replace(loop, remarks=(*loop.remarks, *remarks))
+
+
+def _recording(
+    path: str | Path, side: Side | None, columns: Mapping[str, str] | None, units: Mapping[str, str] | None
+) -> tuple[Recording, tuple[str, ...]]:
+    """Return the columns of a loop, by their names here or as `recognise` finds them, and what was assumed for them."""
+    found = recognise(path, FileMapping(columns=columns or {}, units=units or {}, kind="torsion", side=side))
+    header = {name.casefold() for name in Recording.header(path)}
+    if columns or any(set(pair) <= header for pair in COLUMNS.values()):
+        return found.recording, ()
+    return found.recording, (*found.why[2:], *found.remarks)  # the first two are its columns and their side
 
 
 def loop_of(recording: Recording, *, side: Side | None = None, name: str = "", position: float = 0.0, unit: str = "") -> Loop:

@@ -104,7 +104,7 @@ def test_a_small_motion_at_rest_is_a_presliding_loop_and_gives_the_gear_bristles
     assert small.recognised is not None
     assert small.recognised.kind == "presliding"
     assert "mrad in all" in small.recognised.why[0]
-    assert small.curves is not None
+    assert small.pictures
     stiffness, sigma = told(found, "bristle_stiffness")
     assert abs(stiffness - 40.0) < 3.0 * sigma
     assert abs(told(found, "breakaway")[0] - COULOMB) < 3.0 * told(found, "breakaway")[1]

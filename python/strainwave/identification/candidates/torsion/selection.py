@@ -1,4 +1,4 @@
-"""Spring and Maxwell-slip hysteresis of a loop, as a twin takes them."""
+"""Spring and Maxwell-slip hysteresis of a loop, as `identify` takes them."""
 
 from __future__ import annotations
 

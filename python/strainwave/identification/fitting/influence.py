@@ -1,4 +1,4 @@
-"""What a fit owes to the parameters that it kept: how far its estimates move when one of these is wrong."""
+"""Influence of the parameters that a fit kept: the change of its estimates if one of these is wrong."""
 
 from __future__ import annotations
 
@@ -16,79 +16,79 @@ from strainwave.parameters import Parameter, every
 
 Array = NDArray[np.float64]
 
-SUSPECT = 0.3  # of the residuals' power: a kept parameter that accounts for more of it is wrong
-NEARLY = 0.8  # of the largest share: which parameter accounts for a little more is chance
-EXACT = ("control.", "gear.kinematics.", "kinematics.")  # nobody measures what was designed
-DEFINED = (".reference_temperature", ".reference_speed")  # nor what a law's other numbers are told for
-DOUBT = 0.1  # of a kept value, where its source states neither spread nor uncertainty
-GUESSED = 0.5  # of a kept value that is assumed
+MAX_EXPLAINED_SHARE = 0.3  # of the residuals' power: a kept parameter whose change explains more of it is wrong
+MIN_SHARE_OF_LARGEST = 0.8  # of the largest share explained: which of such parameters explains a little more is chance
+EXACT = ("control.", "gear.kinematics.", "kinematics.")  # designed, not measured
+DEFINED = (".reference_temperature", ".reference_speed")  # for which the other numbers of a law hold
+STATED_NOWHERE = 0.1  # relative standard deviation of a kept value, if its source states neither spread nor uncertainty
+ASSUMED = 0.5  # relative standard deviation of a kept value that is assumed
 
 
 @dataclass(frozen=True, eq=False)
 class Influence(ComparedByFields):
-    """How the estimates of a fit change with the parameters that it kept.
+    """Change of the estimates of a fit with the parameters that it kept.
 
     Attributes:
         kept: the parameters kept whose value is not zero
         slopes: change of each estimate over the change of each of these, shape (estimates, kept)
-        bounds: how far each of them could be off before the measurement itself showed it, shape (kept,)
-        pulls: by how much the measurement would change each of them, were it free, shape (kept,)
-        gains: share of the residuals' power that this would remove, shape (kept,)
+        bounds: error of each of them from which on the residuals show it, shape (kept,)
+        shift_if_free: change of each of them if it were fitted, shape (kept,)
+        explained_share: share of the residuals' power that this change explains, shape (kept,)
     """
 
     kept: tuple[Parameter, ...]
     slopes: Array
     bounds: Array
-    pulls: Array
-    gains: Array
+    shift_if_free: Array
+    explained_share: Array
 
     @classmethod
     def none(cls, estimates: int) -> Influence:
-        """Of a fit that explains nothing, of which it is idle to ask."""
+        """Return that of a fit that explains nothing."""
         return cls((), np.zeros((estimates, 0)), *np.zeros((3, 0)))
 
     def suspects(self, known: Mapping[str, Entry], prefix: str = "") -> list[int]:
-        """The kept parameters that the measurement speaks against, by their places, the least certain first.
+        """Return the places of kept parameters that the measurement contradicts, the least certain first.
 
-        It does so where a change would remove much of the residuals, is larger than what is known of the parameter allows, and
-        leads to a value that the parameter may have. Of several that would do about as well, it cannot tell which is wrong.
+        A change of such a parameter explains much of the residuals, is larger than its uncertainty allows, and leads to a
+        possible value. Several that explain about as much are all returned: the data do not determine which is wrong.
         """
         doubts = np.array([uncertainty(each.value, known.get(prefix + each.path)) for each in self.kept])
-        better = self.pulls + [each.value for each in self.kept]
+        better = self.shift_if_free + [each.value for each in self.kept]
         possible = (better >= [each.low for each in self.kept]) & (better <= [each.high for each in self.kept])
-        wrong = possible & (np.abs(self.pulls) > doubts) & (self.gains > SUSPECT)
-        least = NEARLY * float(np.max(self.gains, initial=0.0, where=wrong))
-        strain = np.abs(self.pulls) / np.maximum(doubts, 1e-300)
-        return sorted(np.flatnonzero(wrong & (self.gains >= least)).tolist(), key=lambda place: strain[place])
+        wrong = possible & (np.abs(self.shift_if_free) > doubts) & (self.explained_share > MAX_EXPLAINED_SHARE)
+        least = MIN_SHARE_OF_LARGEST * float(np.max(self.explained_share, initial=0.0, where=wrong))
+        strain = np.abs(self.shift_if_free) / np.maximum(doubts, 1e-300)
+        return sorted(np.flatnonzero(wrong & (self.explained_share >= least)).tolist(), key=lambda place: strain[place])
 
-    def doubt(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
-        """What the uncertainty of each kept parameter adds to that of an estimate, in its unit; largest first.
+    def shifts(self, estimate: int, known: Mapping[str, Entry], prefix: str = "") -> dict[str, float]:
+        """Return the shift of an estimate by the standard deviation of each kept parameter, in its unit; largest first.
 
         Args:
             estimate: its place in the fit
-            known: what is known of the kept parameters, by `prefix` and path; of what is not there, a tenth is taken
+            known: sources of the kept parameters, by `prefix` and path; without one, 10 % is taken
         """
         moved = {}
         for each, slope, bound in zip(self.kept, self.slopes[estimate].tolist(), self.bounds.tolist(), strict=True):
             before = uncertainty(each.value, known.get(prefix + each.path))
-            # two sources of knowledge, what is known and the measurement, weigh by their variances
+            # prior and measurement weigh by their variances
             moved[each.path] = abs(slope) * before / float(np.hypot(1.0, before / bound)) if before > 0.0 else 0.0
         return dict(sorted(moved.items(), key=lambda item: -item[1]))
 
 
 def uncertainty(value: float, entry: Entry | None) -> float:
-    """How well a kept value is known, as far as its source says; else a tenth of it, and half of it if it is assumed.
+    """Return the standard deviation of a kept value by its source; else 10 % of it, and 50 % if it is assumed.
 
     >>> uncertainty(20.0, Entry("catalogue", spread=0.3)), uncertainty(20.0, None), uncertainty(20.0, Entry("assumed"))
     (6.0, 2.0, 10.0)
     """
     if entry is None or (entry.spread is None and entry.uncertainty is None):
-        return (GUESSED if entry is not None and entry.assumed else DOUBT) * abs(value)
+        return (ASSUMED if entry is not None and entry.assumed else STATED_NOWHERE) * abs(value)
     return float(np.hypot((entry.spread or 0.0) * value, entry.uncertainty or 0.0))
 
 
 def influence(found: Fit) -> Influence:
-    """How the estimates of a fit change with what it kept, to first order.
+    """Return the change of the estimates of a fit with what it kept, to first order.
 
     At the minimum the gradient J'r of the least squares is zero, and stays so when a kept parameter changes: the estimates move
     by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters. What of K
@@ -120,9 +120,9 @@ def influence(found: Fit) -> Influence:
     seen = power > 0.0
     together = max(correlation_length(row) for row in found.residuals[:, found.training])
     bounds = np.where(seen, np.sqrt(together / np.where(seen, power, 1.0)), np.inf)
-    pulls = np.where(seen, residuals @ shown / np.where(seen, power, 1.0), 0.0)
-    gains = pulls**2 * power / max(float(residuals @ residuals), 1e-300)
-    return Influence(kept, moved, bounds, pulls, gains)
+    shift = np.where(seen, residuals @ shown / np.where(seen, power, 1.0), 0.0)
+    explained = shift**2 * power / max(float(residuals @ residuals), 1e-300)
+    return Influence(kept, moved, bounds, shift, explained)
 
 
 def _is_exact(path: str) -> bool:

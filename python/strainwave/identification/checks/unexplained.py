@@ -1,4 +1,4 @@
-"""Whether a fit explains its measurement; and if not, which likely mistake in the recording would."""
+"""The check that a fit explains its measurement; and if it does not, which likely mistake in the recording would."""
 
 from __future__ import annotations
 
@@ -12,25 +12,21 @@ from strainwave import Drive
 from strainwave.analysis.branches import noise
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
+from strainwave.identification.checks.mistakes import MISTAKEN
 from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.results.check import Check
 from strainwave.kinematics import StrainWave
 
 Array = NDArray[np.float64]
 
-# Of what was measured, the share that a fit may leave unexplained beside noise. Less of an angle, which is the sum of all that
-# happened before, than of a torque or a current, in which every effect shows that a model leaves out.
-LEFT_IN_MOTION = 0.1
-LEFT_IN_LOOP = 0.1
-LEFT_IN_TORQUE = 0.3
-BETTER = 0.5  # of what was unexplained before: a cause that leaves more explains nothing
-RATIO = 0.03  # by which the ratio of two encoders must differ from the gear's to be another one
-# What the header of a column may name wrongly, and what it may be.
-MISTAKEN = {
-    "rad": ("deg", "rev", "arcmin"), "deg": ("rad", "rev", "arcmin"), "rad/s": ("rpm", "deg/s"), "rpm": ("rad/s",),
-    "deg/s": ("rad/s",), "N.m": ("mN.m", "N.cm"), "mN.m": ("N.m",), "A": ("mA",), "V": ("mV",),
-}  # fmt: skip
+# Share of the variation of a channel that a fit may leave unexplained beside noise. Less of an angle, which is the sum of all
+# that happened before, than of a torque or a current, which show every effect that a model leaves out.
+MAX_SHARE_OF_MOTION = 0.1
+MAX_SHARE_OF_LOOP = 0.1
+MAX_SHARE_OF_TORQUE = 0.3
+MIN_RATIO_ERROR = 0.03  # relative: the ratio of two encoders must differ by more from the gear's to be another one
 
 
 @dataclass(frozen=True)
@@ -50,8 +46,24 @@ class Cause:
     drive: Drive
 
 
+def explained(found: Fit, source: str) -> Check:
+    """Return the check that a fit explains its measurement; its value is the share left over the share allowed, at worst."""
+    shares, limits = unexplained(found), allowed(found)
+    left = [
+        f"{100.0 * share:.0f} % of the variation of {name}"
+        for name, share, limit in zip(found.experiment.channels, shares.tolist(), limits.tolist(), strict=True)
+        if share > limit
+    ]
+    worst = int(np.argmax(shares / limits))
+    return Check(
+        "share left unexplained", source, float(shares[worst]), float(limits[worst]), "1", bool(left),
+        f"the model does not explain it: {', '.join(left)} is left. Nothing is identified from it" if left else "",
+        "look at the plot; see whether signs, units, sides, ratio and zeros are right",
+    )  # fmt: skip
+
+
 def unexplained(found: Fit) -> Array:
-    """Share of each channel's variation that a fit leaves unexplained, but for white noise, shape (channels,).
+    """Return the share of each channel's variation that a fit leaves unexplained, but for white noise, shape (channels,).
 
     >>> import numpy as np, strainwave as sw
     >>> speed = np.linspace(1.0, 50.0, 20)
@@ -68,7 +80,7 @@ def unexplained(found: Fit) -> Array:
 
 
 def left(measured: Array, predicted: Array) -> Array:
-    """The same of any prediction, shape (channels, n) like the measurement."""
+    """Return the same of any prediction, shape (channels, n) like the measurement."""
     residual = measured - predicted
     misfit = np.sqrt(np.maximum(np.mean(residual**2, axis=1) - [noise(row) ** 2 for row in measured], 0.0))
     variation = np.std(measured, axis=1)
@@ -76,17 +88,17 @@ def left(measured: Array, predicted: Array) -> Array:
 
 
 def allowed(found: Fit) -> Array:
-    """The largest share of each channel that a fit may leave unexplained, shape (channels,)."""
+    """Return the largest share of each channel that a fit may leave unexplained, shape (channels,)."""
     if isinstance(found.experiment, FrictionTable):
-        return np.array([LEFT_IN_TORQUE])
+        return np.array([MAX_SHARE_OF_TORQUE])
     if isinstance(found.experiment, DriveLog):
         moving = [name.endswith(("_angle", "_speed")) for name in found.experiment.channels]
-        return np.where(moving, LEFT_IN_MOTION, LEFT_IN_TORQUE)
-    return np.array([LEFT_IN_LOOP])
+        return np.where(moving, MAX_SHARE_OF_MOTION, MAX_SHARE_OF_TORQUE)
+    return np.array([MAX_SHARE_OF_LOOP])
 
 
 def causes(recording: Recording, drive: Drive) -> list[Cause]:
-    """Likely mistakes in a drive log, those first that let the drive as it stands come nearest to the measurement.
+    """Return likely mistakes in a run of a drive, those first that let the drive as it stands come nearest to the measurement.
 
     Signs, units, sides, and the ratio of the gear. The drive is run once for each, not fitted.
     """
@@ -140,13 +152,13 @@ def _sides(recording: Recording, drive: Drive) -> Iterator[Cause]:
 
 
 def _ratio(recording: Recording, drive: Drive) -> Iterator[Cause]:
-    """Another ratio, where both encoders show one."""
+    """Yield another ratio, if both encoders show one."""
     if not set(ENCODERS) <= set(recording.names):
         return
     angles = [recording.values(name, "rad") for name in ENCODERS]
     slope = np.polyfit(angles[1], angles[0], 1)[0] if np.ptp(angles[1]) > 0.0 else 0.0
     known = abs(drive.gear.kinematics.ratio)
-    if abs(slope) < 1.0 or abs(abs(slope) / known - 1.0) < RATIO:
+    if abs(slope) < 1.0 or abs(abs(slope) / known - 1.0) < MIN_RATIO_ERROR:
         return
     teeth = 2 * round(abs(slope)) - (2 if drive.gear.kinematics.ratio > 0.0 else 0)
     fixed = "circular_spline" if drive.gear.kinematics.ratio < 0.0 else "flexspline"

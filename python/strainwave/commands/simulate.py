@@ -1,0 +1,126 @@
+"""The command `strainwave simulate`: a drive through a scenario."""
+
+from __future__ import annotations
+
+import sys
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from strainwave.commands.file_options import number_option
+from strainwave.messages import one_line
+from strainwave.number_texts import is_whole, number_in
+
+if TYPE_CHECKING:
+    from strainwave import Drive
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.recording import Recording
+    from strainwave.simulation.run import Run
+    from strainwave.simulation.scenario_file import ScenarioFile
+
+
+def simulate(
+    drive: Annotated[
+        str, typer.Argument(help="A drive: a set by name (strainwave drives), or a gear file with motor and load.")
+    ],
+    scenario: Annotated[Path, typer.Option(help="What it does: TOML, or CSV or Parquet with the columns time and command.")],
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Recording to write, .parquet or .csv.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Picture to write, .svg, .png or .pdf.")] = None,
+    dt: Annotated[float | None, typer.Option(parser=number_option, help="Largest step in s, 0.0002 if not given.")] = None,
+    sample: Annotated[float, typer.Option(parser=number_option, help="Distance of samples in s.")] = 1e-3,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(parser=number_option, help="Relative error, as 1e-8: steps as long as it allows, instead of --dt."),
+    ] = None,
+    record: Annotated[list[str] | None, typer.Option(help="A column to keep; repeat as needed. All, if not given.")] = None,
+    changed: Annotated[
+        list[str] | None, typer.Option("--set", help="Another number, in SI units, as load.inertia=0.6; repeat as needed.")
+    ] = None,
+) -> None:
+    """Run a drive through a scenario."""
+    from strainwave.files.gear_set import GearSet
+    from strainwave.files.recording import Recording
+    from strainwave.simulation.scenario_file import ScenarioFile
+    from strainwave.simulation.signals import chosen, outputs
+
+    if dt is not None and tolerance is not None:
+        raise ValueError(f"--dt {dt:g} and --tolerance {tolerance:g} exclude each other; give one of them")
+    for option, path, endings in (("--out", out, (".parquet", ".csv")), ("--plot", plot, (".svg", ".png", ".pdf"))):
+        _check_target(option, path, endings, scenario)
+    gear_set = GearSet.read(drive)
+    whole = gear_set.drive.replace(dict(_change(each) for each in changed or []))
+    given = ScenarioFile.read(scenario, whole)
+    wanted = list(chosen(whole, record) if record else outputs(whole))
+    rated = [name for name in ("torque", "input_speed") if name not in wanted]
+    run = _run(given, whole, dt, tolerance, {"sample": sample, "record": [*wanted, *rated], "progress": sys.stderr.isatty()})
+    title = one_line(f"{gear_set.name}: {given.name or scenario.stem}")
+    recording = Recording(run.columns, run.units, title).select(["time", *wanted])
+    _write_run(recording, out, plot)
+    _tell_run(gear_set, run, recording)
+    for path in filter(None, (out, plot)):
+        print(f"wrote {path}")
+
+
+def _check_target(option: str, path: Path | None, endings: tuple[str, ...], source: Path) -> None:
+    """Refuses what cannot be written, before a long run is made for it."""
+    if path is None:
+        return
+    if path.suffix not in endings:
+        raise ValueError(f"{option} {path} must end in {' or '.join(endings)}")
+    if not path.parent.is_dir():
+        raise ValueError(f"{option} {path} cannot be written: there is no folder {path.parent}")
+    if path.is_dir():
+        raise ValueError(f"{option} {path} cannot be written: it is a folder")
+    if path.resolve() == source.resolve():
+        raise ValueError(f"{option} {path} is the file of the scenario; give another name")
+
+
+def _change(given: str) -> tuple[str, float | str]:
+    """The path and the value of --set."""
+    path, equals, value = given.partition("=")
+    if not (path and equals and value):
+        raise ValueError(f"--set {given}: write it as --set load.inertia=0.6")
+    if is_whole(value):
+        return path, int(value)
+    try:
+        float(value)  # nan and other digits than ASCII are no words of a model either
+    except ValueError:
+        return path, value
+    return path, number_in(value)
+
+
+def _run(given: ScenarioFile, drive: Drive, dt: float | None, tolerance: float | None, options: dict[str, Any]) -> Run:
+    """The run in steps of --dt, or in steps as long as --tolerance allows."""
+    if tolerance is None:
+        return given.simulate(drive, 2e-4 if dt is None else dt, **options)
+    return given.simulate_adaptively(drive, tolerance, **options)
+
+
+def _tell_run(gear_set: GearSet, run: Run, recording: Recording) -> None:
+    """How the run went, the range of what is recorded, and the ratings that it exceeded."""
+    from strainwave.files.ratings import check_ratings
+    from strainwave.report.listing import range_table
+
+    how = f"{len(run)} samples from 0 s to {run.time[-1]:g} s, {run.method}"
+    print(f"{recording.title}\n{how}\n\n{range_table(recording)}")
+    for check in check_ratings(gear_set, run):
+        if check.exceeded:
+            print(one_line(f"rating: {check}"))
+
+
+def _write_run(run: Recording, out: Path | None, plot: Path | None) -> None:
+    """The recording, and a picture of what changes in it; nothing is written before all is made."""
+    from strainwave.files.writing import replacing, written
+
+    drawn = BytesIO()
+    if plot is not None:
+        run.plot().savefig(drawn, format=plot.suffix[1:], dpi=150)
+    if out is not None:
+        (run.to_csv if out.suffix == ".csv" else run.to_parquet)(out)
+        written.append(out)
+    if plot is not None:
+        with replacing(plot) as file:
+            file.write(drawn.getvalue())
+        written.append(plot)

@@ -1,0 +1,131 @@
+"""Checks of what files determine together: against the start set, and of files with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+
+import numpy as np
+
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.fitting.influence import uncertainty
+from strainwave.identification.results.check import Check
+from strainwave.identification.results.combined_parameter import MAX_DISTANCE, CombinedParameter, distance
+from strainwave.identification.results.file_result import FileEstimate
+from strainwave.messages import listed
+
+CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit by chance: that of three standard deviations
+MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
+REPEATABILITY = {"friction_input": 0.2, "friction_mesh": 0.2, "hysteresis": 0.2}  # of a part from run to run, in logarithms
+REPEATABILITY_OF_OTHERS = 0.05  # of stiffness, kinematic error, damping and ratios
+
+
+@dataclass(frozen=True)
+class _Compared:
+    """A parameter beside its value in the start set.
+
+    Attributes:
+        estimate: by the files
+        source: file that determines it best
+        before: value in the start set
+        spread: its relative standard deviation there [1]
+        off: logarithm of the estimate over the value before
+        sigma: standard deviation of that logarithm
+    """
+
+    estimate: FileEstimate
+    source: str
+    before: float
+    spread: float
+    off: float
+    sigma: float
+
+    def __str__(self) -> str:
+        value = f"{self.estimate.path} = {self.estimate.value:.4g} ± {self.estimate.sigma:.2g} {self.estimate.unit}"
+        return f"{value} against {self.before:.4g} ± {100.0 * self.spread:.2g} % ({self.off / self.sigma:+.1f} σ)"
+
+
+def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[Check]:
+    """Yield the check that friction and stiffness are those of the start set, by the logarithms of all their numbers together.
+
+    Assumed numbers of the set take no part. Logarithms are compared, since a number with a spread of 30 % may be two thirds or
+    one and a half of the one stated, but never less than nothing.
+    """
+    from scipy.stats import chi2
+
+    compared = list(_compared(start, parameters))
+    if not compared:
+        return
+    squares = sum((each.off / each.sigma) ** 2 for each in compared)
+    limit = float(chi2.isf(CHANCE, len(compared)))
+    apart = sorted(compared, key=lambda each: -abs(each.off / each.sigma))
+    more = f", and {len(apart) - MAX_LISTED} more" if len(apart) > MAX_LISTED else ""
+    yield Check(
+        "numbers of the start set", listed(dict.fromkeys(each.source for each in apart)), squares, limit, "1", squares > limit,
+        f"the files contradict the set {start.name}: {'; '.join(map(str, apart[:MAX_LISTED]))}{more}",
+        "start from the set of this gear (size and ratio), or see whether units, sides, ratio and torque constant are right",
+    )  # fmt: skip
+
+
+def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[_Compared]:
+    seen = set[str]()
+    for each in parameters:
+        estimate = each.estimate
+        found = _in_set(start, estimate)
+        if found is None or found[0] in seen:
+            continue
+        path, before = found
+        entry = start.sources.get(path)
+        if entry is None or entry.assumed or before <= 0.0 or estimate.value <= 0.0:
+            continue
+        seen.add(path)
+        spread = uncertainty(before, entry) / before
+        of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
+        sigma = float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept]))
+        yield _Compared(estimate, each.source, before, spread, float(np.log(estimate.value / before)), sigma)
+
+
+def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
+    """Return the number of the start set that an estimate is compared with; springs of two kinds by their first stiffness."""
+    path = estimate.path
+    if not path.startswith(("gear.friction_input.", "gear.stiffness.")) or "[" in path or estimate.label != path:
+        return None
+    try:
+        value = float(attrgetter(path)(start))
+    except AttributeError:
+        spring = start.gear.stiffness
+        first = spring.fields[0]["name"]
+        is_first = path in ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")
+        if not is_first or float(spring.tangent(0.0)) != float(getattr(spring, first)):
+            return None
+        return f"gear.stiffness.{first}", float(spring.tangent(0.0))
+    return path, value
+
+
+def between_files(parameters: Sequence[CombinedParameter]) -> Iterator[Check]:
+    """Yield a check for each two files that contradict each other.
+
+    Friction and hysteresis differ from run to run by more than their standard deviations, by temperature and wear. A check
+    fails if two files are further apart than that explains, too.
+    """
+    for each in parameters:
+        best = each.of_file(each.source)
+        for name in each.contradicts:
+            other = each.others[name]
+            part = each.estimate.path.removeprefix("gear.").partition(".")[0]
+            repeatability = REPEATABILITY.get(part, REPEATABILITY_OF_OTHERS) * abs(best.value)
+            apart = distance(best, other)
+            apart_from_run_to_run = abs(best.value - other.value) / float(np.hypot(repeatability, _sigma(best, other)))
+            yield Check(
+                "agreement of files", f"{each.source}, {name}", apart_from_run_to_run, MAX_DISTANCE, "standard deviations",
+                apart_from_run_to_run > MAX_DISTANCE,
+                f"{each.estimate.label} = {best.value:.4g} ± {best.sigma:.2g} {best.unit} by {each.source}, "
+                f"{other.value:.4g} ± {other.sigma:.2g} by {name}: {apart:.3g} standard deviations apart",
+                "see whether sides, columns and units of both are right, and compare temperature, load, speed and lubricant; "
+                "leave out the file that is not of this gear as you want it",
+            )  # fmt: skip
+
+
+def _sigma(one: FileEstimate, other: FileEstimate) -> float:
+    return float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))

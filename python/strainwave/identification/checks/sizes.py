@@ -1,0 +1,243 @@
+"""Checks of one file: its sizes against the start set and against what gears can do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave._core import Gear
+from strainwave.files.recording import Recording
+from strainwave.identification.checks.mistakes import MAX_FACTOR_LEFT, nearest, times, wrong_units
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.results.check import Check
+
+Array = NDArray[np.float64]
+
+MIN_RATIO = 2.0  # of a gear: the friction of a joint without one is not compared with that of a gear
+MAX_FACTOR = 10.0  # gears of one kind differ by less: by a factor of three in friction, by a third in stiffness
+MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a torque with less is not that of the motor
+STIFFNESS_SPREAD = 1.3  # factor by which gears of one kind differ in stiffness, as makers state
+MAX_SHARE_BY_ACCELERATION = 0.5  # of what steady friction leaves unexplained: if acceleration explains more, it is a log
+MIN_ROWS_OF_LOG = 30  # tables of steady friction are shorter, or in no order that acceleration could follow
+MAX_FRICTION_SHARE = 0.8  # of the torque at the ends of a loop: a twisted gear carries more than the rest by its spring
+MAX_CLIPPED_SHARE = 0.05  # of the range of the angle, over which a torque stays at the end of its range
+MIN_CLIPPED_SAMPLES = 5
+EQUAL = 1e-9  # relative: torques that are one
+MAX_INPUT_SPEED = 1600.0  # rad/s, 15 000 1/min: makers allow 14 000 1/min to the smallest gears, and less to others
+
+
+def input_speed(speed: Array, source: str) -> Check:
+    """Return the check that the input turns no faster than gears of this kind may."""
+    fastest = float(np.quantile(np.abs(speed), 0.99))
+    return Check(
+        "input speed", source, fastest, MAX_INPUT_SPEED, "rad/s", fastest > MAX_INPUT_SPEED,
+        f"its input would turn at {fastest:.4g} rad/s, {fastest * 30.0 / np.pi:.0f} 1/min, faster than strain wave gears may",
+        "speeds may be in 1/min, not in rad/s, or angles in degrees; see whether units, side and ratio are right",
+    )  # fmt: skip
+
+
+# ---- Friction --------------------------------------------------------------------------------------------------------
+
+
+def friction_level(law: Any, start: Any, speed: float, source: str, remedy: str) -> Check | None:
+    """Return the check that friction is of the size of that of the start set; None if the set has none.
+
+    Args:
+        law: fitted
+        start: law of the start set
+        speed: of the input, at which both are compared [rad/s]
+        source: name of the file
+        remedy: what to check first
+    """
+    found, before = float(law.steady(speed)), float(start.steady(speed))
+    if before <= 0.0 or not found > 0.0:
+        return None
+    factor = found / before
+    return Check(
+        "friction of the start set", source, max(factor, 1.0 / factor), MAX_FACTOR, "1",
+        not 1.0 / MAX_FACTOR < factor < MAX_FACTOR,
+        f"its friction is {found:.3g} N·m at {speed:.3g} rad/s of the input, {times(factor)} that of the start set "
+        f"({before:.3g} N·m)",
+        remedy,
+    )  # fmt: skip
+
+
+def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str | None, source: str) -> Iterator[Check]:
+    """Yield the checks of a friction table: that it is none of a moving drive, and the size of its friction.
+
+    Args:
+        recording: the table as it was read
+        found: the fit
+        start: the gear of the start set
+        side: at which it was measured, if a person or the names of its columns state it
+        source: name of the file
+    """
+    table, ratio = found.experiment, abs(start.kinematics.ratio)
+    assert isinstance(table, FrictionTable)
+    yield (accelerating := _acceleration(recording, found, ratio if side == "output" else 1.0, source))
+    if accelerating.failed or side == "input" or ratio < MIN_RATIO:
+        return
+    speed = float(np.exp(np.mean(np.log(np.abs(table.speed)))))
+    law, known = found.gear.friction_input, start.friction_input
+    check = friction_level(law, known, speed, source, "")
+    if check is None:
+        return
+    factor = law.steady(speed) / known.steady(speed)
+    mistake, rest = nearest(factor, wrong_units("torque", recording.unit("torque")))
+    remedy = f"{mistake}see whether the units of both columns are right; if they are, --accept"
+    if side == "output":
+        remedy = f"if it was measured at the input, leave --side output out; {mistake}see whether units are right"
+    elif factor > MAX_FACTOR and _off_at_output(table, law, known, ratio) < min(
+        np.log(MAX_FACTOR), max(rest, np.log(MAX_FACTOR_LEFT))
+    ):
+        at_joint = law.steady(speed) / ratio / known.steady(speed * ratio)
+        remedy = (
+            f"taken as measured at the output, it gives {times(at_joint)} the friction of the set: if it was measured there, "
+            "say so: --side output; if at the input, --side input"
+        )
+    yield Check(**vars(check) | {"remedy": remedy})
+
+
+def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> float:
+    """Return the logarithm between a table and the start set at both ends of its speeds, were it measured at the output."""
+    ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])
+    return float(np.abs(np.log(law.steady(ends) / ratio / known.steady(ends * ratio))).max())
+
+
+def friction_of_log(law: Any, start: Any, speeds: Array, effort: str, source: str) -> Iterator[Check]:
+    """Yield the checks of the friction of a log: that its torque shows some, and its size.
+
+    Args:
+        law: fitted
+        start: law of the start set
+        speeds: of the input while it was measured [rad/s]
+        effort: the channel of the torque
+        source: name of the file
+    """
+    speed = float(np.median(np.abs(speeds[speeds != 0.0]))) if np.any(speeds != 0.0) else 0.0
+    if speed <= 0.0:
+        return
+    found, before = float(law.steady(speed)), float(start.steady(speed))
+    if before > 0.0 and effort == "joint_torque":
+        share = max(found / before, 0.0)
+        yield Check(
+            "friction in the torque", source, MIN_FRICTION_SHARE / max(share, 1e-300), 1.0, "1", share < MIN_FRICTION_SHARE,
+            "its torque shows no friction, as that of a sensor behind the gear",
+            "give what the motor does: its current with --column current=NAME, or its torque",
+        )  # fmt: skip
+        if share < MIN_FRICTION_SHARE:
+            return
+    unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
+    factor = found / before if before > 0.0 and found > 0.0 else 1.0
+    near_thousand = abs(abs(np.log(factor)) - np.log(1000.0)) < np.log(MAX_FACTOR_LEFT)
+    mistake = f"a factor of 1000 lies between {unit}; " if near_thousand else ""
+    remedy = f"{mistake}see whether units, side, ratio and torque constant are right, or start from a set like this gear"
+    if (check := friction_level(law, start, speed, source, remedy)) is not None:
+        yield check
+
+
+def _acceleration(recording: Recording, found: Fit, ratio: float, source: str) -> Check:
+    """Return the check that what steady friction leaves unexplained does not follow the change of speed from row to row.
+
+    `ratio` is the speed of the input over the one recorded.
+    """
+    speed, torque = ratio * recording.values("speed", "rad/s"), recording.values("torque", "N.m") / ratio
+    share = 0.0
+    if len(speed) >= MIN_ROWS_OF_LOG:
+        load = recording.values("load", "N.m") / ratio if "load" in recording else None
+        residual = torque - FrictionTable(speed, torque, load=load).predict(found.gear, (), np.zeros(0))[0][0]
+        change = np.gradient(speed)
+        columns = np.column_stack((change, np.ones_like(change)))
+        rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0]
+        if np.any(np.diff(np.sign(change))) and np.var(residual) > 0.0:
+            share = 1.0 - float(np.var(rest) / np.var(residual))
+    return Check(
+        "acceleration in a friction table", source, share, MAX_SHARE_BY_ACCELERATION, "1", share > MAX_SHARE_BY_ACCELERATION,
+        "its torque follows the acceleration: this is a log of a moving drive, not a table of steady friction",
+        "average the torque over stretches of constant speed, one row for each; or give its time, as a log",
+    )  # fmt: skip
+
+
+# ---- Torsion ---------------------------------------------------------------------------------------------------------
+
+
+def clipping(recording: Recording, source: str) -> Check:
+    """Return the check that the torque of a loop does not stay at the end of its range while the twist goes on."""
+    angle, torque = ("twist", "torque") if "twist" in recording else ("input_angle", "input_torque")
+    path, values, unit = recording[angle], recording[torque], recording.unit(torque)
+    share, message = 0.0, ""
+    for end in (values.max(), values.min()):
+        at_end = np.concatenate([[False], np.abs(values - end) <= EQUAL * abs(end), [False]])
+        for first, last in np.flatnonzero(np.diff(at_end.astype(int))).reshape(-1, 2):
+            moved = float(np.ptp(path[first:last]) / max(np.ptp(path), 1e-300))
+            if last - first >= MIN_CLIPPED_SAMPLES and moved > share:
+                share = moved
+                message = (
+                    f"{torque} stays at {end:.4g} {unit} for {last - first} samples while {angle} goes on by "
+                    f"{100.0 * moved:.0f} % of its range: the sensor or the amplifier is at its limit"
+                )
+    return Check(
+        "torque at its limit", source, share, MAX_CLIPPED_SHARE, "1", share > MAX_CLIPPED_SHARE, message,
+        "record with a larger range, or twist less far",
+    )  # fmt: skip
+
+
+def stiffness_of_loop(recording: Recording, found: Fit, start: Gear, source: str) -> Iterator[Check]:
+    """Yield the checks of a torsion loop: that a spring carries most of its torque, and the size of its stiffness."""
+    loop = found.experiment
+    assert isinstance(loop, TorsionLoop)
+    half, largest = 0.5 * float(np.ptp(loop.twist)), 0.5 * float(np.ptp(loop.torque))
+    spring = float(found.gear.stiffness.torque(half))
+    if not loop.single_branch:
+        share = 1.0 - spring / largest
+        yield Check(
+            "friction in a torsion loop", source, share, MAX_FRICTION_SHARE, "1", share > MAX_FRICTION_SHARE,
+            f"its spring carries {100.0 * spring / largest:.0f} % of the torque at its ends, the rest is friction: this is how "
+            "a shaft behaves that turns against friction, not a gear that is twisted",
+            "lock one side while the other is loaded; if this is friction over speed, give a friction table",
+        )  # fmt: skip
+        if share > MAX_FRICTION_SHARE:
+            return
+    measured, known = spring / half, float(start.stiffness.torque(half)) / half
+    factor, squared = measured / known, start.kinematics.ratio**2
+    mistakes = {
+        "twist and torque were measured at the input (name them input_angle and input_torque)": 1.0 / squared,
+        "input_angle and input_torque were measured at the output (name them twist and torque)": squared,
+    }
+    torque, angle = ("torque", "twist") if loop.input_ratio is None else ("input_torque", "input_angle")
+    mistakes |= wrong_units("torque", recording.unit(torque))
+    mistakes |= {what: 1.0 / size for what, size in wrong_units("angle", recording.unit(angle)).items()}
+    yield Check(
+        "stiffness of the start set", source, max(factor, 1.0 / factor), MAX_FACTOR, "1",
+        not 1.0 / MAX_FACTOR < factor < MAX_FACTOR,
+        f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({known:.3g} N·m/rad)",
+        f"{nearest(factor, mistakes)[0]}see whether sides and units are right; if they are, --accept",
+    )  # fmt: skip
+
+
+def hint_of_ratio(found: Fit, start: Gear) -> Iterator[str]:
+    """Yield the ratio at which a loop from the input would have the stiffness of the start set, if it is another one."""
+    loop = found.experiment
+    assert isinstance(loop, TorsionLoop)
+    half = 0.5 * float(np.ptp(loop.twist))
+    factor = float(found.gear.stiffness.torque(half) / start.stiffness.torque(half))
+    if loop.input_ratio is not None and not 1.0 / STIFFNESS_SPREAD < factor < STIFFNESS_SPREAD:
+        ratio = abs(loop.input_ratio) / np.sqrt(factor)
+        yield (
+            f"its stiffness is {times(factor)} that of the start set. Seen from the input, stiffness goes with the square of "
+            f"the ratio: with a ratio of {ratio:.0f} it would be that of the set. See whether the ratio is right"
+        )
+
+
+def hints_of_levels(table: Recording) -> Iterator[str]:
+    """Yield what the torques and speeds of a friction table leave open."""
+    speed, torque = table["speed"], np.abs(table["torque"])
+    if len(torque) > 1 and np.ptp(torque) <= 1e-6 * torque.max():
+        yield "all its torques are of one size: a limit or a set value is no measurement"
+    if (speed > 0.0).all() or (speed < 0.0).all():
+        yield "it holds one direction only: a zero error of the torque is counted as Coulomb friction; measure both"

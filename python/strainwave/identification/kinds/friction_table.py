@@ -1,0 +1,154 @@
+"""Tables of steady friction over speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.friction import FrictionCandidate, fit_friction, ranking
+from strainwave.identification.checks.sizes import friction_of_table, hints_of_levels, input_speed
+from strainwave.identification.checks.unexplained import explained
+from strainwave.identification.experiments.friction_table import BESIDE, FrictionTable, with_load
+from strainwave.identification.fitting.covariance import correlation_length
+from strainwave.identification.fitting.influence import influence
+from strainwave.identification.kinds.kind import Kind, Ranked
+from strainwave.identification.kinds.remarks import exceeded, thinned, unused
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.kinds import ColumnRoles, friction_roles
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.curves import curves_of
+from strainwave.identification.results.determined import (
+    AT_SPEEDS,
+    MIN_SPEEDS,
+    best_known_friction,
+    different_speeds,
+    friction_at_speeds,
+)
+from strainwave.identification.results.file_result import FileResult, Picture
+from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
+from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.identifiability import Fitted
+
+UNITS = {"speed": "rad/s", "torque": "N.m"}
+MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from which on other laws are worth a word
+
+
+class SteadyFriction(Kind):
+    """Speed and torque of steady motion, a row for each speed."""
+
+    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
+        return friction_roles(columns, mapping)
+
+    def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+        """Fit the laws of steady friction that a table may show."""
+        table, uncertain = with_torque(file, known.gear_set)
+        ratio = abs(known.gear_set.gear.kinematics.ratio)
+        table, remarks = with_load(_unloaded(table, file, known.gear_set), ratio, file.side)
+        return fit_table(replace(file, remarks=(*file.remarks, *remarks)), table, uncertain, known)
+
+    def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
+        """Return the laws of friction by their error where each speed is predicted from the others."""
+        recording, _ = with_torque(file, known.gear_set)
+        table = _table_of(recording, file.side, known.gear_set.gear)
+        found = fit_friction(table, known.gear_set.gear)
+        order = np.argsort(table.speed, kind="stable")
+        return tuple(
+            Ranked(
+                line.name, line.parameters, line.error, line.error_sigma, "N.m",
+                correlation_length(each.fit.residuals[0][order]), line.cost,
+            )
+            for line, each in zip(ranking(found), found, strict=True)
+        )  # fmt: skip
+
+
+def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+    """Fit a friction table; return its result, and the gear with it.
+
+    Args:
+        file: that it came from
+        table: speed and torque, and what else friction may depend on
+        uncertain: standard deviation of the torque constant that its torques rest on, over its value [1]
+        known: before it
+    """
+    name, gear = file.path.name, known.gear_set.gear
+    speed = table.values("speed", "rad/s")
+    if "load" not in table and different_speeds(speed) < MIN_SPEEDS:
+        at_speeds, few = friction_at_speeds(speed, table.values("torque", "N.m"), side=file.side or "input")
+        at_speeds = tuple(each.resting_on(uncertain) for each in at_speeds)
+        return FileResult(name, file, AT_SPEEDS, at_speeds, remarks=(*file.remarks, *few)), known
+    side = "output" if file.side == "output" else known.side  # a side that was only assumed is checked by the size
+    experiment = _table_of(table, side, gear)
+    best, *others = fit_friction(experiment, gear)
+    speed_check = input_speed(experiment.speed, name)
+    checks = [speed_check, *friction_of_table(table, best.fit, known.initial.gear, side, name)]
+    whole = explained(best.fit, name)
+    fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed)
+    estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
+    if any(each.why for each in estimates) and not whole.failed:
+        speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()
+        paths = [each.path for each in best.fit.estimates]
+        estimates = (*estimates, best_known_friction(best.fit.gear, paths, best.fit.covariance, speeds))
+    estimates = tuple(each.resting_on(uncertain) for each in estimates)
+    result = FileResult(
+        name, file, best.name, estimates, best.error / float(np.std(experiment.torque)),
+        (*file.remarks, *_remarks(table, best, known.initial), *hints_of_levels(table)),
+        (*checks, *([] if any(check.failed for check in checks) else [whole])),
+        pictures=(Picture(curves_of(best.fit), "table", "friction torque, at the input"),),
+        held_out=_held_out(best),
+        candidates=tuple((each.name, each.error) for each in (best, *others)), fit=best.fit,
+    )  # fmt: skip
+    if whole.failed or known.knows_better("friction_input", estimates):
+        return result, known
+    parts = {"friction_input", "friction_mesh"} if "load" in table else {"friction_input"}
+    return result, known.with_fit(best.fit.gear, parts, estimates, name).judged("friction_input", estimates)
+
+
+def _table_of(recording: Recording, side: str | None, gear: Any) -> FrictionTable:
+    return FrictionTable.of_output(recording, gear) if side == "output" else FrictionTable.of(recording)
+
+
+def _unloaded(table: Recording, file: Recognised, gear_set: GearSet) -> Recording:
+    """Return a table without the constant torque at the output, and at the temperature, that a person gave."""
+    if load := file.constants.get("load_torque", 0.0):
+        held = load if file.side == "output" else load / gear_set.gear.kinematics.ratio
+        table = table.with_column("torque", table.values("torque", "N.m") - held, "N.m")
+    if "temperature" in file.constants and "temperature" not in table:
+        table = table.with_column("temperature", np.full(len(table), file.constants["temperature"]), "K")
+    return table
+
+
+def _held_out(best: FrictionCandidate) -> HeldOut:
+    table = best.fit.experiment
+    assert isinstance(table, FrictionTable)
+    return HeldOut(
+        "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(table.torque)),
+        samples=len(table.torque),
+    )  # fmt: skip
+
+
+def _remarks(recording: Recording, best: FrictionCandidate, start: GearSet) -> Iterator[str]:
+    table = best.fit.experiment
+    assert isinstance(table, FrictionTable)
+    low, high = float(np.abs(table.speed).min()), float(np.abs(table.speed).max())
+    yield f"valid between {low:.4g} and {high:.4g} rad/s at the input; validated by leaving out speeds in turn"
+    if best.name == "Coulomb and viscous":
+        yield "no fall of torque towards low speed within this range: breakaway and Stribeck speed are not seen"
+    within = np.sqrt(np.diag(best.fit.covariance)).tolist()
+    unsure = [
+        each.path.rpartition(".")[2]
+        for each, sigma in zip(best.fit.estimates, within, strict=True)
+        if each.sigma > MIN_FACTOR_BY_LAWS * sigma
+    ]
+    if unsure:
+        yield f"other laws are about as likely: their spread in {', '.join(unsure)} is part of its standard deviation"
+    yield from thinned(table.samples, len(table.speed))
+    yield from unused(recording, ("speed", "torque", *BESIDE))
+    if (left_out := int(np.sum(~best.fit.training))) > 0:
+        yield f"{left_out} of {len(table.speed)} rows are outliers, and left out"
+    yield from exceeded(start, Recording({"speed": table.speed, "torque": table.torque}, UNITS))

@@ -1,0 +1,109 @@
+"""The common base of the kinds of measurement."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from strainwave.identification.kinds import KINDS
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.kinds import ColumnRoles
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.results.gear_so_far import GearSoFar
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A model of a file, and how well it predicts.
+
+    Attributes:
+        name: of the model
+        parameters: number of fitted parameters of the gear and its drive
+        error: rms error on data held out, in `unit`
+        standard_error: of that error; not a number if it was not computed
+        unit: of both
+        correlation: correlation length of the residuals in samples [1]: 1 for white noise, which leaves nothing to explain
+        cost: time of the model per sample [µs]; not a number if it was not measured
+    """
+
+    name: str
+    parameters: int
+    error: float
+    standard_error: float
+    unit: str
+    correlation: float
+    cost: float = np.nan
+
+
+@dataclass(frozen=True)
+class Kind(ABC):
+    """A kind of measurement: the columns of its files, and how one is fitted, ranked and drawn.
+
+    A new kind is a class in a file of this package, and a line of `KINDS`. How a file is drawn stands in the pictures that its
+    `fit` returns.
+
+    Attributes:
+        name: as `KINDS` has it
+        time: whether its files need a time, or use one if they have it
+        section: heading of the section of the report that lists files of this kind together; empty if each stands by itself
+    """
+
+    name: str
+    time: ClassVar[Literal["needed", "used", "none"]] = "none"
+    section: ClassVar[str] = ""
+
+    @property
+    def title(self) -> str:
+        """What a file of this kind is, in words."""
+        return KINDS[self.name].title
+
+    def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
+        """True if columns are those of this kind without doubt; False leaves it to the other kinds, or to `--kind`."""
+        return False
+
+    @abstractmethod
+    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
+        """Return the channel of each column.
+
+        Raises:
+            UndecidedError: the columns are not those of this kind; says which are needed
+        """
+
+    def takes(self, file: Recognised, known: GearSoFar) -> bool:
+        """True if a file is fitted as this kind, whatever its columns were recognised as."""
+        return file.kind == self.name
+
+    def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
+        """Return the kind in whose turn a file is fitted, and its place there; `kinds` are those of all files."""
+        return self.name, 0
+
+    @abstractmethod
+    def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+        """Return the result of a file, and the gear with it.
+
+        Raises:
+            ValueError: nothing can be determined; says why
+        """
+
+    def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
+        """Return what all files of this kind determine together, and the gear with it; called in the turn of the kind."""
+        return (), known
+
+    def fit_last(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
+        """Return the same of what rests on the fits of all other files."""
+        return (), known
+
+    def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
+        """Return all models of a file, the one to take first.
+
+        Raises:
+            ValueError: this kind has no models to rank, or the file cannot be fitted
+        """
+        ranked = "tables of friction, torsion loops, presliding loops and logs have models to rank"
+        raise ValueError(f"only {ranked}; strainwave orders finds orders")

@@ -1,0 +1,118 @@
+"""Runs of the whole drive from rest under a known command, simulated as a whole: friction, stiffness and kinematic error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from strainwave import Drive
+from strainwave.files.recording import Recording
+from strainwave.identification.checks.unexplained import causes, explained, unexplained
+from strainwave.identification.dynamics.log import LogFit, fit_log, free_parameters, prepared
+from strainwave.identification.experiments.drive_log import DriveLog
+from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.influence import Influence, influence
+from strainwave.identification.kinds.kind import Kind
+from strainwave.identification.kinds.remarks import exceeded, thinned, unused
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.kinds import ColumnRoles, run_roles
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.check import Check
+from strainwave.identification.results.curves import pictures_of_channels
+from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.identifiability import MAX_LISTED, Fitted
+from strainwave.simulation.run import simulate
+
+MAX_CAUSES = 2  # likely mistakes that are fitted if the model does not explain a run, the likeliest first
+MAX_SHARE_LEFT = 0.5  # of what was unexplained before: a mistake that leaves more explains nothing
+
+
+class RunFromRest(Kind):
+    """Time, command and measured outputs of a drive whose motor, controller and load the start set has."""
+
+    time = "needed"
+
+    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
+        return run_roles(columns, mapping)
+
+    def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+        """Fit what no better file determines, by simulating the drive."""
+        name, recording = file.path.name, file.recording
+        log = DriveLog.of(recording, known.gear_set.drive)
+        friction_known, torsion_known = (part in known.determined for part in ("friction_input", "stiffness"))
+        drive = prepared(log, known.gear_set.drive, friction_known=friction_known)
+        free = free_parameters(log, drive, friction_known=friction_known, torsion_known=torsion_known)
+        found = fit_log(log, drive, free)
+        whole = explained(found.fit, name)
+        kept = Influence.none(len(found.fit.estimates)) if whole.failed else influence(found.fit)
+        if whole.failed:
+            whole = _with_cause(whole, found.fit, recording, drive, free)
+        fitted = Fitted(found.fit, name, kept, not whole.failed, prefix="")
+        estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
+        held_out = _held_out(found)
+        result = FileResult(
+            name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
+            held_out.relative, (*file.remarks, *_remarks(recording, log, found.fit, kept, known)), (whole,),
+            pictures=pictures_of_channels(found.fit), held_out=held_out, fit=found.fit,
+        )  # fmt: skip
+        if whole.failed:
+            return result, known
+        parts = dict.fromkeys(each.path.split(".")[1] for each in estimates)
+        return result, known.with_fit(found.fit.gear, list(parts), estimates, name)
+
+
+def _held_out(found: LogFit) -> HeldOut:
+    """Return the error of the channel that is predicted worst."""
+    experiment, rows = found.fit.experiment, ~found.fit.training
+    each = [
+        HeldOut("last 30 % of the record", channel, unit, float(error), float(np.std(measured[rows])), samples=int(rows.sum()))
+        for channel, unit, error, measured in zip(
+            experiment.channels, experiment.units, found.error, experiment.measured, strict=True
+        )
+    ]
+    return max(each, key=lambda channel: channel.relative)
+
+
+def _remarks(recording: Recording, log: DriveLog, fit: Fit, kept: Influence, known: GearSoFar) -> Iterator[str]:
+    yield from thinned(log.samples, len(log.time))
+    if log.time[-1] < 0.99 * np.ptp(recording.time):
+        yield f"of its {np.ptp(recording.time):.4g} s the first {log.time[-1]:.4g} s are taken, to fit in little time"
+    yield from unused(recording, ("time", "command", *log.channels))
+    if not {"input_angle", "output_angle"} <= set(log.channels):
+        yield "one encoder only: kinematic error and stiffness are not seen"
+    if wrong := kept.suspects(known.gear_set.sources):
+        told = [
+            f"{each.path} = {each.value:.4g} {each.unit} (about {each.value + kept.shift_if_free[place]:.3g} {each.unit} would "
+            f"leave {100.0 * kept.explained_share[place]:.0f} % less of the residuals' power)"
+            for place in wrong[:MAX_LISTED]
+            for each in [kept.kept[place]]
+        ]
+        yield f"the run contradicts what was kept: {' or '.join(told)}. Measure them, or free one"
+    yield from exceeded(known.initial, _load(log, fit))
+
+
+def _load(log: DriveLog, fit: Fit) -> Recording:
+    """Return what the gear went through: its torque was not measured, and is that of the fitted drive."""
+    run = simulate(fit.model, log.command, log.step(fit.model), sample=log.interval)
+    return Recording(run.columns, run.units)
+
+
+def _with_cause(check: Check, found: Fit, recording: Recording, drive: Drive, free: list[str]) -> Check:
+    """Return the check with the mistake that would explain the run, if one does."""
+    before = float(unexplained(found).max())
+    for cause in causes(recording, drive)[:MAX_CAUSES]:
+        log = DriveLog.of(cause.recording, cause.drive)
+        again = fit_log(log, prepared(log, cause.drive, friction_known=False), free).fit
+        if not explained(again, check.source).failed:
+            what = f"{cause.what[0].upper()}{cause.what[1:]}: then it is explained"
+            return replace(check, message=f"{check.message}. {what}", remedy=cause.remedy)
+        if float(unexplained(again).max()) < MAX_SHARE_LEFT * before:
+            what = f"Perhaps {cause.what}: then less is left"
+            return replace(check, message=f"{check.message}. {what}", remedy=cause.remedy)
+    remedy = "no single mistake in sign, unit, side or ratio explains it; look at the plot, and at what is known of the drive"
+    return replace(check, remedy=remedy)

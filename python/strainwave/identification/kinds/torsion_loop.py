@@ -1,0 +1,144 @@
+"""Torsion loops and branches: torque over twist with one side of the gear locked."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from strainwave.files.gear_set import GearSet
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.torsion import Friction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion.ranking import rank_loop
+from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
+from strainwave.identification.checks.unexplained import explained
+from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
+from strainwave.identification.fitting.influence import influence
+from strainwave.identification.kinds.kind import Kind, Ranked
+from strainwave.identification.kinds.remarks import exceeded, thinned, unused
+from strainwave.identification.reading.column import Column
+from strainwave.identification.reading.kinds import ColumnRoles, torsion_roles
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.curves import curves_of
+from strainwave.identification.results.file_result import FileResult, Picture
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.identifiability import Fitted
+
+FRICTION = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
+
+
+class Torsion(Kind):
+    """Twist and torque at the output, or angle and torque of the input with the output locked."""
+
+    def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
+        return torsion_roles(columns, mapping)
+
+    def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
+        """Return its turn: loops at the output go first, as they separate hysteresis from friction."""
+        if "input_angle" not in file.recording:
+            return self.name, 0
+        return ("torsion", 1) if FRICTION & set(kinds) or "run" not in kinds else ("run", 1)
+
+    def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
+        """Fit springs with Maxwell elements."""
+        name, gear, start = file.path.name, known.gear_set.gear, known.initial
+        loop = TorsionLoop.of(file.recording, gear)
+        friction_measured = "friction_input" in known.determined
+        training = held_out_blocks(len(loop.twist))
+        best, *others = fit_loop(loop, gear, training, friction_measured=friction_measured)
+        checks = [clipping(file.recording, name), *stiffness_of_loop(file.recording, best.fit, start.gear, name)]
+        whole = explained(best.fit, name)
+        shared = _shared(best, gear, loop, friction_measured)
+        fitted = Fitted(best.fit, name, influence(best.fit), not whole.failed, shared)
+        estimates = tuple(fitted.estimates(known.gear_set.sources, known.determined_by))
+        error = float(best.fit.rms(held_out=True)[0])
+        result = FileResult(
+            name, file, best.name, estimates, error / float(np.std(loop.torque)),
+            (*file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start)),
+            (*checks, *([] if any(check.failed for check in checks) else [whole])),
+            pictures=(Picture(curves_of(best.fit), "loop", "torque" + _place(loop)),),
+            held_out=_held_out(best, error),
+            candidates=tuple((each.name, each.error) for each in (best, *others)), fit=best.fit,
+        )  # fmt: skip
+        if whole.failed or known.knows_better("stiffness", estimates):
+            return result, known
+        # a loop at the input has friction inside, and an error of the table of friction becomes hysteresis
+        parts = (
+            {"stiffness"} if loop.input_ratio is not None and "hysteresis" in known.determined else {"stiffness", "hysteresis"}
+        )
+        if isinstance(best.beside, Friction):
+            parts |= {"friction_input"}
+        return result, known.with_fit(best.fit.gear, parts, estimates, name).judged("stiffness", estimates)
+
+    def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
+        """Return all springs and hysteresis laws by their error on data held out."""
+        found = rank_loop(TorsionLoop.of(file.recording, known.gear_set.gear), known.gear_set.gear)
+        return tuple(
+            Ranked(each.name, each.parameters, each.error, each.standard_error, "N.m", each.correlation, 1e6 * each.cost)
+            for each in found
+        )
+
+
+def _place(loop: TorsionLoop) -> str:
+    return " at the output" if loop.input_ratio is None else ", referred to the output"
+
+
+def _held_out(best: TorsionCandidate, error: float) -> HeldOut:
+    rows = ~best.fit.training
+    torque = best.loop.torque[rows] if rows.any() else best.loop.torque
+    return HeldOut("blocks of the loop", "torque", "N.m", error, float(np.std(torque)), samples=int(rows.sum()))
+
+
+def _remarks(
+    recording: Recording, loop: TorsionLoop, best: TorsionCandidate, gear: Any, friction_measured: bool, start: GearSet
+) -> Iterator[str]:
+    yield f"valid up to {np.abs(loop.torque).max():.4g} N·m and {0.5 * np.ptp(loop.twist):.4g} rad either way at the output"
+    yield from _of_friction(loop, best, gear, friction_measured)
+    yield from thinned(loop.samples, len(loop.twist))
+    yield from hint_of_ratio(best.fit, start.gear)
+    yield from unused(recording, ("input_angle", "input_torque") if at_input(recording) else ("twist", "torque"))
+    if isinstance(best.beside, Nothing):
+        yield (
+            "one branch only: it determines neither hysteresis nor zeros, so the hysteresis is kept, and the gear is taken to "
+            "have been unloaded at the zeros of both axes"
+        )
+    yield from exceeded(start, Recording({"torque": loop.torque}, {"torque": "N.m"}))
+
+
+def _of_friction(loop: TorsionLoop, best: TorsionCandidate, gear: Any, friction_measured: bool) -> Iterator[str]:
+    """Yield what became of the friction inside a loop at the input."""
+    if loop.input_ratio is None:
+        return
+    yield "measured at the input with the output locked: friction of the wave generator is inside the loop"
+    held = 0.5 * float(np.ptp(loop.friction(gear)))
+    together = "friction at the input was not measured: the loop determines the sum of friction and hysteresis only."
+    if friction_measured:
+        yield f"the friction measured at the input, ±{held:.3g} N·m at the output, is taken out of it"
+    elif isinstance(best.beside, Friction):
+        yield f"{together} Friction is fitted, and the hysteresis kept; give a friction table to tell them apart"
+    elif held > 0.0:
+        yield (
+            f"{together} Friction is kept, ±{held:.3g} N·m at the output, and the rest is hysteresis; give a friction table to "
+            "tell them apart"
+        )
+    else:
+        yield "no friction at the input is known: all of it is fitted as hysteresis, of which a turning gear shows nothing"
+
+
+def _shared(best: TorsionCandidate, gear: Any, loop: TorsionLoop, friction_measured: bool) -> dict[str, str]:
+    """Return the parameters that a loop determines only together with what was kept, by path, and how."""
+    if loop.single_branch:
+        why = "a single branch determines the torque of spring and hysteresis together, and the hysteresis was kept"
+        return {f"gear.{estimate.path}": why for estimate in best.fit.estimates}
+    if loop.input_ratio is None or friction_measured or not np.any(loop.friction(gear)):
+        return {}
+    sum_of, ratio = "the loop determines the sum of", abs(loop.input_ratio)
+    if isinstance(best.beside, Friction):
+        why = f"{sum_of} {ratio:g} x friction_input.breakaway and the torque of the hysteresis, which was kept"
+        return {"gear.friction_input.breakaway": why}
+    why = f"{sum_of} the torque of the hysteresis and {ratio:g} x friction_input.breakaway, which was kept"
+    paths = [estimate.path for estimate in best.fit.estimates if estimate.path.startswith("hysteresis.breakaway")]
+    return {f"gear.{path}": why for path in paths}

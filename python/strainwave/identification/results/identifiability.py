@@ -1,0 +1,154 @@
+"""Which estimates of a fit the data determine, and why not the others."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from strainwave.files.entries import Entry
+from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.influence import Influence
+from strainwave.identification.results.file_result import FileEstimate
+
+COMMON = ("coulomb", "breakaway", "viscous", "stribeck_speed")  # mean the same in every law of friction that has them
+MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; a parameter with a larger one is not identified
+MAX_SIGMA_OF_PHASE = 0.5  # rad
+MAX_SHIFT = 0.25  # relative shift by the uncertainty of a kept parameter; beyond it the estimate is not identified
+MAX_SHIFT_BY_WRONG = 0.05  # relative shift by a kept parameter that the measurement contradicts
+MIN_SHIFT_LISTED = 0.02  # relative shift; smaller ones are not listed
+MAX_LISTED = 3  # kept parameters named with an estimate
+MAX_CORRELATION = 0.98  # two estimates with a larger one are identified in combination only
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fit to a file, and what limits its estimates.
+
+    Attributes:
+        fit: the fit
+        source: name of the file
+        influence: of the kept parameters
+        explained: False if the model does not explain the measurement; then it determines nothing
+        shared: parameters that this kind of measurement determines only together with others, by path, and how
+        prefix: of the paths of the fit in a gear set; empty for the fit of a drive
+    """
+
+    fit: Fit
+    source: str
+    influence: Influence
+    explained: bool = True
+    shared: Mapping[str, str] = field(default_factory=dict)
+    prefix: str = "gear."
+
+    def estimates(self, sources: Mapping[str, Entry], determined: Collection[str]) -> Iterator[FileEstimate]:
+        """Yield the estimates of the parameters, without those of the measurement, as zeros of encoders.
+
+        Args:
+            sources: of all numbers of the gear set, before the file
+            determined: paths of numbers that earlier files determine, whose uncertainty is part of that of the estimates
+        """
+        free = len(self.fit.estimates) - len(self.fit.experiment.nuisances)
+        for place, estimate in enumerate(self.fit.estimates[:free]):
+            path, size = self.prefix + estimate.path, _size(estimate)
+            shifts = self.influence.shifts(place, sources, self.prefix)
+            of_others = [
+                shift for kept, shift in shifts.items() if path in self.shared or _is_in(self.prefix + kept, determined)
+            ]
+            sigma = float(np.linalg.norm([estimate.sigma, *of_others]))
+            why, in_combination = self._why(place, path, sources, shifts)
+            relative = {kept: shift / size for kept, shift in shifts.items() if size > 0.0 and shift > MIN_SHIFT_LISTED * size}
+            yield FileEstimate(
+                path, estimate.unit, estimate.value, sigma, _law(path, self.fit.gear), why,
+                in_combination=in_combination, shift_by_kept=dict(list(relative.items())[:MAX_LISTED]),
+            )  # fmt: skip
+
+    def _why(self, place: int, path: str, sources: Mapping[str, Entry], shifts: Mapping[str, float]) -> tuple[str, bool]:
+        """Return why the data do not determine an estimate, and whether they do together with another; empty if they do."""
+        if why := self._undetermined(place):
+            return why, False
+        if why := self.shared.get(path, ""):
+            return why, True
+        if why := self._by_wrong(place, sources) or _by_kept(self.fit.estimates[place], shifts):
+            return why, False
+        why = _combination(self.fit, place)
+        return why, bool(why)
+
+    def _undetermined(self, place: int) -> str:
+        estimate = self.fit.estimates[place]
+        if not self.explained:
+            return f"the model does not explain {self.source}"
+        if not np.isfinite(estimate.sigma):
+            return f"{self.source} stays the same when it changes"
+        if estimate.at_limit:
+            return f"ended at the limit of what it may be; {self.source} pulls it beyond"
+        if _is_phase(estimate):
+            return f"standard deviation is {estimate.sigma:.2g} rad" if estimate.sigma > MAX_SIGMA_OF_PHASE else ""
+        if estimate.sigma > MAX_RELATIVE_SIGMA * abs(estimate.value):
+            together = _combination(self.fit, place)
+            return "standard deviation exceeds half the value" + (f"; {together}" if together else "")
+        return ""
+
+    def _by_wrong(self, place: int, sources: Mapping[str, Entry]) -> str:
+        """Return the kept parameter that the measurement contradicts, if its correction would shift the estimate far."""
+        influence, size = self.influence, _size(self.fit.estimates[place])
+        shifts = {
+            influence.kept[kept].path: influence.slopes[place, kept] * influence.shift_if_free[kept] / size
+            for kept in influence.suspects(sources, self.prefix)
+        }
+        path = max(shifts, key=lambda each: abs(shifts[each]), default="")
+        if not path or abs(shifts[path]) < MAX_SHIFT_BY_WRONG:
+            return ""
+        return f"it would move by {100.0 * shifts[path]:+.2g} % were {path} what {self.source} pulls it to"
+
+
+def _law(path: str, gear: Any) -> str:
+    """Return the law that gives a number its meaning; empty for numbers that mean the same in every law."""
+    part, _, name = path.removeprefix("gear.").partition(".")
+    return "" if part == "friction_input" and name in COMMON else str(getattr(gear, part).name)
+
+
+def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
+    """Return the kept parameters whose uncertainty shifts an estimate far; empty if none does."""
+    size = _size(estimate)
+    far = [f"{path} by {100.0 * shift / size:.2g} %" for path, shift in shifts.items() if shift > MAX_SHIFT * size]
+    return f"what is not known of parameters kept may move it: {', '.join(far[:MAX_LISTED])}" if far else ""
+
+
+def _combination(fit: Fit, place: int) -> str:
+    """Return the other estimate with which the data determine one only together, and the combination that they determine."""
+    correlation, free = np.abs(fit.correlation[place]), len(fit.plan.unknowns)
+    correlation[place] = 0.0
+    correlation[free : free + len(fit.plan.tied)] = 0.0  # what follows another one is known as well
+    if free <= place < free + len(fit.plan.tied):
+        correlation[fit.plan.tied[place - free].unknown] = 0.0
+    if not np.isfinite(correlation).any():
+        return ""
+    partner = int(np.nanargmax(correlation))
+    if not correlation[partner] > MAX_CORRELATION:
+        return ""
+    own, other = fit.estimates[place], fit.estimates[partner]
+    weight = -fit.covariance[place, partner] / fit.covariance[partner, partner]
+    sigma = own.sigma * np.sqrt(max(1.0 - correlation[partner] ** 2, 0.0))
+    name, other_name = (each.path.rpartition(".")[2] for each in (own, other))
+    sign, total = "+" if weight > 0.0 else "-", own.value + weight * other.value
+    return (
+        f"determined together with {other.path}: {name} {sign} {abs(weight):.3g} {other_name} = {total:.5g} ± {sigma:.2g} "
+        f"{own.unit} (correlation {fit.correlation[place, partner]:+.3f})"
+    )
+
+
+def _is_phase(estimate: Estimate) -> bool:
+    return ".phase[" in estimate.path
+
+
+def _size(estimate: Estimate) -> float:
+    return 1.0 if _is_phase(estimate) else abs(estimate.value)
+
+
+def _is_in(path: str, determined: Collection[str]) -> bool:
+    """True for a number that files determine; also for a breakaway torque that follows a Coulomb torque that they determine."""
+    return path in determined or (path.endswith(".breakaway") and path.replace(".breakaway", ".coulomb") in determined)

@@ -1,0 +1,63 @@
+"""The ratio that a person gave with files, in a gear set."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from strainwave import kinematics
+from strainwave.files.entries import Entry
+from strainwave.files.gear_set import GearSet
+from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.results.gear_so_far import GearSoFar
+
+SAME = 1e-9  # relative: two ratios that are one
+
+
+def with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
+    """Return the set with the ratio that a person gave with all files."""
+    ratios = {file.constants.get("ratio") for file in files}
+    if len(ratios) != 1 or (ratio := ratios.pop()) is None:
+        return start
+    gear = _geared(start.gear, ratio)
+    if gear is start.gear:
+        return start
+    sources = {path: entry for path, entry in start.sources.items() if not path.startswith("gear.kinematics.")}
+    numbers = [field["name"] for field in gear.kinematics.fields if field["kind"] != "choice"]
+    given = {f"gear.kinematics.{name}": Entry("ratio given with the files") for name in numbers}
+    return replace(start, gear=gear, sources=sources | given)
+
+
+def with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
+    """Return the gear so far with the ratio that a person gave with this file."""
+    if "ratio" not in file.constants:
+        return known
+    gear = _geared(known.gear_set.gear, file.constants["ratio"])
+    return known if gear is known.gear_set.gear else replace(known, gear_set=replace(known.gear_set, gear=gear))
+
+
+def with_kinematics(known: GearSoFar, of: GearSet) -> GearSoFar:
+    """Return the gear so far with the ratio of a set."""
+    if known.gear_set.gear.kinematics == of.gear.kinematics:
+        return known
+    gear = known.gear_set.gear.replace(kinematics=of.gear.kinematics)
+    return replace(known, gear_set=replace(known.gear_set, gear=gear))
+
+
+def _geared(gear: Any, ratio: float) -> Any:
+    """Return the gear with another ratio; its output turns the same way as before."""
+    if abs(abs(ratio) - abs(gear.kinematics.ratio)) < SAME * abs(ratio):
+        return gear
+    return gear.replace(kinematics=_kinematics(ratio, gear.kinematics.ratio < 0.0))
+
+
+def _kinematics(ratio: float, backwards: bool) -> Any:
+    """Return a strain wave gear of this ratio, if whole teeth give it; else what has the ratio alone."""
+    size = abs(ratio)
+    if abs(size - round(size)) > SAME * size or round(size) < 2:
+        return kinematics.PlainRatio(reduction=size)
+    turns = 2 * round(size)  # two teeth fewer on the flexspline
+    if backwards or ratio < 0.0:
+        return kinematics.StrainWave(flexspline_teeth=turns, circular_spline_teeth=turns + 2, fixed="circular_spline")
+    return kinematics.StrainWave(flexspline_teeth=turns - 2, circular_spline_teeth=turns, fixed="flexspline")

@@ -1,0 +1,117 @@
+"""Results of an identification as files: JSON and CSV in SI units, for people and programs."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import asdict
+from importlib import metadata
+from io import StringIO
+from typing import Any
+
+from strainwave.identification.identify import Identified
+from strainwave.identification.results.combined_parameter import CombinedParameter, distance
+from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.report.parameter_names import name_of
+from strainwave.report.rig_files import results_json
+
+COLUMNS = (
+    "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
+    "state", "reason",
+)  # fmt: skip
+
+
+def identify_files(found: Identified) -> dict[str, str]:
+    """Return the whole result as JSON, and every parameter with the estimates of all files as CSV."""
+    text = StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(_csv_rows(found))
+    return {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
+
+
+def _results(found: Identified) -> dict[str, Any]:
+    return {
+        "made_by": f"strainwave {metadata.version('strainwave')}",
+        "start": found.start.name,
+        "failed": [check.name for check in found.failed],
+        "checks": [asdict(check) for check in found.checks],
+        "files": [_file(each) for each in found.files],
+        "parameters": [_parameter(each) for each in found.parameters],
+        "states": [asdict(each) for each in found.states],
+    }
+
+
+def _file(result: FileResult) -> dict[str, Any]:
+    read = result.recognised
+    return {
+        "name": result.name,
+        "kind": None if read is None else read.kind,
+        "why": [] if read is None else read.why,
+        "columns": {} if read is None else read.columns,
+        "units": {} if read is None else read.units,
+        "side": None if read is None else read.side,
+        "constants": {} if read is None else read.constants,
+        "model": result.model,
+        "candidates": [{"model": name, "error": error} for name, error in result.candidates],
+        "error_on_data_held_out": result.error,
+        "held_out": None if result.held_out is None else asdict(result.held_out),
+        "same_as": result.same_as or None,
+        "part_of": result.part_of or None,
+        "failed": [check.name for check in result.failed],
+        "refused": result.refused or None,
+        "remarks": result.remarks,
+        "estimates": [
+            {
+                **_estimate(each),
+                "state": each.state,
+                "reason": each.why or None,
+                "shift_by_kept": dict(each.shift_by_kept),
+            }
+            for each in result.estimates
+        ],
+    }
+
+
+def _parameter(each: CombinedParameter) -> dict[str, Any]:
+    best = each.of_file(each.source)
+    return {
+        **_estimate(each.estimate),
+        "name": name_of(each.estimate),
+        "file": each.source,
+        "mean_of": each.mean_of if len(each.mean_of) > 1 else [],
+        "widened": each.widened,
+        "best": _estimate(best),
+        "others": [
+            {"file": name, **_estimate(other), "sigmas_apart": distance(best, other)} for name, other in each.others.items()
+        ],
+        "contradicts": each.contradicts,
+    }
+
+
+def _estimate(estimate: FileEstimate) -> dict[str, Any]:
+    return {name: getattr(estimate, name) for name in ("path", "law", "unit", "value", "sigma")}
+
+
+def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
+    """Yield the estimates of each parameter, the best first, and their mean; then what files do not determine."""
+    copies = {file.name for file in found.files if file.same_as}
+    for each in found.parameters:
+        best, mean = each.of_file(each.source), each.mean_of if len(each.mean_of) > 1 else ()
+        for name in (each.source, *each.others):
+            estimate = each.of_file(name)
+            yield _estimate(estimate) | {
+                "file": name,
+                "taken": "in the mean" if name in mean else "yes" if name == each.source else "no",
+                "same_measurement": "yes" if name in copies else "no",
+                "sigmas_apart": distance(best, estimate),
+                "contradicts": "yes" if name in each.contradicts else "no",
+                "state": estimate.state,
+            }
+        if mean:
+            yield _estimate(each.estimate) | {"file": each.taken_from, "taken": "yes", "state": "identified"}
+    for file in found.files:
+        for estimate in file.estimates:
+            if estimate.why:
+                row = {"file": file.name, "taken": "no", "state": estimate.state, "reason": estimate.why}
+                yield _estimate(estimate) | row
