@@ -28,6 +28,7 @@ from strainwave.report.rig_tables import (
 )
 from strainwave.report.typeset import fixed, number
 from strainwave.rig.analysis.analysis import table
+from strainwave.rig.analysis.lost_motion import LOST_MOTION
 from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.soft_spot import MULTIPLE
 from strainwave.rig.reading.evaluation import Evaluation
@@ -199,6 +200,18 @@ def unknown(found: Evaluation) -> list[str]:
 # ---- Lines for a terminal --------------------------------------------------------------------------------------------
 
 
+def _catalogued(found: Evaluation) -> Iterator[str]:
+    """Yield the widths that catalogues state, of each loop that determines them."""
+    for label, analysis in zip(found.labels, found.analyses, strict=True):
+        unit, scale = rig_plates.angle_unit(analysis.loop)
+        of = f"{label}: " if len(found.labels) > 1 else ""
+        level = f"±{number(LOST_MOTION * (analysis.rated_torque or 0.0), 3)} N·m, 4 % of the rated torque"
+        words = f"whole angle between {level}" if analysis.whole_angle else f"mean width at {level}"
+        for name, result in ((f"lost motion, {words}", analysis.lost_motion), ("hysteresis loss", analysis.hysteresis_loss)):
+            if result is not None:
+                yield f"{of}{name}: {stated(result, scale)}{unit}"
+
+
 def summary(found: Evaluation) -> str:
     """What the test found, as lines of text."""
     shown = stiffness_table(found, "softest")
@@ -215,8 +228,9 @@ def summary(found: Evaluation) -> str:
             ).rstrip()
         )
     lines += ["", "stiffness of the softest straight stretch of each regime; in brackets, the interval of 95 %"]
+    lines += ["", *catalogued] if (catalogued := list(_catalogued(found))) else []
     for each in found.comparisons:
         lines += ["", *(str(compared) for compared in each.quantities)]
     if told := unknown(found):
-        lines += ["", "not told, or in doubt:", *(f"  {line}" for line in told)]
+        lines += ["", "not determined, or in doubt:", *(f"  {line}" for line in told)]
     return "\n".join(lines)

@@ -69,7 +69,7 @@ def _widths(analysis: LoopAnalysis, scale: float) -> Iterator[Width]:
     at = [("a", "hysteresis", wide)]
     if abs(wide) >= CLOSE * max(map(abs, analysis.peaks)):
         at.append(("b", "at zero torque", 0.0))
-    if analysis.lost_motion is not None and analysis.rated_torque is not None:
+    if analysis.lost_motion is not None and analysis.rated_torque is not None and not analysis.whole_angle:
         level = LOST_MOTION * analysis.rated_torque
         at += [("c", "lost motion", level), ("c", "", -level)]
     for letter, words, torque in at:

@@ -125,7 +125,11 @@ def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[s
     )
     yield angle(
         "Lost motion",
-        "mean separation at plus and minus 4 % of rated torque, as catalogues have it"
+        (
+            "whole angle of the cycle between plus and minus 4 % of rated torque, as makers measure it"
+            if analysis.whole_angle
+            else "mean separation at plus and minus 4 % of rated torque in this larger cycle"
+        )
         + ("; rated torque is not known" if rated is None else f"; ±{number(0.04 * rated, 3)} N·m"),
         analysis.lost_motion,
     )

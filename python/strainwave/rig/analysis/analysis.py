@@ -15,7 +15,18 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, check_catalogue, rated_torque_of
-from strainwave.rig.analysis.lost_motion import Width, area, closure, drift, lost_motion, separation, widest, widest_in_torque
+from strainwave.rig.analysis.lost_motion import (
+    LOST_MOTION,
+    Width,
+    area,
+    closure,
+    drift,
+    is_lost_motion_cycle,
+    lost_motion,
+    separation,
+    widest,
+    widest_in_torque,
+)
 from strainwave.rig.analysis.regimes import NAMES, RegimeName, Segmented, cycles, part, segment
 from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.soft_spot import SoftSpot, soft_spots
@@ -47,7 +58,9 @@ class LoopAnalysis(ComparedByFields):
         width_at_zero: separation at zero torque after the peaks of this cycle [rad]
         rated_torque: of the gear, at the loaded shaft [N.m]
         hysteresis_loss: separation at zero torque after rated torque, as catalogues have it [rad]
-        lost_motion: mean separation at plus and minus 4 % of the rated torque, as catalogues have it [rad]
+        lost_motion: of a cycle between plus and minus 4 % of the rated torque the whole angle, as makers measure it; of a
+            larger one the mean separation there [rad]
+        whole_angle: True if `lost_motion` is the whole angle of such a cycle
         torque_width: widest separation in torque at equal angle [N.m], and that angle [rad]
         area: energy lost in a cycle [J]
         closure: angle at the end of the cycle less that at its beginning [rad]
@@ -74,6 +87,7 @@ class LoopAnalysis(ComparedByFields):
     catalogue: tuple[CatalogueCheck, ...]
     errors_stated: bool
     remarks: tuple[str, ...]
+    whole_angle: bool = False
 
     @property
     def peaks(self) -> tuple[float, float]:
@@ -184,6 +198,7 @@ def _analysis(loop: Loop, cut: Segmented, freedom: float, rated: float | None, s
     stiffnesses = tuple(found for each in cut.regimes if (found := stiffness_of(each, cut.loop, freedom)) is not None)
     both = (cut.falling, cut.rising)
     wide = at_zero = in_torque = lost = energy = None
+    whole = False
     if cut.closed and both[0] is not None and both[1] is not None:
         falling, rising = both[0], both[1]
         energy = area(part(cut.loop, cut.cycle, loop.name), freedom)
@@ -196,10 +211,10 @@ def _analysis(loop: Loop, cut: Segmented, freedom: float, rated: float | None, s
         at_zero = separation(falling, rising, 0.0, cut.loop, freedom)
         in_torque = widest_in_torque(falling, rising)
         if rated is not None:
-            lost = lost_motion(falling, rising, rated, cut.loop, freedom)
+            lost, whole = lost_motion(falling, rising, rated, cut.loop, freedom), is_lost_motion_cycle(falling, rising, rated)
     analysis = LoopAnalysis(
         loop, cut, stiffnesses, wide, at_zero, rated, None, lost, in_torque, energy, closure(cut, freedom),
-        _drift(loop, cut), soft_spots(stiffnesses), (), stated, (),
+        _drift(loop, cut), soft_spots(stiffnesses), (), stated, (), whole,
     )  # fmt: skip
     low, high = analysis.peaks
     if rated is not None and max(abs(high - rated), abs(low + rated)) <= NEAR * rated:
@@ -272,14 +287,18 @@ def _of_catalogue(found: LoopAnalysis) -> Iterator[str]:
         if found.width_at_zero is not None:
             yield "no rated torque is known: hysteresis loss and lost motion as catalogues define them cannot be stated"
         return
-    if found.hysteresis_loss is None and found.width_at_zero is not None:
+    if found.hysteresis_loss is None and found.width_at_zero is not None and not found.whole_angle:
         low, high = found.peaks
         yield (
             f"the cycle ran from {low:.3g} to {high:.3g} N.m, not to the rated torque of {rated:.3g} N.m either way: its "
             "width at zero torque is not the hysteresis loss of a catalogue"
         )
     if found.lost_motion is None and found.cut.closed:
-        yield f"the cycle does not reach 4 % of the rated torque of {rated:.3g} N.m either way: no lost motion"
+        low, high = found.peaks
+        yield (
+            f"the cycle from {low:.4g} to {high:.4g} N.m does not reach ±{LOST_MOTION * rated:.4g} N.m, 4 % of the rated "
+            "torque, either way: no lost motion"
+        )
 
 
 def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") -> tuple[Row, ...]:

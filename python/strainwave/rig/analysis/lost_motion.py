@@ -15,6 +15,7 @@ from strainwave.rig.loop import Loop
 Array = NDArray[np.float64]
 
 LOST_MOTION = 0.04  # of the rated torque: catalogues of strain wave gears state the lost motion there
+MIN_PEAK, MAX_PEAK = 0.9, 2.0  # of a cycle that is a test of lost motion, over 4 % of the rated torque
 FLAT = 1e-6  # of the widest separation: what differs by less is as wide
 
 
@@ -50,8 +51,28 @@ def separation(falling: Branch, rising: Branch, torque: float, loop: Loop, freed
     return _width(down - up, down_variance + up_variance, abs(down_slope) + abs(up_slope), loop, freedom)
 
 
+def is_lost_motion_cycle(falling: Branch, rising: Branch, rated: float) -> bool:
+    """True if the peaks of a cycle are near plus and minus 4 % of the rated torque, as in a maker's test."""
+    peaks = np.array([-min(falling.low, rising.low), max(falling.high, rising.high)]) / (LOST_MOTION * rated)
+    return bool(np.all((peaks >= MIN_PEAK) & (peaks <= MAX_PEAK)))
+
+
 def lost_motion(falling: Branch, rising: Branch, rated: float, loop: Loop, freedom: float = inf) -> Result | None:
-    """Mean separation at plus and minus 4 % of the rated torque [rad]; None where a branch does not reach it."""
+    """Return the lost motion [rad]; None if a branch does not reach 4 % of the rated torque.
+
+    Of a cycle to about these torques, as makers run it, it is the whole angle from one to the other, loading. A peak that
+    misses its torque a little is corrected with the slope there. Of a larger cycle it is the mean separation of the branches
+    at both.
+
+    Source:
+        Harmonic Drive AG, glossary of the engineering data: lost motion is the angle of the hysteresis curve at about ± 4 % of
+        the rated torque, with the wave generator locked
+    """
+    level = LOST_MOTION * rated
+    if is_lost_motion_cycle(falling, rising, rated):
+        (top, above, steep), (bottom, below, flat) = _at(rising, level), _at(falling, -level)
+        shared = hypot((top - bottom) * loop.angle_scale, (abs(steep) + abs(flat)) * level * loop.torque_scale)
+        return result(top - bottom, "rad", random=float(np.sqrt(above + below)), shared=shared, freedom=freedom)
     low, high = (separation(falling, rising, sign * LOST_MOTION * rated, loop, freedom) for sign in (-1.0, 1.0))
     if low is None or high is None:
         return None

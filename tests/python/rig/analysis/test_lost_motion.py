@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from pathlib import Path
+
 import numpy as np
 import pytest
 import strainwave as sw
@@ -9,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strainwave.rig import Loop, analyse
 from strainwave.rig.analysis.lost_motion import drift
+from strainwave.rig.reading.recorded import read_loop
 
 from tests.python.rig.loops import TABLE, loop_of_table, parallelogram, refined, shoelace, straight, vertices
 
@@ -250,3 +254,54 @@ def test_lost_motion_and_hysteresis_loss_are_the_catalogues() -> None:
     assert any("is not the hysteresis loss of a catalogue" in remark for remark in beyond.remarks)
     assert beyond.lost_motion is not None
     assert analyse(loop(angle, torque)).lost_motion is None
+
+
+def small_cycle(peak: float, steps: int = 60) -> tuple[np.ndarray, np.ndarray]:
+    """Torque and angle of a spring k beside one element that slips at F, run to both peaks and back, by its closed form."""
+    spring, element, slips = 16e3, 8e3, 0.8
+    ends = [0.0, peak, -peak, peak, -peak, peak]
+    torque, angle = [0.0], [0.0]
+    held, turned = 0.0, 0.0
+    for end in ends[1:]:
+        way = np.sign(end - torque[-1])
+        sticks = (way * slips - held) / element  # the turn at which the element slips
+        for level in np.linspace(torque[-1], end, steps)[1:]:
+            done = level - (spring * turned + held)
+            x = done / (spring + element)
+            x = x if abs(x) <= abs(sticks) else sticks + (done - sticks * (spring + element)) / spring
+            torque.append(float(level))
+            angle.append(turned + x)
+        gone = angle[-1] - turned
+        held += np.clip(element * gone, -abs(way * slips - held), abs(way * slips - held))
+        turned = angle[-1]
+    return np.array(torque), np.array(angle)
+
+
+@pytest.mark.parametrize("missed", [1.0, 0.97, 1.3])
+def test_a_cycle_to_four_percent_has_the_whole_angle_as_lost_motion_though_it_misses_its_torque(missed: float) -> None:
+    rated = 67.0
+    level = 0.04 * rated
+    torque, angle = small_cycle(missed * level)
+    found = analyse(Loop(angle, torque, side="output", name="test", angle_sigma=1e-6), rated_torque=rated)
+    assert found.whole_angle
+    assert found.lost_motion is not None
+    truth = 2.0 * (level - 0.8) / 16e3  # loading, the element slips: T = k x + F
+    assert found.lost_motion.value == pytest.approx(truth, rel=1e-3)
+    assert not any("hysteresis loss" in remark for remark in found.remarks)
+
+
+def test_a_cycle_that_stops_short_of_four_percent_states_its_peaks_and_the_torque_it_needs() -> None:
+    torque, angle = small_cycle(1.5)
+    found = analyse(Loop(angle, torque, side="output", name="test", angle_sigma=1e-6), rated_torque=67.0)
+    assert found.lost_motion is None
+    assert "the cycle from -1.5 to 1.5 N.m does not reach ±2.68 N.m" in " ".join(found.remarks)
+
+
+def test_a_loop_of_a_bench_is_read_without_names_or_a_side(tmp_path: Path) -> None:
+    torque, angle = small_cycle(2.68)
+    rows = "\n".join(f"{t:.6g},{math.degrees(x) * 60.0:.6g}" for t, x in zip(torque, angle, strict=True))
+    (tmp_path / "lost.csv").write_text("Torque [Nm],Angle [arcmin]\n" + rows + "\n")
+    loop = read_loop(tmp_path / "lost.csv")
+    assert loop.side == "output"
+    assert loop.angle == pytest.approx(angle, abs=1e-8)
+    assert "that of an output" in " ".join(loop.remarks)
