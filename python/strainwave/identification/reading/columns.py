@@ -327,9 +327,9 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         told.append(f"no unit is stated: {taken}; --unit NAME=UNIT says another one")
     found = []
     for column in known:
-        unit, sure = (column.unit, True) if column.unit else (assumed[column.position].unit, assumed[column.position].sure)
+        unit, _, sure, scale = Assumed(column.unit, "", True) if column.unit else assumed[column.position]
         is_open = column.unit is None and not sure
-        values = _in_si(table, column, raw[column.position], unit)
+        values = scale * _in_si(table, column, raw[column.position], unit)
         found.append(replace(column, unit=unit, sure=sure, is_open=is_open, values=values))
     remarks = [*left_out, *told]
     empty = [column for column in found if not column.said and not np.isfinite(column.si).any()]

@@ -26,16 +26,26 @@ JOINT = 4.0 * np.pi  # rad: a joint that is written in radians does not get furt
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # what time since 1970 exceeds, in each unit
 FINER = ("ms", "us", "ns")  # than a second
 DIFFERENCES = (5000, 200)  # parts of a record over which slopes are taken, the finest first: encoders have steps
+RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
+NEAR = 0.03  # relative: a rate of rows that differs by less from a usual one is this one
 WRAP = 0.5  # of the range of an angle: by more it does not move within a thousandth of a log, but where it begins anew
 SLOWEST = 0.2  # s: rows further apart are none of a log in seconds
 
 
 class Assumed(NamedTuple):
-    """A unit that is not stated; what tells it, if anything does; and whether that leaves no other."""
+    """A unit that is not stated.
+
+    Args:
+        unit: the unit
+        why: what determines it; empty if nothing does
+        sure: True if that leaves no other
+        scale: of that unit, in which the numbers count, as rows do the time between them
+    """
 
     unit: str
     why: str
     sure: bool = False
+    scale: float = 1.0
 
     @property
     def told(self) -> str:
@@ -143,11 +153,25 @@ def _of_time(column: Column, columns: Sequence[Column], raw: Mapping[int, Array]
         for unit in FINER:
             if _fitting(slope * convert(1.0, unit, "s"), units, angle, speed, sure):
                 return Assumed(unit, f"as {angle.name} then moves as {speed.name} says")
+        counts_rows = bool((np.diff(values) == 1.0).all())
+        for rate in RATES if counts_rows else ():
+            if (
+                slope
+                and abs(convert(1.0, units[speed.position], "rad/s") * slope / rate / _size(units[angle.position]) - 1.0) < NEAR
+            ):
+                return Assumed(
+                    "s", f"as it counts rows at {rate:g} Hz, at which {angle.name} moves as {speed.name} says", scale=1.0 / rate
+                )
     hint = as_option("unit", "time", "ms")
+    lasts = f" if the record lasted {np.ptp(values):.4g} ms" if len(values) else ""
     raise ValueError(
-        f"column {quoted(column.name)} has no unit, and its steps do not tell it; give it: {hint}; if it counts rows, give "
-        "their rate: --constant rate=500"
+        f"column {quoted(column.name)} has no unit, and its steps do not determine it; give it: {hint}{lasts}; if it counts rows, "
+        "give their rate: --constant rate=500"
     )
+
+
+def _size(unit: str) -> float:
+    return convert(1.0, unit, "rad")
 
 
 def _of_angle(column: Column, values: Array) -> Assumed:

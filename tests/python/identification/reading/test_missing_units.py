@@ -95,6 +95,6 @@ def test_time_since_1970_tells_its_unit(tmp_path: Path, factor: float, unit: str
 def test_time_in_steps_of_one_is_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     np.savetxt(path, np.column_stack([np.arange(2000), ANGLE, SPEED]), delimiter=",", header="t,q,tau", comments="")
-    with pytest.raises(ValueError, match=r'column "t" has no unit, and its steps do not tell it; give it: --unit time=ms'):
+    with pytest.raises(ValueError, match=r'column "t" has no unit, and its steps do not determine it; give it: --unit time=ms'):
         recognise(path)
     assert recognise(path, FileMapping(units={"time": "ms"})).recording.time[-1] == pytest.approx(1.999)

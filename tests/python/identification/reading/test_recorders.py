@@ -315,3 +315,11 @@ def test_each_file_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     mapping = mapping_from_options(None, ["joint_torque=tau"], ["torque=N.m"], None, None, None, files=files.files)
     identify_joints("csg-20-100", files, mapping=mapping)
     assert opened == [path]
+
+
+@pytest.mark.parametrize("rate", [125.0, 250.0, 500.0, 1000.0])
+def test_a_time_that_counts_rows_gets_their_rate_from_angle_and_speed(tmp_path: Path, rate: float) -> None:
+    time = np.arange(0.0, 8.0, 1.0 / rate)
+    angle, speed, torque = (np.interp(time, TIME, each) for each in (ANGLE, SPEED, TORQUE))
+    path = written(tmp_path / "log.csv", "Time,q,dq,tau\n", [np.arange(len(time)), angle, speed, torque])
+    check_joint(recognise(path), angle, torque, time)
