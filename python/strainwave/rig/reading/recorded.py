@@ -17,6 +17,8 @@ from strainwave.rig.loop import COLUMNS, Loop, Side
 
 Array = NDArray[np.float64]
 
+BOTH_SHAFTS = 'has the angle and torque of both shafts; choose with side = "input" or side = "output"'
+
 
 def read_loop(
     path: str | Path,
@@ -59,11 +61,15 @@ def _recording(
     path: str | Path, side: Side | None, columns: Mapping[str, str] | None, units: Mapping[str, str] | None
 ) -> tuple[Recording, tuple[str, ...]]:
     """Return the columns of a loop, by their names here or as `recognise` finds them, and what was assumed for them."""
-    found = recognise(path, FileMapping(columns=columns or {}, units=units or {}, kind="torsion", side=side))
     header = {name.casefold() for name in Recording.header(path)}
-    if columns or any(set(pair) <= header for pair in COLUMNS.values()):
-        return found.recording, ()
-    return found.recording, (*found.why[2:], *found.remarks)  # the first two are its columns and their side
+    there = [each for each, pair in COLUMNS.items() if set(pair) <= header]
+    if not columns and len(there) > 1:
+        if side is None:
+            raise ValueError(one_line(f"{path}: {BOTH_SHAFTS}"))
+        columns = {name: name for name in COLUMNS[side]}
+    found = recognise(path, FileMapping(columns=columns or {}, units=units or {}, kind="torsion", side=side))
+    assumed = () if columns or there else (*found.why[2:], *found.remarks)  # the first two are its columns and their side
+    return found.recording, assumed
 
 
 def loop_of(recording: Recording, *, side: Side | None = None, name: str = "", position: float = 0.0, unit: str = "") -> Loop:
@@ -84,7 +90,7 @@ def loop_of(recording: Recording, *, side: Side | None = None, name: str = "", p
     """
     there = [each for each, pair in COLUMNS.items() if set(pair) <= set(recording.names)]
     if side is None and len(there) > 1:
-        raise ValueError('has the angle and torque of both shafts; choose with side = "input" or side = "output"')
+        raise ValueError(BOTH_SHAFTS)
     chosen = side or (there[0] if there else "input")
     if chosen not in there:
         raise ValueError(f"has no columns {' and '.join(COLUMNS[chosen])}; it has {listed(recording.names)}")
