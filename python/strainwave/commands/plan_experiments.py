@@ -27,6 +27,12 @@ def plan_experiments(
         list[str] | None,
         typer.Option(help="Standard deviation in SI units, as friction=0.002; also torsion, input_torsion. Repeat as needed."),
     ] = None,
+    resolution: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Smallest difference a sensor resolves, in SI units, as angle=1e-5; also torque, input_torque, input_angle."
+        ),
+    ] = None,
     minutes: Annotated[float, typer.Option(parser=number_option, help="What all measurements may take together.")] = 30.0,
     criterion: Annotated[str, typer.Option(help="A: sum of relative variances; D: determinant of the covariance.")] = "A",
     speed_limit: Annotated[str | None, typer.Option(help='Of the input, as "2000 rpm"; the rating, if not given.')] = None,
@@ -60,17 +66,18 @@ def plan_experiments(
         speed_limit=in_si("--speed-limit", speed_limit, "rad/s"),
         lowest_speed=in_si("--lowest-speed", lowest_speed, "rad/s"),
         torque_limit=in_si("--torque-limit", torque_limit, "N.m"),
-        noise=_noise(noise or []),
+        noise=_numbers("noise", "friction=0.002", noise or []),
+        resolution=_numbers("resolution", "angle=1e-5", resolution or []),
     )
     print(found.summary())
 
 
-def _noise(given: list[str]) -> dict[str, float]:
-    """Standard deviations by name."""
+def _numbers(option: str, example: str, given: list[str]) -> dict[str, float]:
+    """Return the numbers of an option by their names."""
     found = {}
     for each in given:
         name, _, value = each.partition("=")
         if not is_number(value):
-            raise ValueError(f"--noise {each}: write it as --noise friction=0.002")
+            raise ValueError(f"--{option} {each}: write it as --{option} {example}")
         found[name] = number_in(value)
     return found

@@ -1,4 +1,4 @@
-"""Measurements that could be made of a gear or a drive, within its limits, and what each would tell."""
+"""Measurements that could be made of a gear or a drive, within its limits, and the information of each."""
 
 from __future__ import annotations
 
@@ -26,11 +26,44 @@ from strainwave.simulation.signals import outputs
 Array = NDArray[np.float64]
 SPEEDS = 40  # of a friction table, from the lowest to the highest
 AMPLITUDES = 12  # of a torsion loop
-SMALLEST_LOOP = 0.02  # of the torque limit
+MIN_LOOP = 0.02  # of the torque limit: amplitude of the smallest torsion loop
+MIN_STEPS = 20.0  # resolutions of torque and of angle in the amplitude of a loop: in fewer its shape cannot be seen
+TORQUE_RESOLUTION = 2e-3  # of the torque limit; classes of torque sensors are 0.1 to 0.5 % of their rated torque (assumed)
+OUTPUT_ANGLE_RESOLUTION = 1e-5  # rad, 2 arc seconds: a good encoder of an output with its mounting (assumed)
+INPUT_ANGLE_RESOLUTION = 1e-4  # rad, 16 bit a turn: the encoder of a motor (assumed)
 LOOP_SAMPLES = 200
 SHARES = (1.0, 0.5, 0.25, 0.1)  # of a command
 USUAL = ("input_angle", "current")  # columns of a log that nearly every drive records
-RELATIVE_NOISE = 0.01  # of the largest value of a channel, where no noise is given (assumed)
+RELATIVE_NOISE = 0.01  # of the largest value of a channel, if no noise is given (assumed)
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """The smallest differences that sensors resolve, their errors that no mean takes out included.
+
+    Args:
+        torque: at the output [N.m]
+        angle: at the output [rad]
+        input_torque: at the input [N.m]
+        input_angle: at the input [rad]
+    """
+
+    torque: float
+    angle: float
+    input_torque: float
+    input_angle: float
+
+    @classmethod
+    def usual(cls, torque: float, ratio: float) -> Resolution:
+        """Return those of usual sensors for a gear of this torque limit at the output [N.m]; 0 for a torque without a limit."""
+        of_torque = TORQUE_RESOLUTION * torque if np.isfinite(torque) else 0.0
+        return cls(of_torque, OUTPUT_ANGLE_RESOLUTION, of_torque / abs(ratio), INPUT_ANGLE_RESOLUTION)
+
+    def resolves(self, torque: float, twist: float, ratio: float | None) -> bool:
+        """True if a loop up to a torque and a twist at the output is large enough; `ratio`: it is measured at the input."""
+        if ratio is None:
+            return torque >= MIN_STEPS * self.torque and twist >= MIN_STEPS * self.angle
+        return torque / abs(ratio) >= MIN_STEPS * self.input_torque and twist * abs(ratio) >= MIN_STEPS * self.input_angle
 
 
 Noise = Mapping[str, float]
@@ -72,27 +105,36 @@ class Candidate:
     information: Array
 
 
-def friction(gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, duration: float) -> Iterator[Candidate]:
-    """Friction torques at the input at constant speeds, each both ways."""
+def friction(
+    gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, resolution: Resolution, duration: float
+) -> Iterator[Candidate]:
+    """Yield friction torques at the input at constant speeds, each both ways."""
     one_way = np.geomspace(limits.lowest_speed, limits.speed, SPEEDS)
     speed = np.concatenate((one_way, -one_way))
     torque, slopes = _predicted(FrictionTable(speed, speed), gear, paths)
-    sigma = _sigma(noise, "friction", float(np.abs(torque).max()))
+    sigma = _sigma(noise, "friction", float(np.abs(torque).max()), resolution.input_torque)
     for row, each in enumerate(one_way.tolist()):
         rows = slopes[:, 0, [row, row + SPEEDS]].T / sigma
         words = f"friction torque at ± {each:.4g} rad/s of the input ({each * 30.0 / pi:.4g} rpm)"
         yield Candidate("friction", {"input_speed_rad_s": each}, words, 2.0 * duration, rows.T @ rows)
 
 
-def torsion(gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, duration: float) -> Iterator[Candidate]:
-    """Torsion loops up to several torques, at the output with the input held, and at the input with the output held."""
+def torsion(
+    gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, resolution: Resolution, duration: float
+) -> Iterator[Candidate]:
+    """Yield torsion loops up to several torques, at the output with the input held, and at the input with the output held.
+
+    Loops that the sensors do not resolve are left out.
+    """
     ratio = float(gear.kinematics.ratio)
-    for amplitude in np.geomspace(SMALLEST_LOOP * limits.torque, limits.torque, AMPLITUDES).tolist():
+    for amplitude in np.geomspace(MIN_LOOP * limits.torque, limits.torque, AMPLITUDES).tolist():
         largest = float(np.max(gear.twist([0.0, amplitude])))
         for side, at in (("output", None), ("input", ratio)):
+            if not resolution.resolves(amplitude, largest, at):
+                continue
             loop = _loop(gear, largest, at)
             _, slopes = _predicted(loop, gear, paths)
-            rows, known = (slopes[:, 0] / _loop_sigma(noise, at, limits)).T, len(paths)
+            rows, known = (slopes[:, 0] / _loop_sigma(noise, at, limits, resolution, amplitude / largest)).T, len(paths)
             information = without_nuisances(rows[:, :known], rows[:, known:])
             held = "input" if at is None else "output"
             turn = largest if at is None else abs(ratio) * largest
@@ -104,10 +146,14 @@ def torsion(gear: Gear, paths: Sequence[str], limits: Limits, noise: Noise, dura
             yield Candidate("torsion", settings, words, duration, information)
 
 
-def _loop_sigma(noise: Noise, ratio: float | None, limits: Limits) -> float:
-    """Noise of the torque of a loop, referred to the output [N.m]."""
+def _loop_sigma(noise: Noise, ratio: float | None, limits: Limits, resolution: Resolution, stiffness: float) -> float:
+    """Return the noise of the torque of a loop, referred to the output [N.m]; if none is given, with that of the angle."""
     scale, name = (1.0, "torsion") if ratio is None else (abs(ratio), "input_torsion")
-    return scale * _sigma(noise, name, limits.torque / scale)
+    if name in noise:
+        return scale * noise[name]
+    angle = resolution.angle if ratio is None else resolution.input_angle / scale
+    least = resolution.torque if ratio is None else resolution.input_torque
+    return float(np.hypot(scale * _sigma(noise, name, limits.torque / scale, least), stiffness * angle))
 
 
 def _loop(gear: Gear, largest: float, ratio: float | None) -> TorsionLoop:
@@ -121,7 +167,7 @@ def _loop(gear: Gear, largest: float, ratio: float | None) -> TorsionLoop:
 def motion(
     drive: Drive, paths: Sequence[str], limits: Limits, noise: Noise, commands: Mapping[str, Scenario], sample: float
 ) -> Iterator[Candidate]:
-    """Runs of a drive from rest under commands, and under shares of them; those that keep the limits."""
+    """Yield runs of a drive from rest under commands, and under shares of them; those that keep the limits."""
     known = outputs(drive)
     channels = [name for name in noise if name in known] or [name for name in USUAL if name in known]
     tried = [(name, share, command * share) for name, command in commands.items() for share in SHARES]
@@ -139,25 +185,25 @@ def motion(
         yield Candidate("motion", {"command": name, "share": share}, words, command.duration, information)
 
 
-def _sigma(noise: Noise, name: str, largest: float) -> float:
-    """The noise that is given, or a share of the largest value."""
+def _sigma(noise: Noise, name: str, largest: float, least: float = 0.0) -> float:
+    """Return the noise that is given, or a share of the largest value that is no smaller than what a sensor resolves."""
     if name in noise:
         return noise[name]
     if not largest > 0.0:
         raise ValueError(
             f"the model predicts zero for {name}, of which no share can be taken as noise; give the noise of {name}"
         )
-    return RELATIVE_NOISE * largest
+    return max(RELATIVE_NOISE * largest, least)
 
 
 def _kept(run: Recording, limits: Limits) -> bool:
-    """Whether a run keeps the limits of speed and torque."""
+    """True if a run keeps the limits of speed and torque."""
     reached = {name: float(np.abs(run[name]).max()) for name in ("input_speed", "torque")}
     return reached["input_speed"] <= limits.speed and reached["torque"] <= limits.torque
 
 
 def _predicted(experiment: Experiment, model: Any, paths: Sequence[str]) -> tuple[Array, Array]:
-    """What a model predicts, and derivatives by the parameters, then by the nuisances; zero by what it does not have."""
+    """Return what a model predicts, and derivatives by the parameters, then by the nuisances; 0 by what it does not have."""
     places = {path: each.number for path, each in every(model).items()}
     present = [row for row, path in enumerate(paths) if path in places]
     start = np.array([each.start for each in experiment.nuisances])

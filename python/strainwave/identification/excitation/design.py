@@ -1,4 +1,4 @@
-"""Which of many possible measurements tell most, by their Fisher information.
+"""The choice among many possible measurements by their Fisher information.
 
 Fedorov1972; Atkinson2007, chapters 10
 (criteria) and 12 (exchange).
@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Criterion = Literal["A", "D"]
-NOTHING = 1e-4  # information in relative units, a standard deviation of 100 times the value: as good as not known
-ENOUGH = 1e-9  # a smaller gain of a criterion is rounding
-PASSES = 50  # of exchanges; a handful suffice
+MIN_INFORMATION = 1e-4  # in relative units, a standard deviation of 100 times the value: less counts as not known
+MIN_GAIN = 1e-9  # of a criterion; a smaller one is rounding
+MAX_PASSES = 50  # of exchanges; a handful is enough
 
 
 def without_nuisances(slopes: Array, of_nuisances: Array) -> Array:
-    """Information about parameters where the nuisances are unknown, too: the Schur complement, shape (p, p).
+    """Return the information about parameters if the nuisances are unknown, too: the Schur complement, shape (p, p).
 
     Args:
         slopes: derivatives of what is measured by the parameters, over the noise, shape (n, p)
@@ -33,12 +33,12 @@ def without_nuisances(slopes: Array, of_nuisances: Array) -> Array:
 
 
 def score(information: Array, wanted: Sequence[int], criterion: Criterion) -> Array:
-    """What a design is judged by, the smaller the better, of one information matrix or of many, shape (…, p, p).
+    """Return the criterion of one information matrix or of many, the smaller the better, shape (…, p, p).
 
     A: logarithm of the sum of the variances of the wanted parameters. D: logarithm of the determinant of their covariance.
     """
     p = information.shape[-1]
-    covariance = np.linalg.inv(information + NOTHING * np.eye(p))[..., wanted, :][..., wanted]
+    covariance = np.linalg.inv(information + MIN_INFORMATION * np.eye(p))[..., wanted, :][..., wanted]
     if criterion == "D":
         scored: Array = np.linalg.slogdet(covariance)[1]
         return scored
@@ -48,7 +48,7 @@ def score(information: Array, wanted: Sequence[int], criterion: Criterion) -> Ar
 def best(
     information: Array, cost: Array, budget: float, before: Array, wanted: Sequence[int], criterion: Criterion
 ) -> list[int]:
-    """Which measurements to take, each as often as it is named: greedy by gain over cost, then by exchange.
+    """Return the places of the measurements to take, repeated ones several times: greedy by gain over cost, then by exchange.
 
     Args:
         information: of each candidate, in relative units, shape (m, p, p)
@@ -62,7 +62,7 @@ def best(
     while (affordable := np.flatnonzero(cost <= left * (1.0 + 1e-12))).size:
         gain = score(total, wanted, criterion) - score(total + information[affordable], wanted, criterion)
         place = int(np.argmax(gain / cost[affordable]))
-        if gain[place] <= ENOUGH:
+        if gain[place] <= MIN_GAIN:
             break
         taken.append(int(affordable[place]))
         total, left = total + information[taken[-1]], left - cost[taken[-1]]
@@ -72,15 +72,15 @@ def best(
 def _exchanged(
     taken: list[int], information: Array, cost: Array, left: float, before: Array, wanted: Sequence[int], criterion: Criterion
 ) -> list[int]:
-    """The same with single measurements replaced by others, as long as that makes it better."""
-    for _ in range(PASSES):
+    """Return the places with single measurements replaced by others, as long as that improves the criterion."""
+    for _ in range(MAX_PASSES):
         improved = False
         for place, one in enumerate(taken):
             rest = before + information[[*taken[:place], *taken[place + 1 :]]].sum(axis=0)
             possible = np.flatnonzero(cost <= (left + cost[one]) * (1.0 + 1e-12))
             scores = score(rest + information[possible], wanted, criterion)
             other = int(possible[np.argmin(scores)])
-            if scores.min() < score(rest + information[one], wanted, criterion) - ENOUGH:
+            if scores.min() < score(rest + information[one], wanted, criterion) - MIN_GAIN:
                 left += float(cost[one] - cost[other])
                 taken[place], improved = other, True
         if not improved:
@@ -89,9 +89,9 @@ def _exchanged(
 
 
 def covariance_of(information: Array) -> Array:
-    """Covariance in relative units; infinite variance of parameters of which a combination is not known, shape (p, p)."""
+    """Return the covariance in relative units, shape (p, p); infinite for parameters of which a combination is not known."""
     values, directions = np.linalg.eigh(information)
-    dead = values < np.maximum(NOTHING, 1e-13 * values.max(initial=0.0))
+    dead = values < np.maximum(MIN_INFORMATION, 1e-13 * values.max(initial=0.0))
     root = directions[:, ~dead] / np.sqrt(values[~dead])
     covariance: Array = root @ root.T
     for place in np.flatnonzero((np.abs(directions[:, dead]) > 1e-6).any(axis=1)):

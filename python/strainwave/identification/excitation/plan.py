@@ -1,10 +1,10 @@
-"""Which experiments to make next, to know chosen parameters best within the limits of the gear."""
+"""A plan of the next measurements: those that determine chosen parameters best within the limits of the gear."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear, arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.excitation import candidates as possible
-from strainwave.identification.excitation.candidates import Candidate, Limits, Noise
+from strainwave.identification.excitation.candidates import Candidate, Limits, Noise, Resolution
 from strainwave.identification.excitation.design import Criterion, best, covariance_of
 from strainwave.identification.fitting.fit import Fit
 from strainwave.messages import listed, shortened
@@ -28,10 +28,10 @@ DURATIONS = {"friction": 20.0, "torsion": 300.0}  # s: to settle and be averaged
 IN_A_LOOP = ("stiffness", "hysteresis", "friction_input")  # what a torsion loop may depend on
 MAX_MEASUREMENTS = 5000  # of a plan: beyond, comparing them takes minutes
 MAX_SPEED, MAX_TORQUE = 1e6, 1e9  # rad/s at the input and N.m at the output: no gear reaches them
-SLOWEST = 1e-3  # of the largest speed: the lowest that is held steady, if it is not given
-SAMPLE = 2e-3  # s, of the samples of a run
-POOR = 0.1  # relative: what is known less well is named
-RELATED = 0.9  # correlation: estimates that cannot be told apart
+MIN_SPEED_SHARE = 1e-3  # of the largest speed: the lowest that is held steady, if it is not given
+SAMPLE_TIME = 2e-3  # s, of a run
+MAX_RELATIVE_SIGMA = 0.1  # of a parameter; if it is known less well, the reason is given
+MAX_CORRELATION = 0.9  # of estimates that are determined separately
 
 Known = GearSet | Fit | Mapping[str, float]
 
@@ -57,13 +57,13 @@ class Step:
 
 @dataclass(frozen=True)
 class Expectation:
-    """How well a parameter is known before and after a plan.
+    """Uncertainty of a parameter before and after a plan.
 
     Attributes:
         path, unit, value: the parameter in the model
         before, after: standard deviation, in its unit; infinite where it is not known
         wanted: whether the plan was made for it
-        why: what keeps it from being known better, where it is known to less than 10 %; else empty
+        why: what limits its uncertainty, if it exceeds 10 %; else empty
     """
 
     path: str
@@ -77,7 +77,7 @@ class Expectation:
 
 @dataclass(frozen=True)
 class ExperimentPlan:
-    """What to measure, and what will be known then.
+    """Measurements to make, and the uncertainty of each parameter after them.
 
     Attributes:
         steps: the measurements
@@ -96,11 +96,11 @@ class ExperimentPlan:
 
     @property
     def duration(self) -> float:
-        """What all measurements take [s]."""
+        """Time of all measurements [s]."""
         return sum(step.duration for step in self.steps)
 
     def __getitem__(self, path: str) -> Expectation:
-        """What is expected of a parameter."""
+        """Return the expectation of a parameter by its path."""
         for each in self.expectations:
             if each.path == path:
                 return each
@@ -108,7 +108,11 @@ class ExperimentPlan:
 
     def summary(self) -> str:
         """The plan in words and numbers, to print."""
-        lines = [f"measure for {self.duration / 60.0:.3g} min:"] if self.steps else ["nothing that may be measured tells more"]
+        lines = (
+            [f"measure for {self.duration / 60.0:.3g} min:"]
+            if self.steps
+            else ["no measurement within the limits adds information"]
+        )
         lines += [f"  {step.repeats} x {step.words}" for step in self.steps]
         lines.append(f"{'parameter':40} {'value':>12} {'sigma before':>13} {'and after':>12}  unit")
         for each in self.expectations:
@@ -132,11 +136,12 @@ def plan_experiments(
     lowest_speed: float | None = None,
     torque_limit: float | None = None,
     noise: Noise | None = None,
+    resolution: Mapping[str, float] | None = None,
     durations: Mapping[str, float] | None = None,
     commands: Mapping[str, Scenario] | None = None,
-    sample: float = SAMPLE,
+    sample: float = SAMPLE_TIME,
 ) -> ExperimentPlan:
-    """Which measurements tell chosen parameters best in a given time.
+    """Return the measurements that determine chosen parameters best in a given time.
 
     Each possible measurement has a Fisher information: the derivatives of what the model predicts for it over its noise, less
     what the unknowns of the measurement take of it. Measurements are added by gain over duration, then exchanged one by one, as
@@ -159,7 +164,11 @@ def plan_experiments(
         torque_limit: at the output [N.m]; with ratings of a set the smaller counts
         noise: standard deviations: "friction" of the torque at one speed, at the input [N.m]; "torsion" and "input_torsion" of
             a sample of a loop at the output and at the input [N.m]; of a sample of each column of a log by its name, which
-            also says which columns are recorded, "input_angle" and "current" if none. 1 % of the largest value where not given
+            also says which columns are recorded, "input_angle" and "current" if none. If not given, 1 % of the largest value,
+            and no less than the resolution
+        resolution: smallest differences that the sensors resolve: "torque" [N.m] and "angle" [rad] at the output,
+            "input_torque" [N.m] and "input_angle" [rad] at the input. Loops whose amplitude is less than 20 of them are not
+            planned. If not given, 0.2 % of the torque limit, 1e-5 rad at the output and 1e-4 rad at the input (assumed)
         durations: of one "friction" speed one way and one "torsion" loop [s]; 20 s and 300 s if not given
         commands: for motion, by name: from rest, what the drive's control takes; shares of them are tried
         sample: distance of the samples of a run [s]
@@ -186,7 +195,14 @@ def plan_experiments(
     scale = np.array([abs(each.value) or 1.0 for each in unknowns])
     limits = _limits(model, kinds, speed_limit, lowest_speed, torque_limit)
     noise = _noise(noise or {}, whole)
-    found = list(_candidates(whole, [each.path for each in unknowns], kinds, limits, noise, durations or {}, commands, sample))
+    sensors = _resolution(resolution or {}, whole, limits)
+    paths = [each.path for each in unknowns]
+    found = list(_candidates(whole, paths, kinds, limits, noise, sensors, durations or {}, commands, sample))
+    if not found and kinds == ["torsion"]:
+        raise ValueError(
+            f"no loop up to {limits.torque:g} N.m has {possible.MIN_STEPS:g} times the resolution of its sensors; give a finer "
+            "resolution, or a higher torque_limit"
+        )
     if not found:
         raise ValueError("none of the commands keeps the limits; give smaller ones, or other experiments")
     information = np.stack([each.information for each in found]) * np.outer(scale, scale)
@@ -204,7 +220,7 @@ def plan_experiments(
     taken = best(information, cost, budget, before, places, criterion) if places else []
     after = before + information[taken].sum(axis=0)
     expectations = _expectations(unknowns, scale, before, after, everything, asked, kinds)
-    return ExperimentPlan(_steps(found, taken), expectations, _notes(kinds, limits, noise))
+    return ExperimentPlan(_steps(found, taken), expectations, _notes(kinds, limits, noise, sensors, resolution or {}))
 
 
 def _whole(model: object, moves: bool) -> Any:
@@ -250,6 +266,17 @@ def _noise(noise: Mapping[str, float], whole: Any) -> dict[str, float]:
     return {name: arguments.number(f"noise: {name}", sigma, low=0.0) for name, sigma in noise.items()}
 
 
+def _resolution(given: Mapping[str, float], whole: Any, limits: Limits) -> Resolution:
+    """Return the resolution of the sensors: that which is given, else that of usual ones."""
+    arguments.mapping("resolution", given, '{"angle": 1e-5}')
+    gear = whole.gear if isinstance(whole, Drive) else whole
+    usual = Resolution.usual(limits.torque, float(gear.kinematics.ratio))
+    for name in given:
+        if name not in (known := [field.name for field in fields(usual)]):
+            raise ValueError(f"resolution: {name} is none of {listed(known)}")
+    return replace(usual, **{name: arguments.number(f"resolution: {name}", value, low=0.0) for name, value in given.items()})
+
+
 def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: float | None, torque: float | None) -> Limits:
     """The limits that are given, or those of the ratings where they are smaller."""
     ratings = model.ratings if isinstance(model, GearSet) else {}
@@ -264,7 +291,11 @@ def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: fl
     if "torsion" in kinds and not torques:
         raise ValueError("torque_limit is needed for torsion: the model has no rating of the torque")
     highest = min(speeds, default=np.inf)
-    slowest = SLOWEST * highest if lowest is None else arguments.number("lowest_speed", lowest, "rad/s", low=0.0, high=highest)
+    slowest = (
+        MIN_SPEED_SHARE * highest
+        if lowest is None
+        else arguments.number("lowest_speed", lowest, "rad/s", low=0.0, high=highest)
+    )
     return Limits(highest, min(torques, default=np.inf), slowest)
 
 
@@ -274,6 +305,7 @@ def _candidates(
     kinds: Sequence[str],
     limits: Limits,
     noise: Noise,
+    resolution: Resolution,
     durations: Mapping[str, float],
     commands: Mapping[str, Scenario] | None,
     sample: float,
@@ -283,9 +315,9 @@ def _candidates(
     of_gear = [path.removeprefix("gear.") if isinstance(whole, Drive) else path for path in paths]
     found: list[Candidate] = []
     if "friction" in kinds:
-        found += possible.friction(gear, of_gear, limits, noise, lasting["friction"])
+        found += possible.friction(gear, of_gear, limits, noise, resolution, lasting["friction"])
     if "torsion" in kinds:
-        found += possible.torsion(gear, of_gear, limits, noise, lasting["torsion"])
+        found += possible.torsion(gear, of_gear, limits, noise, resolution, lasting["torsion"])
     if "motion" in kinds:
         if not isinstance(whole, Drive) or not commands:
             raise ValueError('motion needs a drive, and commands for it, as commands={"chirp": sw.scenario.chirp(…)}')
@@ -294,7 +326,7 @@ def _candidates(
 
 
 def _information_before(model: object, known: Known | None, unknowns: Sequence[Parameter], scale: Array) -> Array:
-    """What is known before, in relative units, shape (p, p)."""
+    """Return the information before the plan, in relative units, shape (p, p)."""
     source = model if known is None and isinstance(model, GearSet) else known
     before = np.zeros((len(unknowns), len(unknowns)))
     if isinstance(source, Fit):
@@ -327,7 +359,7 @@ def _sigma_of(gear_set: GearSet, path: str, value: float) -> float | None:
 
 
 def _of_fit(fit: Fit, unknowns: Sequence[Parameter], scale: Array) -> Array:
-    """What a fit told, with its correlations; what it did not determine is not known."""
+    """Return the information of a fit, with its correlations; what it did not determine is not known."""
     before = np.zeros((len(unknowns), len(unknowns)))
     told = {_in_gear(each.path): row for row, each in enumerate(fit.estimates) if np.isfinite(each.sigma) and each.sigma > 0.0}
     pairs = [(place, told[_in_gear(each.path)]) for place, each in enumerate(unknowns) if _in_gear(each.path) in told]
@@ -364,14 +396,14 @@ def _expectations(
             float(sigma_before[place] * scale[place]),
             float(sigma_after[place] * scale[place]),
             each.path in wanted,
-            reasons[place] if sigma_after[place] > POOR else "",
+            reasons[place] if sigma_after[place] > MAX_RELATIVE_SIGMA else "",
         )
         for place, each in enumerate(unknowns)
     )
 
 
 def _reasons(paths: Sequence[str], covariance: Array, everything: Array, kinds: Sequence[str]) -> list[str]:
-    """What keeps each parameter from being known, if it is not."""
+    """Return what limits the uncertainty of each parameter."""
     reach = np.diag(covariance_of(everything))
     values, directions = np.linalg.eigh(everything)
     sigma = np.sqrt(np.diag(covariance))
@@ -381,29 +413,39 @@ def _reasons(paths: Sequence[str], covariance: Array, everything: Array, kinds: 
     for place, _ in enumerate(paths):
         others = [other for other in range(len(paths)) if other != place]
         if everything[place, place] == 0.0:
-            reasons.append(f"nothing that {listed(kinds)} measures depends on it; another kind of experiment must tell it")
+            reasons.append(f"nothing that {listed(kinds)} measures depends on it; it needs another kind of experiment")
         elif np.isinf(reach[place]):
             dead = np.abs(directions[place]) * (values < 1e-13 * values.max() + 1e-4)
             direction = np.abs(directions[:, int(np.argmax(dead))])
             beside = [paths[other] for other in others if direction[other] > 1e-3]
-            reasons.append(f"told only together with {listed(beside)}" if beside else f"{listed(kinds)} hardly depend on it")
+            reasons.append(
+                f"determined only together with {listed(beside)}" if beside else f"{listed(kinds)} hardly depend on it"
+            )
         elif np.isinf(sigma[place]):
             reasons.append(
-                "the plan has no measurement that tells it: it is of no concern for what is wanted, or time is short"
+                "the plan has no measurement that determines it: it does not matter for what is wanted, or time is short"
             )
-        elif beside := [paths[other] for other in others if related[place, other] > RELATED]:
-            reasons.append(f"hard to tell from {listed(beside)}; more time, or knowledge of these, makes it better")
+        elif beside := [paths[other] for other in others if related[place, other] > MAX_CORRELATION]:
+            reasons.append(f"correlated with {listed(beside)}; more time, or knowledge of these, reduces its uncertainty")
         else:
-            reasons.append("the noise leaves so much; more time makes it better")
+            reasons.append("limited by the noise; more time reduces its uncertainty")
     return reasons
 
 
-def _notes(kinds: Sequence[str], limits: Limits, noise: Noise) -> tuple[str, ...]:
+def _notes(
+    kinds: Sequence[str], limits: Limits, noise: Noise, resolution: Resolution, given: Mapping[str, float]
+) -> tuple[str, ...]:
     notes = []
     if "friction" in kinds:
         notes.append(f"input speed from {limits.lowest_speed:.4g} to {limits.speed:.4g} rad/s")
     if "torsion" in kinds:
         notes.append(f"output torque to {limits.torque:.4g} N.m")
+    if "torsion" in kinds and not given:
+        notes.append(
+            f"resolution assumed: {resolution.torque:.3g} N.m and {resolution.angle:.3g} rad at the output, "
+            f"{resolution.input_torque:.3g} N.m and {resolution.input_angle:.3g} rad at the input; loops of less than "
+            f"{possible.MIN_STEPS:g} times as much are left out; give resolution of your sensors"
+        )
     if not noise:
         notes.append("noise assumed: 1 % of the largest value of each channel; give noise for standard deviations that count")
     return tuple(notes)

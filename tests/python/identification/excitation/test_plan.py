@@ -271,3 +271,44 @@ def test_expected_sigmas_of_a_run_are_those_of_fits_to_it() -> None:
 def test_what_makes_no_plan_is_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         friction_plan(COULOMB, **{"wanted": LINE} | options)
+
+
+def amplitudes(plan: Any, side: str) -> list[float]:
+    return [step.settings["torque_N_m"] for step in plan.steps if step.settings["measured_at"] == side]
+
+
+@pytest.mark.parametrize("name", ["csg-20-100", "csg-14-100", "hfuc-32-50"])
+def test_no_loop_is_planned_that_usual_sensors_do_not_resolve(name: str) -> None:
+    """Twenty steps of 1e-5 rad, and twenty times 0.2 % of the torque limit, whatever the noise of a sample averages to."""
+    start = sw.GearSet.read(name)
+    limit = min(60.0, start.ratings["peak_torque"].value) if "peak_torque" in start.ratings else 60.0
+    plan = sw.plan_experiments(
+        start, ["gear.stiffness", "gear.hysteresis"], experiments=["torsion"], torque_limit=limit, time=3600.0
+    )
+    assert amplitudes(plan, "output") + amplitudes(plan, "input")
+    for amplitude in amplitudes(plan, "output"):
+        assert amplitude >= 0.04 * limit
+        assert float(start.gear.twist([0.0, amplitude]).max()) >= 2e-4
+    assert any("resolution assumed" in note for note in plan.notes)
+
+
+def test_a_coarse_encoder_moves_loops_to_larger_torques_and_to_the_other_side() -> None:
+    told: dict[str, Any] = {"experiments": ["torsion"], "torque_limit": 60.0, "time": 3600.0}
+    start = sw.GearSet.read("csg-20-100")
+    coarse = sw.plan_experiments(start, ["gear.stiffness"], resolution={"angle": 5e-5, "input_angle": 1e-2}, **told)
+    for amplitude in amplitudes(coarse, "output"):
+        assert float(start.gear.twist([0.0, amplitude]).max()) >= 1e-3
+    assert not any("resolution assumed" in note for note in coarse.notes)
+    with pytest.raises(ValueError, match=r"no loop up to 60 N\.m has 20 times the resolution of its sensors"):
+        sw.plan_experiments(start, ["gear.stiffness"], resolution={"torque": 10.0, "input_torque": 0.1}, **told)
+
+
+def test_noise_that_is_not_given_is_no_smaller_than_a_torque_sensor_resolves() -> None:
+    """1 % of a friction of 0.02 N.m is 0.2 mN.m; a sensor for 1 N.m, 100 N.m over the ratio, resolves 2 mN.m."""
+    gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=0.0))
+    told: dict[str, Any] = {"experiments": ["friction"], "unknown": [], "speed_limit": 100.0, "time": 40.0}
+    ratio = abs(gear.kinematics.ratio)
+    plan = sw.plan_experiments(gear, ["friction_input.coulomb"], torque_limit=ratio, **told)
+    assert plan["friction_input.coulomb"].after == pytest.approx(2e-3 / 2**0.5)
+    free = sw.plan_experiments(gear, ["friction_input.coulomb"], **told)
+    assert free["friction_input.coulomb"].after == pytest.approx(2e-4 / 2**0.5)
