@@ -25,7 +25,10 @@ WORDS = (
 HEADERS = (
     "time [s],command [deg],current [A],motor_angle [deg]", "t,q,dq,tau", "rpm,torque [mNm]", "twist [arcmin],torque [N.m]",
     "Zeit,Drehzahl [1/min],Strom [A]", "input_angle [deg],input_torque [N.m]", "motor [deg],link [deg]", "time_s,torque_Nm",
-    "time [s],q1,q2,tau1,tau2", "1,2,3", "t [ms],theta_m,i",
+    "time [s],q1,q2,tau1,tau2", "1,2,3", "t [ms],theta_m,i", "1,2,3,4,5,6,7", "t [ms],q [deg],t [ms],tau [Nm]",
+    "Name,Joint.ActPos,Joint.ActTorque\nSampleTime[ms],1,1\nUnit,deg,Nm", "time [s],q [inc],torque [‰]",
+    "speed [rpm],torque [Nm],output torque [Nm]", "t,Position1,Velocity1,Torque1,TorqueCur1,Cur1",
+    "time [s],motor_angle,link_angle,motor_torque",
 )  # fmt: skip
 SCALES = (*8 * (1.0,), 1e-300, 1e-3, 1e3, 1e150, 1e300)
 SUFFIXES = ("mat", "73.mat", "mf4", "bag", "mcap")
@@ -34,12 +37,12 @@ SUFFIXES = ("mat", "73.mat", "mf4", "bag", "mcap")
 def recognised_case(random: Generator, folder: Path) -> Case:
     """A text table with words of measurements, and perhaps something said of it."""
     header = picked(random, HEADERS)
-    count, rows = header.count(",") + 1, int(random.integers(1, 60))
+    count, rows = header.split("\n")[0].count(",") + 1, int(random.integers(1, 60))
     table = np.cumsum(random.normal(size=(rows, count)), axis=0) * picked(random, SCALES)
     table[:, 0] = picked(random, (np.arange(rows) * 0.01, table[:, 0], np.round(table[:, 0], 1), np.zeros(rows)))
     text = "\n".join([header, *(",".join(f"{value:.{random.integers(2, 10)}g}" for value in row) for row in table)])
     data = encoded(mutated(text, random, WORDS), random)
-    path = folder / f"log{picked(random, ('.csv', '.txt'))}"
+    path = folder / f"{picked(random, ('log', 'joint_1', 'q2_run', 'tau_20rpm'))}{picked(random, ('.csv', '.txt', '.t'))}"
     path.write_bytes(data)
     said = picked(
         random,
@@ -49,6 +52,8 @@ def recognised_case(random: Generator, folder: Path) -> Case:
             FileMapping(constants={"rate": 100.0}),
             FileMapping(joint="1"),
             FileMapping(kind="friction"),
+            FileMapping(columns={"joint_torque": "block3"}),
+            FileMapping(units={"torque": "permille of 0.4 N.m", "angle": "counts/4096"}),
             FileMapping(kind="log", columns={"time": "1", "input_angle": "2", "current": "3"}),
             FileMapping(units={"time": "ms"}),
         ),

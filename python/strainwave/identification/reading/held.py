@@ -15,6 +15,7 @@ MAX_JITTER = 1  # rows, by which most renewals may come early or late
 MIN_REGULAR = 0.8  # of the renewals
 
 
+@np.errstate(all="ignore")
 def renewed_rows(angle: Array) -> tuple[Rows, int] | None:
     """Return the rows in which an angle was renewed, and for how many rows it is held; None if each row is new.
 

@@ -176,6 +176,7 @@ def _with_load(columns: Sequence[Column], speed: Column) -> tuple[Sequence[Colum
     return [column for column in columns if column is not load], {name: load}, (f"{load.name} is a torque {what}",)
 
 
+@np.errstate(all="ignore")
 def _drives(speed: Array, torque: Column, load: Column) -> bool:
     """True if a torque contains what drives a load, not only the friction under it."""
     way = np.sign(speed)
@@ -278,6 +279,7 @@ def _are_of_both(one: Column, other: Column) -> bool:
     return large > APART * small > 0.0
 
 
+@np.errstate(all="ignore")
 def _reflect(found: dict[str, Column], mapping: FileMapping) -> list[str]:
     """Name motions of the input that are as large as those of the output by what they are: divided by the ratio."""
     if abs(abs(mapping.constants.get("ratio", np.inf)) - 1.0) < MAX_REFLECTED:

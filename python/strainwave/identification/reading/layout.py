@@ -131,6 +131,7 @@ def with_layout(table: OpenTable) -> OpenTable:
     return LaidOutTable(table, layout) if layout is not None else table
 
 
+@np.errstate(all="ignore")
 def layout_of(table: OpenTable, timed: int | None = None) -> Layout | None:
     """The layout of the columns of a table; None if the numbers determine none.
 
@@ -195,6 +196,7 @@ def _blocks(pairs: Sequence[tuple[int, int]], places: Sequence[int], count: int,
     return Layout(tuple(names), time, joints, {name: tuple(each) for name, each in efforts.items()})
 
 
+@np.errstate(all="ignore")
 def is_slope(speeds: Sequence[Array], angles: Sequence[Array]) -> bool:
     """True if series are the slopes of others over rows, of those that move."""
     rows = np.arange(len(angles[0]), dtype=float) if angles else np.zeros(0)
@@ -218,7 +220,6 @@ def _may_be_measured(values: Array) -> bool:
     return bool(finite.any() and np.quantile(np.abs(values[finite]), 0.99) < MAX_VALUE)
 
 
-@np.errstate(all="ignore")
 def _speeds(columns: Mapping[int, Array], time: Array) -> list[tuple[int, int]]:
     """Angles and the speeds that are their slopes, the angles that move most first."""
     found = dict[int, int]()

@@ -165,8 +165,8 @@ def _of_time(column: Column, columns: Sequence[Column], raw: Mapping[int, Array]
     hint = as_option("unit", "time", "ms")
     lasts = f" if the record lasted {np.ptp(values):.4g} ms" if len(values) else ""
     raise ValueError(
-        f"column {quoted(column.name)} has no unit, and its steps do not determine it; give it: {hint}{lasts}; if it counts rows, "
-        "give their rate: --constant rate=500"
+        f"column {quoted(column.name)} has no unit, and its steps do not determine it; give it: {hint}{lasts}; if it "
+        "counts rows, give their rate: --constant rate=500"
     )
 
 

@@ -17,7 +17,7 @@ MIN_PAIRS = 2  # of a time and a channel
 
 
 def with_own_times(table: OpenTable) -> OpenTable:
-    """Return the table with channels of equal times beside one time, if each of its channels has a time before it.
+    """Return the table with channels of equal times beside one time, if each channel has an increasing time before it.
 
     >>> import tempfile
     >>> from pathlib import Path
@@ -42,6 +42,8 @@ def with_own_times(table: OpenTable) -> OpenTable:
         time, values = numbers[str(place)], numbers[str(place + 1)]
         rows = np.isfinite(time) & np.isfinite(values)
         time, values, name = convert(time[rows], unit, "s"), values[rows], labels[place + 1].name
+        if not len(time) or not (np.diff(time) > 0.0).all():
+            return table
         same = next((at for at, grid in enumerate(grids) if np.array_equal(grid.time, time)), None)
         if same is None:
             grids.append(Grid(time, {name: values}))

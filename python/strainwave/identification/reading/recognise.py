@@ -300,17 +300,22 @@ def _span(places: Sequence[int]) -> str:
 
 def _further(source: MeasurementFile, said: FileMapping, undecided: UndecidedError) -> str:
     """What to add besides an answer, if that leaves further questions."""
-    if undecided.answer is None:
-        return ""
-    answered = said.updated(undecided.answer)
-    try:
-        _recognised(source, answered)
-    except UndecidedError as next_one:
-        further = _further(source, answered, next_one)
-        return f"; and add {next_one.options}{further}" if next_one.options and not next_one.ways else further
-    except ValueError:
-        return ""
-    return ""
+    further, asked = "", {undecided.options}
+    while undecided.answer is not None:
+        said = said.updated(undecided.answer)
+        try:
+            _recognised(source, said)
+        except UndecidedError as next_one:
+            if next_one.ways or not next_one.options or next_one.options in asked:
+                break
+            further += f"; and add {next_one.options}"
+            asked.add(next_one.options)
+            undecided = next_one
+        except ValueError:
+            break
+        else:
+            break
+    return further
 
 
 def _other_units(columns: Sequence[Column], found: Mapping[str, Column], said: FileMapping) -> tuple[Alternative, ...]:
