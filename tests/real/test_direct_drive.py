@@ -43,7 +43,9 @@ def arm() -> Identified:
 
 
 def number(path: str) -> FileEstimate:
-    return next(each.estimate for each in arm().parameters if each.estimate.path == path)
+    """Return an estimate of the records at constant speed, or else of the first file that has it."""
+    found = [each for each in arm().parameters if each.estimate.path == path]
+    return next((each.estimate for each in found if each.source == "records at constant speed"), found[0].estimate)
 
 
 def test_friction_and_gravity_are_those_of_a_regression_over_all_moving_rows() -> None:

@@ -10,7 +10,7 @@ import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.friction import FrictionCandidate, fit_friction
 from strainwave.identification.experiments.friction_table import FrictionTable, with_load
-from strainwave.identification.kinds.fit_file import friction_of
+from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar
 
@@ -90,7 +90,7 @@ def test_a_gear_gets_the_loss_of_its_mesh_and_no_source_for_what_no_load_measure
     start = GearSet.read("csg-20-100")
     table, _ = with_load(dynamometer(np.linspace(0.0, 40.0, 5), both_ways=False), RATIO)
     file = Recognised(Path("dyno.csv"), "friction", {}, {}, "input", (), (), {}, table)
-    result, after = friction_of(file, table, 0.0, GearSoFar(start))
+    result, after = fit_table(file, table, 0.0, GearSoFar(start))
     assert [each.path for each in result.estimates if not each.why] == [
         "gear.friction_input.coulomb",
         "gear.friction_input.viscous",
@@ -105,7 +105,7 @@ def test_a_gear_gets_the_loss_of_its_mesh_and_no_source_for_what_no_load_measure
 def test_losses_of_quadrants_that_follow_one_are_all_identified() -> None:
     table, _ = with_load(dynamometer(np.linspace(-40.0, 40.0, 9)), RATIO)
     file = Recognised(Path("dyno.csv"), "friction", {}, {}, "input", (), (), {}, table)
-    result, after = friction_of(file, table, 0.0, GearSoFar(GearSet.read("csg-20-100")))
+    result, after = fit_table(file, table, 0.0, GearSoFar(GearSet.read("csg-20-100")))
     determined = {each.path for each in result.estimates if not each.why}
     assert determined == {"gear.friction_input.coulomb", "gear.friction_input.viscous"} | {
         f"gear.friction_mesh.{name}" for name in QUADRANTS
